@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.record.budget import RuleBudget
+from clearance.record.table import Table
 
 
 def least_proven(budget: Sequence[RuleBudget]) -> np.ndarray:
@@ -35,10 +35,8 @@ def columns_of(budgets: Sequence[RuleBudget]) -> tuple[np.ndarray, np.ndarray]:
     return proven, np.array([one.expected for one in budgets])[which, steps]
 
 
-def with_proven_between(
-    table: pa.Table, budget: Sequence[RuleBudget] | None, first: int = 0
-) -> pa.Table:
-    """Rows of the steps with `proven_between` [m], null where nothing is measured; the rows themselves where no
+def with_proven_between(table: Table, budget: Sequence[RuleBudget] | None, first: int = 0) -> Table:
+    """Rows of the steps with `proven_between` [m], NaN where nothing is measured; the rows themselves where no
     motion is certified with tolerances.
 
     Args:
@@ -47,6 +45,5 @@ def with_proven_between(
     between = least_between(budget) if budget else None
     if between is None:
         return table
-    own = between[first : first + table.num_rows]
-    column = pa.array(own, pa.float64(), mask=~np.isfinite(own))
-    return table.append_column("proven_between", column)
+    own = between[first : first + table.n_rows]
+    return table.with_columns({"proven_between": np.where(np.isfinite(own), own, np.nan)})

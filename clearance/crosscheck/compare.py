@@ -11,14 +11,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.crosscheck.fcl_adapter import peer_name
 from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
 from clearance.crosscheck.settle import off_body, peer_is_wrong
 from clearance.record.record import CrossCheck, Disagreement, Samples
 from clearance.record.rule_answer import RuleAnswer
-from clearance.record.steps import RunAnswer, step_table
+from clearance.record.steps import RunAnswer, StepColumns
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.tolerance import CROSS_CHECK
 from clearance.world.pairs import Pair
@@ -99,20 +98,17 @@ def _disagreement(
     run: PeerRun, answers: PeerAnswers, step: int, same_distance: bool, witness_error: float
 ) -> Disagreement:
     record = run.record
-    link, obstacle = record.sides[:2]
-    row = {
-        "clearance": record.steps["clearance"][step].as_py(),
-        "link": record.steps[link][step].as_py(),
-        "obstacle": record.steps[obstacle][step].as_py(),
-    }
+    found, (link, obstacle) = record.rows.row(step), record.sides[:2]
+    row = {"link": found[link], "obstacle": found[obstacle]}
+    clearance = float(record.clearances[step])
     peer_clearance, i_pair = float(answers.clearances[step]), int(answers.i_pairs[step])
     pair = run.pairs[i_pair]
     if same_distance:
         reason = f"the witness points miss their bodies or the distance by {witness_error:.3g} m"
     else:
-        reason = _reason(row["clearance"], peer_clearance, run.collides(step, i_pair))
+        reason = _reason(clearance, peer_clearance, run.collides(step, i_pair))
     return Disagreement(
-        step=step, peer_clearance=peer_clearance, peer_link=pair.link.name,
+        step=step, clearance=clearance, peer_clearance=peer_clearance, peer_link=pair.link.name,
         peer_obstacle=pair.other.name, reason=reason, **row,
     )  # fmt: skip
 
@@ -131,10 +127,11 @@ class _Witnesses:
 
     def __init__(self, run: PeerRun) -> None:
         self._run = run
-        steps, (link, obstacle, *places) = run.record.steps, run.record.sides
-        points = np.column_stack([steps[name].to_numpy() for name in places])
+        rows, (link, obstacle, *places) = run.record.rows, run.record.sides
+        points = np.column_stack([rows.numbers(name) for name in places])
         self._points = {"link": points[:, :3], "obstacle": points[:, 3:]}
-        self._names = list(zip(steps[link].to_pylist(), steps[obstacle].to_pylist(), strict=True))
+        names = (rows.names(side).tolist() for side in (link, obstacle))
+        self._names = list(zip(*names, strict=True))
         self._pairs = {(pair.link.name, pair.other.name): pair for pair in run.pairs}
 
     def errors(self) -> np.ndarray:
@@ -232,8 +229,8 @@ def _of_section(
     section, first = answer.section, answer.section.phase.first
     alone = RuleAnswer("", section.in_motion.limits, answer.found)
     judged = RunAnswer((alone,), answer.found, None, answer.found, None)
-    tables = step_table(section.phase.case, section.phase.motions, section.pairs, judged)
-    samples = Samples(section.phase.case, section.phase.motions, pa.concat_tables(tables), ())
+    case, motions = section.phase.case, section.phase.motions
+    samples = Samples(case, motions, StepColumns(case, motions, section.pairs, judged), ())
     found, settled = compared(samples, progress, section.pairs)
     rows = tuple(replace(row, step=row.step + first) for row in found.disagreements)
     moved = replace(found, worst_step=found.worst_step + first, disagreements=rows)

@@ -281,6 +281,6 @@ def _require_same(gain: Gain, files: Mapping[str, bytes], folder: Path) -> None:
 
 def _figures(run: Run) -> tuple[str, bytes, bytes]:
     """What a run came to, bit for bit."""
-    steps = run.record.steps
-    columns = [steps[name].to_numpy().tobytes() for name in ("clearance", "lower_bound")]
+    rows = run.record.rows
+    columns = [rows.numbers(name).tobytes() for name in ("clearance", "lower_bound")]
     return run.status, columns[0], columns[1]

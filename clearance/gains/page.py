@@ -99,7 +99,7 @@ def _curves(gain: Gain) -> list[object]:
 
 def motion_curve(name: str, run: Run) -> ClearanceCurve:
     """The curve of a run, with the moments between its steps that are known."""
-    steps, moments = curve_of(name, run.record.steps), run.session.curve_moments()
+    steps, moments = curve_of(name, run.record.rows.columns), run.session.curve_moments()
     times = np.append(steps.times, [moment.time for moment in moments])
     clearances = np.append(steps.clearances, [moment.clearance for moment in moments])
     order = np.argsort(times, kind="stable")

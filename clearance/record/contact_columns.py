@@ -5,18 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
+
+from clearance.record.table import Table
 
 NAMES = ("penetration", "volume")
 
 
-def no_contact_columns(n_steps: int) -> dict[str, pa.Array]:
+def no_contact_columns(n_steps: int) -> dict[str, np.ndarray]:
     """The columns where nothing has been worked out."""
-    return {name: pa.nulls(n_steps, pa.float64()) for name in NAMES}
+    return {name: np.full(n_steps, np.nan) for name in NAMES}
 
 
-def contact_columns(contacts: Any, block: slice) -> dict[str, pa.Array]:
-    """Of each step the penetration of the deepest pair and the volume of all; null unless all are worked out.
+def contact_columns(contacts: Any, block: slice) -> dict[str, np.ndarray]:
+    """Of each step the penetration of the deepest pair and the volume of all; NaN unless all are worked out.
 
     Args:
         contacts: a `ContactRows`.
@@ -33,14 +34,12 @@ def contact_columns(contacts: Any, block: slice) -> dict[str, pa.Array]:
     np.add.at(volume, at[known], numbers["volume"][known])
     none = n_open > 0
     none[np.setdiff1d(np.arange(n_steps), at)] = True
-    return {"penetration": pa.array(depth, mask=none), "volume": pa.array(volume, mask=none)}
+    depth[none] = volume[none] = np.nan
+    return {"penetration": depth, "volume": volume}
 
 
-def with_contact_columns(steps: pa.Table, contacts: Any, first: int = 0) -> pa.Table:
+def with_contact_columns(steps: Table, contacts: Any, first: int = 0) -> Table:
     """A table of steps, its row 0 the step `first`, with these columns filled in."""
     if not len(contacts):
         return steps
-    for name, column in contact_columns(contacts, slice(first, first + steps.num_rows)).items():
-        at = steps.schema.get_field_index(name)
-        steps = steps.append_column(name, column) if at < 0 else steps.set_column(at, name, column)
-    return steps
+    return steps.with_columns(contact_columns(contacts, slice(first, first + steps.n_rows)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 from clearance.world.case import Case
@@ -32,7 +32,7 @@ def sides_of(case: Case) -> tuple[str, str]:
     return LINK_AND_OBSTACLE if len(case.robots) == 1 and stands else SIDES
 
 
-def sides_in(columns: Sequence[str]) -> tuple[str, str]:
+def sides_in(columns: Container[str]) -> tuple[str, str]:
     """What a table with these columns calls the two bodies."""
     return LINK_AND_OBSTACLE if LINK_AND_OBSTACLE[0] in columns else SIDES
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.record.budget import RuleBudget
 from clearance.record.certificate import Certificate
@@ -16,9 +16,11 @@ from clearance.record.contact import ContactRows, StepContact
 from clearance.record.every_pair import EveryPair
 from clearance.record.moment import Moment
 from clearance.record.names import columns_of, sides_in
+from clearance.record.rows.resumable import IN_MEMORY
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import status_of
 from clearance.record.steps import StepColumns
+from clearance.record.table import Table
 from clearance.world.case import Case, Omission
 from clearance.world.made_moves import MadeMoves
 from clearance.world.motion import Motion
@@ -26,6 +28,9 @@ from clearance.world.notice import Notice
 from clearance.world.pairs import Pair
 from clearance.world.rules import DEFAULT
 from clearance.world.timeline import Timeline
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 CUT = "the paper's rules cut every polygon pair at every step"
 """Why the paper's method says nothing of a pair."""
@@ -143,31 +148,40 @@ class Samples:
 
     Attributes:
         motions: one for each of `case.robots`.
-        table: of `steps`, or what it is made of, where it may never be read.
+        table: of `rows`, or what it is made of, where it may never be read.
         unmeasured: links and pairs that are left out, and why.
     """
 
     case: Case
     motions: tuple[Motion, ...]
-    table: pa.Table | StepColumns
+    table: Table | StepColumns
     unmeasured: tuple[Omission, ...]
 
     @cached_property
-    def steps(self) -> pa.Table:
+    def rows(self) -> Table:
         """One row a step, as in `Record`."""
         if isinstance(self.table, StepColumns):
-            return pa.concat_tables(self.table.batches())
+            return IN_MEMORY.table("table", self.table.n_steps, self.table.batches())
         return self.table
+
+    @property
+    def steps(self) -> pa.Table:
+        """The same as a table of pyarrow, null where a number is NaN.
+
+        Raises:
+            Unavailable: pyarrow is not installed.
+        """
+        return self.rows.arrow()
 
     @cached_property
     def sides(self) -> tuple[str, ...]:
         """The columns of `steps` that hold the names of the two bodies, then their points, x to z."""
-        return columns_of(sides_in(self.steps.column_names))
+        return columns_of(sides_in(self.rows.columns))
 
     @property
     def clearances(self) -> np.ndarray:
         """(n,) [m], NaN where only a bound was asked for."""
-        return self.steps["clearance"].to_numpy()
+        return self.rows.numbers("clearance")
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,16 +190,16 @@ class Record(Samples):
 
     Attributes:
         motions: one for each of `case.robots`.
-        table: of `steps`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst
+        table: of `rows`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst
             against its rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" |
-            "contact", null where a bound does not decide); of one robot among obstacles that stand, link,
+            "contact", none where a bound does not decide); of one robot among obstacles that stand, link,
             obstacle, link_x … obstacle_z as well, which come first; with several rules nearest_clearance,
             nearest_a, nearest_b of the nearest pair whatever judges it; time_b where clocks are not tied;
-            tracking_error when simulated; proven and expected [m] where the case has tolerances (expected null
+            tracking_error when simulated; proven and expected [m] where the case has tolerances (expected NaN
             in contact); when certified, lower_bound and upper_bound of the motion from the step to the next, and
             `between`: the motion is worse there than at both of its ends, and the status is that of the motion,
-            not of the step; else lower_bound of the step where `need` leaves clearances unknown (null);
-            penetration [m] of the deepest pair in contact and volume [m3] of all, both null here:
+            not of the step; else lower_bound of the step where `need` leaves clearances unknown (NaN);
+            penetration [m] of the deepest pair in contact and volume [m3] of all, both NaN here:
             `Run.steps` fills them in.
         tally: counters by name (pairs, queries, nodes, polygons, …).
         rules: what each rule comes to; one, "default", where the case has no rules.

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.record.certificate import motion_codes
 from clearance.record.moment import Moment
-from clearance.record.name_codes import codes_of
 from clearance.record.record import Record
 from clearance.record.status import STATUSES, Status, sample_codes
+from clearance.record.table import Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +24,8 @@ class RowStatus:
     def between(self) -> np.ndarray:
         """(n,) True where the status of a row is that of the motion to the next."""
         if self.record.certificate is None:
-            return np.zeros(self.record.steps.num_rows, dtype=bool)
-        return between_of(self.record.steps)
+            return np.zeros(self.record.rows.n_rows, dtype=bool)
+        return between_of(self.record.rows)
 
     def of_samples(self, steps: slice | np.ndarray = slice(None)) -> np.ndarray:
         """(k,) the status of each of some steps by itself, the worst of all rules; 0 where a bound does not
@@ -40,7 +39,7 @@ class RowStatus:
         those alike of the least margin above its fail limit."""
         rules = self.record.rules
         if len(rules) == 1 or not self.between.any():
-            return np.zeros(self.record.steps.num_rows, dtype=np.int64)
+            return np.zeros(self.record.rows.n_rows, dtype=np.int64)
         proven = [(one, one.certificate) for one in rules if one.certificate is not None]
         codes = np.array([motion_codes(c, one.limits, slice(None)) for one, c in proven])
         margins = np.array(
@@ -78,10 +77,10 @@ class RowStatus:
 
 def rule_places(record: Record) -> np.ndarray:
     """(n,) the place among the record's rules of what judged each step."""
-    n_steps = record.steps.num_rows
+    n_steps = record.rows.n_rows
     if len(record.rules) == 1:
         return np.zeros(n_steps, dtype=np.int64)
-    return codes_of(record.steps["rule"], [one.name for one in record.rules])
+    return record.rows.names("rule").places_in(one.name for one in record.rules)
 
 
 def codes_of_moments(record: Record, moments: list[Moment]) -> np.ndarray:
@@ -90,22 +89,22 @@ def codes_of_moments(record: Record, moments: list[Moment]) -> np.ndarray:
     return np.array(codes, dtype=np.uint8)
 
 
-def between_of(steps: pa.Table) -> np.ndarray:
+def between_of(steps: Table) -> np.ndarray:
     """(n,) True where the status in a table of steps is that of the motion to the next step."""
-    if "between" not in steps.column_names:
-        return np.zeros(steps.num_rows, dtype=bool)
-    return steps["between"].to_numpy()
+    if "between" not in steps:
+        return np.zeros(steps.n_rows, dtype=bool)
+    return steps.numbers("between")
 
 
-def status_codes_of(steps: pa.Table) -> np.ndarray:
+def status_codes_of(steps: Table) -> np.ndarray:
     """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
-    found = codes_of(steps["status"], [str(status) for status in STATUSES])
+    found = steps.names("status").places_in(map(str, STATUSES))
     return np.maximum(found, 0).astype(np.uint8)
 
 
 def status_counts(record: Record) -> dict[str, int]:
     """How many steps have each status."""
     names = [str(name) for name in STATUSES]
-    codes = codes_of(record.steps["status"], names)
+    codes = record.rows.names("status").places_in(names)
     counts = np.bincount(codes[codes >= 0], minlength=len(names))
     return dict(zip(names, counts.tolist(), strict=True))

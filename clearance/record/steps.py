@@ -6,20 +6,22 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.record.certificate import Certificate, motion_codes
 from clearance.record.contact_columns import no_contact_columns
 from clearance.record.measurement import Measurement
-from clearance.record.name_codes import names_of
 from clearance.record.names import SIDES, BodyNames, columns_of
 from clearance.record.rows.blocks import blocks
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES, sample_codes
+from clearance.record.table import Column, Names, Table
 from clearance.world.case import Case
 from clearance.world.made_moves import MadeMoves
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
+
+LEFT = ("proven", "expected")
+"""The columns of what a budget leaves [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,54 +77,35 @@ class StepColumns:
     with_error: bool = False
     left: tuple[np.ndarray, np.ndarray] | None = None
 
-    def batches(self) -> Iterator[pa.Table]:
-        """The table in blocks of steps."""
-        return step_table(
-            self.case,
-            self.motions,
-            self.pairs,
-            self.judged,
-            with_error=self.with_error,
-            left=self.left,
-        )
+    @property
+    def n_steps(self) -> int:
+        """How many rows there are."""
+        return len(self.judged.found.clearance)
 
-
-def step_table(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
-    judged: RunAnswer,
-    *,
-    with_error: bool = False,
-    left: tuple[np.ndarray, np.ndarray] | None = None,
-) -> Iterator[pa.Table]:
-    """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps.
-
-    Args:
-        left: (n,) each [m] what a budget leaves, proven and expected; None without one.
-    """
-    names, found, certificate = BodyNames.of(case, pairs), judged.found, judged.certificate
-    n_steps = len(found.clearance)
-    moves = MadeMoves.of(case)
-    bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
-    for block in blocks(n_steps):
-        columns = _measured_columns(names, found, motions[0].times, block)
-        codes = judged.sample_codes(block)
-        if certificate is not None:
-            columns |= _proven_columns(found, certificate, block)
-            codes, between = _with_motion(judged, block, codes)
-            columns["between"] = pa.array(between)
-        columns["status"] = names_of(codes, [str(status) for status in STATUSES])
-        if certificate is None and bounded:
-            columns["lower_bound"] = pa.array(found.lower_bound[block])
-        if left is not None:
-            columns |= _left_columns(*left, block)
-        if with_error:
-            errors = [motion.tracking_error[block] for motion in motions]
-            columns["tracking_error"] = pa.array(np.max(errors, axis=0))
-        columns |= _move_columns(moves, motions[0].times[block])
-        columns |= no_contact_columns(block.stop - block.start)
-        yield pa.table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
+    def batches(self) -> Iterator[Table]:
+        """One row a step; columns as in `Record.rows`, NaN where only a bound is known. In blocks of steps."""
+        judged, found = self.judged, self.judged.found
+        names, certificate = BodyNames.of(self.case, self.pairs), judged.certificate
+        moves = MadeMoves.of(self.case)
+        bounded = any((found.pair[block] < 0).any() for block in blocks(self.n_steps))
+        for block in blocks(self.n_steps):
+            columns = _measured_columns(names, found, self.motions[0].times, block)
+            codes = judged.sample_codes(block)
+            if certificate is not None:
+                columns |= _proven_columns(found, certificate, block)
+                codes, between = _with_motion(judged, block, codes)
+                columns["between"] = between
+            columns["status"] = Names(codes, [str(status) for status in STATUSES])
+            if certificate is None and bounded:
+                columns["lower_bound"] = found.lower_bound[block]
+            if self.left is not None:  # NaN where nothing is expected
+                columns |= {k: each[block] for k, each in zip(LEFT, self.left, strict=True)}
+            if self.with_error:
+                errors = [motion.tracking_error[block] for motion in self.motions]
+                columns["tracking_error"] = np.max(errors, axis=0)
+            columns |= _move_columns(moves, self.motions[0].times[block])
+            columns |= no_contact_columns(block.stop - block.start)
+            yield Table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
 
 
 def _with_motion(judged: RunAnswer, steps: slice, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -135,7 +118,7 @@ def _with_motion(judged: RunAnswer, steps: slice, own: np.ndarray) -> tuple[np.n
     return np.where(between, motion, own), between
 
 
-def _sides(names: BodyNames, columns: dict[str, pa.Array]) -> dict[str, pa.Array]:
+def _sides(names: BodyNames, columns: dict[str, Column]) -> dict[str, Column]:
     """The two bodies under the names that every run has, where the run has names of its own for them."""
     if names.sides == SIDES:
         return {}
@@ -143,57 +126,51 @@ def _sides(names: BodyNames, columns: dict[str, pa.Array]) -> dict[str, pa.Array
     return {general: columns[own] for own, general in told}
 
 
-def _rule_columns(names: BodyNames, judged: RunAnswer, steps: slice) -> dict[str, pa.Array]:
+def _rule_columns(names: BodyNames, judged: RunAnswer, steps: slice) -> dict[str, Column]:
     """What judged each step, and where there are several rules the nearest pair of all."""
-    columns = {"rule": names_of(judged.rules_at(steps), [rule.name for rule in judged.rules])}
+    rules = Names(judged.rules_at(steps), [rule.name for rule in judged.rules])
+    columns: dict[str, Column] = {"rule": rules}
     if judged.rule is not None:
         near = judged.nearest
         columns |= {
-            "nearest_clearance": pa.array(near.clearance[steps], from_pandas=True),
-            "nearest_a": names_of(near.pair[steps], names.a),
-            "nearest_b": names_of(near.pair[steps], names.b),
+            "nearest_clearance": near.clearance[steps],
+            "nearest_a": Names(near.pair[steps], names.a),
+            "nearest_b": Names(near.pair[steps], names.b),
         }
     if judged.found.times_b is not None:
-        columns["time_b"] = pa.array(judged.found.times_b[steps], from_pandas=True)
+        columns["time_b"] = judged.found.times_b[steps]
     return columns
 
 
 def _proven_columns(
     found: Measurement, certificate: Certificate, steps: slice
-) -> dict[str, pa.Array]:
+) -> dict[str, Column]:
     """What is proven of the motion from each of `steps` to the next, and the least distance seen there."""
     seen = certificate.pair[steps] >= 0
     known = found.pair[steps.start : steps.stop + 1] >= 0
     after = np.append(known[1:], known[-1:])[: len(seen)]
     unseen = ~(seen | (known[: len(seen)] & after))
     return {
-        "lower_bound": pa.array(certificate.lower_bound[steps]),
-        "upper_bound": pa.array(certificate.upper_bound[steps], mask=unseen),
+        "lower_bound": certificate.lower_bound[steps],
+        "upper_bound": np.where(unseen, np.nan, certificate.upper_bound[steps]),
     }
 
 
-def _move_columns(moves: MadeMoves, times: np.ndarray) -> dict[str, pa.Array]:
+def _move_columns(moves: MadeMoves, times: np.ndarray) -> dict[str, Column]:
     """The move that is made at each time [s]; nothing without a program."""
-    return {"move": names_of(*moves.codes(times))} if moves.robots else {}
-
-
-def _left_columns(proven: np.ndarray, expected: np.ndarray, steps: slice) -> dict[str, pa.Array]:
-    """What a budget leaves of each step; null where nothing is expected of it."""
-    return {
-        "proven": pa.array(proven[steps]),
-        "expected": pa.array(expected[steps], from_pandas=True),
-    }
+    return {"move": Names(*moves.codes(times))} if moves.robots else {}
 
 
 def _measured_columns(
     names: BodyNames, found: Measurement, times: np.ndarray, block: slice
-) -> dict[str, pa.Array]:
+) -> dict[str, Column]:
     first, second, *places = names.columns
     points = found.points[block].reshape(-1, 6)
-    return {
-        "step": pa.array(np.arange(block.start, block.stop)),
-        "time": pa.array(times[block]),
-        "clearance": pa.array(found.clearance[block], from_pandas=True),
-        first: names_of(found.pair[block], names.a),
-        second: names_of(found.pair[block], names.b),
-    } | {name: pa.array(points[:, i], from_pandas=True) for i, name in enumerate(places)}
+    columns: dict[str, Column] = {
+        "step": np.arange(block.start, block.stop),
+        "time": times[block],
+        "clearance": found.clearance[block],
+        first: Names(found.pair[block], names.a),
+        second: Names(found.pair[block], names.b),
+    }
+    return columns | {name: points[:, i] for i, name in enumerate(places)}

@@ -5,10 +5,10 @@ Not for: drawing them (`templates/chart.js`), nor the tables of all steps (`tabl
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +16,7 @@ from clearance.budget.columns import least_between, least_expected, least_proven
 from clearance.errors import BadReport
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
-
-if TYPE_CHECKING:
-    import pyarrow as pa
+from clearance.record.table import arrow
 
 MOST_PARTS = 2000
 """Stretches that a screen can resolve."""
@@ -161,23 +159,21 @@ def curve_in(name: str, place: Path) -> ClearanceCurve | None:
     """
     if not (place / _TABLE).is_file():
         return None
-    import pyarrow as pa
+    pa = arrow()
     import pyarrow.parquet as parquet
 
     try:
-        return curve_of(name, parquet.read_table(place / _TABLE))
+        table = parquet.read_table(place / _TABLE)
+        return curve_of(name, {key: table[key].to_numpy() for key in table.column_names})
     except (pa.ArrowException, KeyError, OSError, TypeError) as error:
         raise BadReport(
             f"no table of steps: {error!s:.100}", where=str(place / _TABLE), valid="a report folder"
         ) from None
 
 
-def curve_of(name: str, steps: pa.Table) -> ClearanceCurve:
+def curve_of(name: str, steps: Mapping[str, Any]) -> ClearanceCurve:
     """The curve of a table of steps: their clearances, or their bounds where only those are known."""
-    known = {column: steps[column].to_numpy() for column in ("time", "clearance")}
-    if "lower_bound" in steps.column_names:
-        bound = steps["lower_bound"].to_numpy()
-        known["clearance"] = np.where(np.isnan(known["clearance"]), bound, known["clearance"])
-    return ClearanceCurve(
-        name, known["time"].astype(np.float64), known["clearance"].astype(np.float64)
-    )
+    times, clearances = (np.asarray(steps[key], np.float64) for key in ("time", "clearance"))
+    if "lower_bound" in steps:
+        clearances = np.where(np.isnan(clearances), steps["lower_bound"], clearances)
+    return ClearanceCurve(name, times, clearances)

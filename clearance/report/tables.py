@@ -87,10 +87,9 @@ def _write_csv(batches: Iterable[pa.Table], path: Path, quoting: str) -> None:
 
 def step_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
     """The steps of a record, a block at a time; what a block took of memory is let go after it."""
-    for block in blocks(record.steps.num_rows):
-        rows = record.steps.slice(block.start, block.stop - block.start).combine_chunks()
-        rows = with_contact_columns(rows, record.contacts, block.start)
-        yield with_proven_between(rows, record.budget, block.start)
+    for block in blocks(record.rows.n_rows):
+        rows = with_contact_columns(record.rows.at(block), record.contacts, block.start)
+        yield with_proven_between(rows, record.budget, block.start).arrow()
         kept.let_go()
 
 

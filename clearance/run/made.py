@@ -14,6 +14,7 @@ from clearance.record.fingerprint import fingerprint
 from clearance.record.record import CommandedCourse, CrossCheck, Record, Samples
 from clearance.record.rows.blocks import blocks
 from clearance.record.steps import StepColumns
+from clearance.record.table import Table
 from clearance.record.wording import mm
 from clearance.run.answers import MeasurementPlan, measurement_plan, section_answers
 from clearance.run.notices import notices_of
@@ -140,7 +141,9 @@ def _samples(
         remaining = columns_of([one.left for one in budget])
     columns = StepColumns(case, motions, pairs, run.answer, simulated, remaining)
     on_disk = resources.rows.folder is not None  # which may be gone when somebody reads it
-    table = resources.rows.table("steps", columns.batches()) if on_disk else columns
+    table: StepColumns | Table = columns
+    if on_disk:
+        table = resources.rows.table("table", columns.n_steps, columns.batches())
     unmeasured = (*plan.sections.unmeasured, *cut_throughout(case, pairs, run.rules))
     return Samples(case, motions, table, unmeasured)
 
@@ -244,7 +247,7 @@ def _commanded(question: Question) -> CommandedCourse:
         commanded_case(question.case), certify=False, contact="none", today=question.today
     )
     record = answered(asked, DEFAULT_RESOURCES).record
-    return CommandedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
+    return CommandedCourse(record.rows.numbers("time"), record.clearances, record.worst_sample)
 
 
 def commanded_case(case: Case) -> Case:

@@ -53,13 +53,16 @@ class Run:
 
         Both are null at steps with pairs in contact that are not worked out, and upper bounds where not exact.
         With tolerances, `proven_between` [m] is the bound of the motion from the step to the next.
+
+        Raises:
+            Unavailable: pyarrow is not installed.
         """
         from clearance.budget.columns import with_proven_between
         from clearance.record.contact_columns import with_contact_columns
 
         record = self.record
-        with_contacts = with_contact_columns(record.steps, record.contacts)
-        return with_proven_between(with_contacts, record.budget)
+        with_contacts = with_contact_columns(record.rows, record.contacts)
+        return with_proven_between(with_contacts, record.budget).arrow()
 
     @property
     def pairs(self) -> pa.Table | None:
@@ -101,7 +104,7 @@ class Run:
         return row | measured
 
     def _row(self, step: int) -> dict:
-        row = self.record.steps.slice(step, 1).to_pylist()[0]
+        row = self.record.rows.row(step)
         columns = zip(columns_of(LINK_AND_OBSTACLE), columns_of(SIDES), strict=True)
         row = {name: row[side] for name, side in columns} | row
         if row.get("between"):

@@ -10,7 +10,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import pyarrow as pa
 import pytest
 
 import clearance.crosscheck as crosscheck
@@ -127,8 +126,7 @@ def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, capsys, mo
     def asked_about_a_wrong_answer(record, progress=None):
         clearances = record.clearances.copy()
         clearances[1] += 1e-6
-        i_column = record.steps.column_names.index("clearance")
-        wrong = record.steps.set_column(i_column, "clearance", pa.array(clearances))
+        wrong = record.rows.with_columns({"clearance": clearances})
         return ask(replace(record, table=wrong), progress)
 
     monkeypatch.setattr(crosscheck, "cross_check", asked_about_a_wrong_answer)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.record import Samples
+from clearance.record.table import Table
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Omission, PlacedRobot
 from clearance.world.motion import Motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.report.step_rows import rows_of
 
 BOX_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 
@@ -45,7 +46,7 @@ def rail_record(
     return Samples(case, (motion,), _steps(times, rows), unmeasured)
 
 
-def _steps(times: np.ndarray, rows: list) -> pa.Table:
+def _steps(times: np.ndarray, rows: list) -> Table:
     columns = {
         "step": np.arange(len(times)),
         "time": times,
@@ -56,7 +57,7 @@ def _steps(times: np.ndarray, rows: list) -> pa.Table:
     for side, i_row in (("link", 2), ("obstacle", 3)):
         for i_axis, axis in enumerate("xyz"):
             columns[f"{side}_{axis}"] = [float(row[i_row][i_axis]) for row in rows]
-    return pa.table(columns)
+    return rows_of(columns)
 
 
 def _shift(place: tuple[float, float, float]) -> np.ndarray:

@@ -65,8 +65,8 @@ def test_a_wrong_answer_of_the_peer_is_settled_and_counted(error: float, monkeyp
 @pytest.mark.parametrize("error", [1e-3, -1e-3])
 def test_a_wrong_answer_of_ours_is_never_settled(error: float) -> None:
     run = passing(ball(0.2, 1))
-    wrong = run.steps["clearance"].to_numpy() + [0.0, error, 0.0, 0.0]
-    record = replace(run.record, table=run.steps.set_column(2, "clearance", [wrong]))
+    wrong = run.record.clearances + [0.0, error, 0.0, 0.0]
+    record = replace(run.record, table=run.record.rows.with_columns({"clearance": wrong}))
     found = cross_check(record)
     assert [row.step for row in found.disagreements] == [1] and found.n_settled == 0
 
@@ -115,11 +115,7 @@ def test_it_gives_up_where_nothing_is_settled(monkeypatch) -> None:
     monkeypatch.setattr(compare, "GIVE_UP", 2)
     monkeypatch.setattr(compare._Witnesses, "refute", lambda *args: asked.append(args) or False)
     run = passing(ball(0.2, 1))
-    steps = run.steps
-    for name in ("clearance", "link_z"):
-        shift = 1e-3
-        steps = steps.set_column(
-            steps.column_names.index(name), name, [steps[name].to_numpy() + shift]
-        )
-    found = cross_check(replace(run.record, table=steps))
+    rows = run.record.rows
+    off = {name: rows.numbers(name) + 1e-3 for name in ("clearance", "link_z")}
+    found = cross_check(replace(run.record, table=rows.with_columns(off)))
     assert len(found.disagreements) == 4 and len(asked) <= 2

@@ -36,7 +36,7 @@ def test_a_wrong_clearance_of_either_robot_is_found() -> None:
     from clearance.crosscheck import cross_check
 
     run = cl.check(two_robots())
-    wrong = run.steps.set_column(2, "clearance", [run.steps["clearance"].to_numpy() + 1e-6])
+    wrong = run.record.rows.with_columns({"clearance": run.record.clearances + 1e-6})
     check = cross_check(replace(run.record, table=wrong))
     assert len(check.disagreements) == 12
     assert {row.peer_link for row in check.disagreements} <= {"flying/l6", "second/l6"}

@@ -35,7 +35,7 @@ def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
     if limits.fail > 0.0:
         return whole
     case = dataclasses.replace(whole.case, accept=tuple(accept))
-    short = with_steps(whole, whole.steps.slice(0, 8))
+    short = with_steps(whole, whole.rows.at(slice(8)))
     return dataclasses.replace(short, case=case, notices=tuple(notices))
 
 
@@ -136,7 +136,7 @@ def test_facets_are_told_where_they_matter(shown):
     """0.1 mm: nothing beside 31 mm, and much beside contact."""
     one = record()
     if not shown:
-        one = with_steps(one, one.steps.slice(0, 2))
+        one = with_steps(one, one.rows.at(slice(2)))
     bound = [line for line in printed(one) if line.startswith("  facets")]
     assert bool(bound) == (one.worst.clearance < 0.01) == shown
     assert not shown or "0.1 mm" in bound[0]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.record.budget import ErrorSource, RuleBudget
 from clearance.record.record import Record
@@ -31,10 +30,10 @@ def with_budget(
     budget = Budget(unproven_ok=ok, sources=("preset typical: read somewhere",))
     case = dataclasses.replace(made.case, tolerance=budget)
     budgets = tuple(_of_rule(made, rule, taken, between, changes) for rule in made.rules)
-    steps = made.steps
-    for name in ("proven", "expected"):
-        values = getattr(budgets[0], name)
-        steps = steps.append_column(name, pa.array(values, mask=~np.isfinite(values)))
+    left = {name: getattr(budgets[0], name) for name in ("proven", "expected")}
+    steps = made.rows.with_columns(
+        {name: np.where(np.isfinite(values), values, np.nan) for name, values in left.items()}
+    )
     return dataclasses.replace(made, case=case, budget=budgets, table=steps)
 
 

@@ -8,13 +8,13 @@ import dataclasses
 from functools import partial
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
 from clearance.record.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES
+from clearance.record.table import Table
 from clearance.simulate.answers.rule_pairs import SampleMoments, measured_rule
 from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.world.body import Body, Obstacle
@@ -25,6 +25,7 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import DEFAULT
 from clearance.world.timeline import timeline_of
 from clearance.world.trajectory import Trajectory
+from tests.report.step_rows import rows_of
 
 LIMITS = Limits(fail=0.01, warn=0.06)
 
@@ -138,9 +139,9 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
     return dataclasses.replace(made, **changes)
 
 
-def with_steps(made: Record, steps: pa.Table) -> Record:
+def with_steps(made: Record, steps: Table) -> Record:
     """The record with other rows of steps, of as many of its steps, and what follows from them."""
-    n_steps = steps.num_rows
+    n_steps = steps.n_rows
     motions = tuple(
         dataclasses.replace(
             one,
@@ -162,14 +163,14 @@ def with_steps(made: Record, steps: pa.Table) -> Record:
     )
 
 
-def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
+def rules_of(case, motions, steps: Table) -> tuple[RuleAnswer, ...]:
     """The one rule of a case without rules, with what the rows of its steps say."""
     pairs = measured_pairs(case)[0]
     names = pair_names(case, pairs)
     places = {named: i for i, named in enumerate(zip(*names, strict=True))}
-    who = zip(steps["link"].to_pylist(), steps["obstacle"].to_pylist(), strict=True)
-    clearances = steps["clearance"].to_numpy()
-    points = np.stack([steps[name].to_numpy() for name in columns_of(LINK_AND_OBSTACLE)[2:]], 1)
+    who = zip(*(steps.names(side).tolist() for side in LINK_AND_OBSTACLE), strict=True)
+    clearances = steps.numbers("clearance")
+    points = np.stack([steps.numbers(name) for name in columns_of(LINK_AND_OBSTACLE)[2:]], 1)
     found = MeasuredSteps(
         clearances,
         clearances,
@@ -192,7 +193,7 @@ def with_contacts(made: Record, work_out: str = "every") -> Record:
 
     pairs = measured_pairs(made.case)[0]
     named = list(zip(*pair_names(made.case, pairs), strict=True))
-    links, obstacles = (made.steps[name].to_pylist() for name in ("link", "obstacle"))
+    links, obstacles = (made.rows.names(name).tolist() for name in ("link", "obstacle"))
     nearest = [named.index(pair) for pair in zip(links, obstacles, strict=True)]
     asked = made.case, made.motions, pairs, made.clearances, np.array(nearest)
     part = ContactPart.of(overlap_finder(*asked, work_out), 0, np.arange(len(pairs)))
@@ -239,7 +240,7 @@ def measure(motions, case):
     ], tuple(sorted(minima.values(), key=lambda minimum: minimum.clearance))
 
 
-def table(rows, limits: Limits) -> pa.Table:
+def table(rows, limits: Limits) -> Table:
     """The steps table with its status column."""
     names = (
         "step",
@@ -260,7 +261,7 @@ def table(rows, limits: Limits) -> pa.Table:
     columns["status"] = [str(STATUSES[code]) for code in codes]
     general = zip(columns_of(LINK_AND_OBSTACLE), columns_of(SIDES), strict=True)
     columns |= {name: columns[own] for own, name in general}
-    return pa.table(columns | {"rule": [DEFAULT] * len(gaps)})
+    return rows_of(columns | {"rule": [DEFAULT] * len(gaps)})
 
 
 def disagreeing() -> CrossCheck:

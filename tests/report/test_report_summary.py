@@ -37,7 +37,8 @@ def test_joints_without_limits_are_null_and_not_infinity(tmp_path):
 
 def test_tracking_error_is_told_when_the_motion_is_simulated():
     run = record(n_steps=5)
-    steps = run.steps.append_column("tracking_error", [[0.0, 0.1, 0.5, 0.2, 0.0]])
+    error = np.array([0.0, 0.1, 0.5, 0.2, 0.0])
+    steps = run.rows.with_columns({"tracking_error": error})
     assert summary_of(run)["tracking_error"] is None
     told = summary_of(dataclasses.replace(run, table=steps))["tracking_error"]
     assert told == {"greatest": 0.5, "step": 2}

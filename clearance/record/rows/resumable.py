@@ -17,15 +17,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.errors import unwritable
 from clearance.record.rows.folder import clear, own_folder, take_away
-
-if TYPE_CHECKING:
-    import pyarrow as pa
+from clearance.record.table import Column, Names, Table
 
 SAVE_AFTER = 1.0
 """[s] between two states of a pass: so much work is lost at most. Writing one takes milliseconds."""
@@ -59,11 +56,21 @@ class MeasuredRows:
     def let_go(self) -> None:
         """Frees the memory of what is on disk as well; it comes back when it is looked at."""
 
-    def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
+    def table(self, name: str, n_rows: int, batches: Iterable[Table]) -> Table:
         """The batches as one table; what they took of memory on the way is let go."""
-        import pyarrow as pa
-
-        return pa.concat_tables(batches)
+        columns: dict[str, Column] = {}
+        start = 0
+        for batch in batches:
+            rows = slice(start, start + batch.n_rows)
+            for key, column in batch.columns.items():
+                values = column.codes if isinstance(column, Names) else column
+                if not start:
+                    room = self.array(f"{name}.{key}", (n_rows,), values.dtype.type)
+                    columns[key] = Names(room, column.names) if isinstance(column, Names) else room
+                columns[key] = _filled(columns[key], rows, column)
+            start = rows.stop
+            self.let_go()
+        return Table(columns)
 
     @property
     def folder(self) -> Path | None:
@@ -72,6 +79,20 @@ class MeasuredRows:
 
     def ask(self, fingerprint: str) -> None:
         """Says what decides every row; rows of another fingerprint are thrown away."""
+
+
+def _filled(column: Column, rows: slice, more: Column) -> Column:
+    """A column with `more` in some rows, and with all names of both."""
+    if not isinstance(column, Names):
+        column[rows] = more
+        return column
+    assert isinstance(more, Names)
+    known, codes = column.names, more.codes
+    if known != more.names:
+        known = [*known, *(name for name in more.names if name not in known)]
+        codes = more.places_in(known)
+    column.codes[rows] = codes
+    return Names(column.codes, known)
 
 
 IN_MEMORY = MeasuredRows()
@@ -89,7 +110,6 @@ class ResumableRows(MeasuredRows):
     place: Path
     say: Callable[[str], None] = lambda line: None
     _maps: dict[str, mmap.mmap] = field(default_factory=dict)
-    _tables: list[mmap.mmap] = field(default_factory=list)
     _fresh: set[str] = field(default_factory=set)
     _told: bool = False
     _closed: bool = False
@@ -139,27 +159,8 @@ class ResumableRows(MeasuredRows):
             self.say(f"resuming: {n_done:,} of {n_all:,} steps are kept of an interrupted run")
         return _ResumableLog(done, state, path, arrays)
 
-    def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
-        if self._closed:
-            return super().table(name, batches)
-        import pyarrow as pa
-
-        path = self.place / f"{name}.arrow"
-        with unwritable(path), pa.OSFile(str(path), "wb") as file:
-            writer = None
-            for batch in batches:
-                writer = writer or pa.ipc.new_file(file, batch.schema)
-                writer.write_table(batch)
-                self.let_go()
-            assert writer is not None  # a run has steps
-            writer.close()
-        with path.open("rb") as file:
-            mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-        self._tables.append(mapped)
-        return pa.ipc.open_file(pa.BufferReader(pa.py_buffer(mapped))).read_all()
-
     def let_go(self) -> None:
-        for mapped in (*self._maps.values(), *self._tables):
+        for mapped in self._maps.values():
             if hasattr(mmap, "MADV_DONTNEED"):  # what was written to it stays in the file
                 mapped.madvise(mmap.MADV_DONTNEED)
 

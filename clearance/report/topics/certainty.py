@@ -30,7 +30,7 @@ def data(model: ReportModel) -> dict[str, Any]:
     """What was asked of the run, what is proven, what a peer says, notes."""
     record = model.record
     times, certificate, check = (
-        record.steps["time"].to_numpy(),
+        record.rows.numbers("time"),
         record.certificate,
         record.cross_check,
     )
@@ -39,7 +39,7 @@ def data(model: ReportModel) -> dict[str, Any]:
         "paper_tolerance": record.paper_tolerance,
         "motion": record.motion_kind,
         "need": record.need,
-        "n_steps": record.steps.num_rows,
+        "n_steps": record.rows.n_rows,
         "start": float(times[0]),
         "end": float(times[-1]),
         "certified": None if certificate is None else certified_of(record, certificate),
@@ -53,7 +53,7 @@ def data(model: ReportModel) -> dict[str, Any]:
 def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
     """The least proven bound [m], the interval it holds for, and the least distance seen there, if one was."""
     step = certificate.worst_interval
-    times = record.steps["time"].to_numpy()
+    times = record.rows.numbers("time")
     cubic = any(motion.velocities is not None for motion in record.motions)
     asked = [motion.placed.trajectory for motion in record.motions if motion.velocities is not None]
     is_program = any(one is not None and one.moves for one in asked)
@@ -69,7 +69,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
         if cubic
         else "linear",
         "lower_bound": float(certificate.lower_bound[step]),
-        "upper_bound": record.steps["upper_bound"][step].as_py(),
+        "upper_bound": record.rows.row(step)["upper_bound"],
         "step": step,
         "start": float(times[step]),
         "end": float(times[min(step + 1, len(times) - 1)]),
@@ -89,9 +89,9 @@ def _greatest_gap(certificate: Certificate) -> float:
 
 def _tracking_error(record: Record) -> dict[str, Any] | None:
     """The greatest tracking error [rad or m] and its step; None in kinematic motion."""
-    if "tracking_error" not in record.steps.column_names:
+    if "tracking_error" not in record.rows:
         return None
-    error = record.steps["tracking_error"].to_numpy()
+    error = record.rows.numbers("tracking_error")
     step = int(np.argmax(error))
     return {"greatest": float(error[step]), "step": step}
 

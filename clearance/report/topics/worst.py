@@ -81,7 +81,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
     a, b = ("link", "obstacle") if record.sides[:2] == LINK_AND_OBSTACLE else ("a", "b")
     between = f"between the steps {worst.step} and {worst.step + 1}"
     where = between if worst.between else f"step {worst.step}"
-    of_steps = f"of {count(record.steps.num_rows, 'step')}"
+    of_steps = f"of {count(record.rows.n_rows, 'step')}"
     at = f"{seconds(worst.time, record.moves.at(worst.time))}{other_time(worst.obstacle, worst.time_b)}"
     yield "worst", f"{where} {of_steps}, {at}: {worst.link} - {worst.obstacle}"
     yield "points", f"{a} {_point(worst.point_link)}, {b} {_point(worst.point_obstacle)} m"

@@ -56,7 +56,7 @@ def events(run: MeasuredRun) -> list[Event]:
         return _motion_events(motion)
     steps, order, what, stops = [], [], [], []
     for level, runs in _level_runs(record).items():
-        exits = runs[runs[:, 1] < record.steps.num_rows, 1]
+        exits = runs[runs[:, 1] < record.rows.n_rows, 1]
         steps += [runs[:, 0], exits]
         stops += [runs[:, 1], exits]
         order += [np.full(len(runs), LEVELS[level]), np.full(len(exits), -LEVELS[level])]
@@ -118,7 +118,7 @@ def not_listed(run: MeasuredRun) -> dict[str, int]:
         ends = [span[1] for spans in motion.spans.values() for span in spans]
         n_events = len(ends) + sum(end < motion.times[-1] for end in ends)
     else:
-        runs, n_steps = _level_runs(record), record.steps.num_rows
+        runs, n_steps = _level_runs(record), record.rows.n_rows
         n_events = sum(len(found) + int((found[:, 1] < n_steps).sum()) for found in runs.values())
         counted = {level: len(found) for level, found in runs.items()}
     counted["events"] = n_events
@@ -140,14 +140,14 @@ def extent(run: MeasuredRun, level: str) -> tuple[int, int]:
 
 def _inside(runs: np.ndarray, record: Record) -> np.ndarray:
     """(n,) True for the steps in any of the runs."""
-    change = np.zeros(record.steps.num_rows + 1, dtype=np.int64)
+    change = np.zeros(record.rows.n_rows + 1, dtype=np.int64)
     change[runs[:, 0]], change[runs[:, 1]] = 1, -1
     return np.cumsum(change[:-1]) > 0
 
 
 def _level_runs(record: Record) -> dict[str, np.ndarray]:
     """For each of `LEVELS` (k, 2) first step and step after the last of its runs."""
-    codes = status_codes_of(record.steps)
+    codes = status_codes_of(record.rows)
     if record.need == "minimum":
         codes = codes[:0]
     return {level: _runs(codes >= least) for level, least in LEVELS.items()}
@@ -174,7 +174,7 @@ class _Levels:
     @staticmethod
     def of(run: MeasuredRun) -> _Levels:
         rows = RowStatus(run.record)
-        codes = status_codes_of(run.record.steps)
+        codes = status_codes_of(run.record.rows)
         own = codes if not rows.between.any() else np.where(rows.between, rows.of_samples(), codes)
         return _Levels(run, rows, own)
 
@@ -189,7 +189,7 @@ class _Levels:
 
     def sample(self, step: int) -> dict[str, Any]:
         """What is known of a step."""
-        row = self.run.record.steps.slice(step, 1).to_pylist()[0]
+        row = self.run.record.rows.row(step)
         columns = ("time", "clearance", *self.run.record.sides[:2], "rule")
         return {name: row[column] for name, column in zip(_FIELDS, columns, strict=True)}
 
@@ -214,9 +214,7 @@ class _Levels:
         """The first of some rows that stands worst, and of those alike is nearest to the fail limit."""
         margin = self.rows.margin[steps]
         if len(self.run.record.rules) > 1:
-            codes = status_codes_of(
-                self.run.record.steps.slice(steps.start, steps.stop - steps.start)
-            )
+            codes = status_codes_of(self.run.record.rows.at(steps))
             margin = np.where(codes == codes.max(), margin, np.inf)
         return int(np.nanargmin(margin))
 

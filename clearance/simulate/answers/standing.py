@@ -26,7 +26,7 @@ from clearance.world.pairs import BodyIndex
 def standing_contacts(record: Record) -> list[tuple[str, str]]:
     """The two bodies of the measured pairs that touch at every moment, since neither ever moves."""
     if (
-        record.steps.num_rows < 2 or not (record.clearances <= 0.0).any()
+        record.rows.n_rows < 2 or not (record.clearances <= 0.0).any()
     ):  # one step is not "at every moment"
         return []
     case = record.case
@@ -67,7 +67,7 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     A link that a joint moves against an obstacle that stands is excluded: that is what a run finds.
     """
     rows = record.contacts
-    if not isinstance(rows, ContactRows) or not len(rows) or record.steps.num_rows < 2:
+    if not isinstance(rows, ContactRows) or not len(rows) or record.rows.n_rows < 2:
         return []
     case, plan = record.case, section_plan(record.timeline)
     n_steps = np.bincount(rows.pairs, minlength=len(plan.pairs))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from clearance.record.moment import Moment
@@ -19,7 +18,8 @@ from clearance.record.row_status import (
     status_codes_of,
 )
 from clearance.record.rows.blocks import blocks
-from clearance.record.rows.resumable import MeasuredRows
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
+from clearance.record.table import Table
 from clearance.simulate.replay.bodies import FramePlace
 
 
@@ -39,7 +39,7 @@ class ReplayFrames:
         record: Record, chosen: np.ndarray, moments: Sequence[Moment], rows: MeasuredRows
     ) -> ReplayFrames:
         table = _rows_at(record, chosen, rows)
-        known = table["clearance"].is_valid().to_numpy()
+        known = ~np.isnan(table.numbers("clearance"))
         after = np.searchsorted(chosen, [moment.step for moment in moments], side="right")
         shown = {moment.step for moment in moments}
         own = RowStatus(record).of_samples(chosen).astype(np.uint8)
@@ -49,10 +49,7 @@ class ReplayFrames:
         rule_names = [rule.name for rule in record.rules]
         joined: dict[str, tuple[np.ndarray, ArrayLike]] = {
             "steps": (chosen, [moment.step for moment in moments]),
-            "times": (
-                table["time"].to_numpy().astype(np.float64),
-                [moment.time for moment in moments],
-            ),
+            "times": (table.numbers("time"), [moment.time for moment in moments]),
             "times_b": (_times_b(table), [_or_nan(moment.time_b) for moment in moments]),
             "clearances": (least_of(table), clearances),
             "between": (np.zeros(len(chosen), dtype=np.uint8), 1),
@@ -75,15 +72,13 @@ class ReplayFrames:
 
 
 def _places(
-    record: Record, chosen: np.ndarray, table: pa.Table, moments: Sequence[tuple[int, Moment]]
+    record: Record, chosen: np.ndarray, table: Table, moments: Sequence[tuple[int, Moment]]
 ) -> list[FramePlace]:
-    names = zip(*(table[name].to_pylist() for name in record.sides[:2]), strict=True)
-    clearances, times_b = table["clearance"].to_pylist(), _times_b(table)
-    rows = zip(chosen.tolist(), clearances, names, times_b.tolist(), strict=True)
-    places = [
-        FramePlace(step, 0.0, clearance, pair, None if np.isnan(time_b) else time_b)
-        for step, clearance, pair, time_b in rows
-    ]
+    names = zip(*(table.names(name).tolist() for name in record.sides[:2]), strict=True)
+    numbers = table.numbers("clearance").tolist(), _times_b(table).tolist()
+    clearances, times_b = ([None if x != x else x for x in column] for column in numbers)
+    rows = zip(chosen.tolist(), clearances, names, times_b, strict=True)
+    places = [FramePlace(step, 0.0, gap, pair, time_b) for step, gap, pair, time_b in rows]
     for place, moment in reversed(moments):
         pair = moment.link, moment.obstacle
         one = FramePlace(moment.step, moment.share, moment.clearance, pair, moment.time_b)
@@ -91,38 +86,36 @@ def _places(
     return places
 
 
-def _times_b(table: pa.Table) -> np.ndarray:
+def _times_b(table: Table) -> np.ndarray:
     """(n,) [s] when the second body of each row is there, NaN where that is its time."""
-    if "time_b" not in table.column_names:
-        return np.full(table.num_rows, np.nan)
-    return table["time_b"].to_numpy().astype(np.float64)
+    return table.numbers("time_b") if "time_b" in table else np.full(table.n_rows, np.nan)
 
 
 def _or_nan(value: float | None) -> float:
     return np.nan if value is None else value
 
 
-def _rows_at(record: Record, chosen: np.ndarray, on_disk: MeasuredRows) -> pa.Table:
+def _rows_at(record: Record, chosen: np.ndarray, on_disk: MeasuredRows) -> Table:
     """The rows of some steps, block by block: at once, all rows would be put together first."""
     tables = []
-    for block in blocks(record.steps.num_rows):
+    for block in blocks(record.rows.n_rows):
         here = chosen[np.searchsorted(chosen, block.start) : np.searchsorted(chosen, block.stop)]
-        rows = record.steps.slice(block.start, block.stop - block.start)
-        tables.append(rows.take(here - block.start))
+        tables.append(record.rows.at(here))
         on_disk.let_go()
-    return pa.concat_tables(tables).combine_chunks()
+    return IN_MEMORY.table("table", len(chosen), tables)
 
 
-def least_of(steps: pa.Table) -> np.ndarray:
+def least_of(steps: Table) -> np.ndarray:
     """(n,) [m] the clearance of each step, or what it is at least."""
-    clearances = steps["clearance"].to_numpy().astype(np.float64)
-    if steps["clearance"].null_count == 0:
-        return clearances
-    return np.where(np.isnan(clearances), steps["lower_bound"].to_numpy(), clearances)
+    clearances = steps.numbers("clearance")
+    unknown = np.isnan(clearances)
+    return (
+        np.where(unknown, steps.numbers("lower_bound"), clearances) if unknown.any() else clearances
+    )
 
 
-def _lines(record: Record, steps: pa.Table) -> np.ndarray:
+def _lines(record: Record, steps: Table) -> np.ndarray:
     """(n, 6) [m] the witness points; where they are unknown, twice that of the worst step's first body."""
     points = record.sides[2:]
-    lines = np.column_stack([steps[name].to_numpy() for name in points]).astype(np.float64)
+    lines = np.column_stack([steps.numbers(name) for name in points])
     return np.where(np.isnan(lines), np.tile(record.worst_sample.point_link, 2), lines)

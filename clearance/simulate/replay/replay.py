@@ -62,7 +62,7 @@ def replay_of(
     return Replay(
         name=record.case.name,
         rules=tuple(DrawnRule(one.name, one.limits.fail, one.limits.warn) for one in record.rules),
-        n_steps=record.steps.num_rows,
+        n_steps=record.rows.n_rows,
         bodies=bodies,
         shapes=shapes,
         poses=tuple(packed(poses) for poses in drawn.poses),
@@ -127,7 +127,7 @@ def frame_steps(run: MeasuredRun, max_frames: int) -> np.ndarray:
 
 def _row_margins(record: Record) -> np.ndarray:
     """(n,) [m] the clearance by which rows are selected, with several rules its excess over the fail limit."""
-    least = least_of(record.steps)
+    least = least_of(record.rows)
     if len(record.rules) == 1:
         return least
     return least - np.array([one.limits.fail for one in record.rules])[rule_places(record)]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import pyarrow as pa
+import numpy as np
 
+from clearance.record.table import Names
 from clearance.simulate.answers import intervals as room
 from clearance.simulate.answers.intervals import events, extent, intervals, not_listed
 from tests.report.made import run_of as made_run
@@ -11,14 +12,13 @@ from tests.report.records import record, with_steps
 
 GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
 LETTERS = "c n v x x v n c n"
-WORDS = {"c": "clear", "n": "near", "v": "violated", "x": "contact"}
 
 
 def session_of(letters: str, gaps: list[float]):
     made = record(n_steps=len(gaps))
-    steps = made.steps.set_column(2, "clearance", pa.array(gaps))
-    words = pa.array([WORDS[letter] for letter in letters.split()])
-    steps = steps.set_column(steps.column_names.index("status"), "status", words)
+    codes = np.array(["cnvx".index(letter) for letter in letters.split()])
+    status = Names(codes, ["clear", "near", "violated", "contact"])
+    steps = made.rows.with_columns({"clearance": np.array(gaps), "status": status})
     return made_run(with_steps(made, steps)).session
 
 
