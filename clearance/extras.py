@@ -8,20 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from importlib.util import find_spec
+from typing import Any
 
 from clearance.errors import Unavailable
 
 LIBRARIES = {
-    "batch": ("dask", "distributed"),
+    "batch": ("dask", "distributed", "pyarrow"),
     "cad": ("cascadio",),
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
     "mujoco": ("mujoco",),
-    "report": ("meshcat", "matplotlib"),
+    "report": ("meshcat", "matplotlib", "pyarrow"),
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
+    "tables": ("pyarrow",),
     "view": ("meshcat",),
 }
 """The modules that each extra of `pyproject.toml` brings."""
@@ -66,3 +69,19 @@ def importing(extra: str, purpose: str) -> Iterator[None]:
         raise Unavailable(
             f"{purpose} needs {library}, which {fault}", valid=install(extra)
         ) from None
+
+
+class Library:
+    """A library of an extra, imported when something of it is first used.
+
+    Raises:
+        Unavailable: then, where it is missing or cannot be loaded.
+    """
+
+    def __init__(self, name: str, extra: str, purpose: str) -> None:
+        self._asked = name, extra, purpose
+
+    def __getattr__(self, name: str) -> Any:
+        library, extra, purpose = self._asked
+        with importing(extra, purpose):
+            return getattr(import_module(library), name)

@@ -16,7 +16,7 @@ from clearance.formats.files.input_files import resolved
 from clearance.planar.dxf import read_dxf
 
 ROOT = Path(__file__).parents[1]
-CASE = ROOT / "scenes" / "profiles" / "keep_in.yaml"
+CASE = ROOT / "scenes" / "box_box" / "case.yaml"
 OPTIONAL = sorted({library for libraries in extras.LIBRARIES.values() for library in libraries})
 
 DISTRIBUTION_OF = {
@@ -58,9 +58,10 @@ for name in {OPTIONAL!r}:
 import clearance as cl
 away = [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 assert cl.distance(cl.box((1, 1, 1)), cl.box((1, 1, 1)), pose_b=away).distance == 2.0
-run = cl.check({str(CASE)!r})
-assert run.passed and "clear" in repr(run) and "<table" in run._repr_html_()
-assert run.summary["profiles"][0]["passed"]
+run = cl.check({str(CASE)!r}, need="pairs")
+assert run.passed and run.worst["between"] and "clear" in repr(run) and "<table" in run._repr_html_()
+assert run.summary["verdict"] == "clear" and len(run.finding_list.findings) == len(run.findings)
+assert all(getattr(cl, name) for name in cl.__all__)
 """
 
 
@@ -73,19 +74,21 @@ def test_distance_and_check_need_no_optional_library():
 
 
 @pytest.mark.parametrize(
-    ("options", "extra", "library", "line"),
+    ("command", "extra", "library", "line"),
     [
-        (["--out", "report"], "report", "matplotlib", "--out needs matplotlib"),
-        (["--cross-check"], "crosscheck", "fcl", "--cross-check needs fcl"),
-        (["--motion", "simulated"], "simulate", "pybullet", "--motion simulated needs pybullet"),
+        (["check", CASE, "--out", "report"], "report", "matplotlib", "--out needs matplotlib"),
+        (["check", CASE, "--cross-check"], "crosscheck", "fcl", "--cross-check needs fcl"),
+        (["check", CASE, "--motion", "simulated"], "simulate", "pybullet",
+         "--motion simulated needs pybullet"),
+        (["batch", CASE, "--out", "store"], "tables", "pyarrow", "clearance batch needs pyarrow"),
     ],
-)
-def test_check_refuses_first_what_a_missing_library_could_not_do(
-    hidden, capsys, tmp_path, monkeypatch, options, extra, library, line
+)  # fmt: skip
+def test_a_command_refuses_first_what_a_missing_library_could_not_do(
+    hidden, capsys, tmp_path, monkeypatch, command, extra, library, line
 ):
     hidden(library)
     monkeypatch.chdir(tmp_path)
-    assert run(["check", str(CASE), *options]) == ExitCode.BAD_INPUT
+    assert run([*map(str, command)]) == ExitCode.BAD_INPUT
     told = capsys.readouterr()
     assert told.out == "" and list(tmp_path.iterdir()) == []
     assert told.err == f"error: {line}, which is not installed; pip install 'clearance[{extra}]'\n"
@@ -119,7 +122,10 @@ def test_each_door_says_which_extra_it_needs(hidden, tmp_path):
     assert dxf == "a DXF drawing needs ezdxf, which is not installed; pip install 'clearance[dxf]'"
     robot = refused_by(resolved, "pybullet_data:r2d2.urdf", tmp_path)
     assert robot.endswith("needs the package pybullet; pip install 'clearance[simulate]'")
-    kept = cl.check(CASE)
+    kept = cl.check(CASE, need="pairs")
+    for table in ("steps", "pairs"):
+        with pytest.raises(cl.ClearanceError, match=r"needs pyarrow.*'clearance\[tables\]'"):
+            getattr(kept, table)
     assert refused_by(kept.save, tmp_path / "report").endswith("pip install 'clearance[report]'")
     assert not (tmp_path / "report").exists()
     for option, extra in (

@@ -9,6 +9,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.options import OutputPath, asked_options, said, spelled_by
+from clearance.extras import require
 from clearance.options import made
 from clearance.run.options import CheckOptions
 
@@ -49,6 +50,7 @@ def batch() -> None:
 
     `clearance batch MANIFEST.yaml --out STORE` checks; these are its options.
     """
+    require("tables", "clearance batch")
 
 
 class _ShardParamType(click.ParamType):

@@ -64,6 +64,9 @@ def _are_stores(before: Path, now: Path) -> bool:
 
 
 def _compare_batches(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
+    from clearance.extras import require
+
+    require("tables", "comparing batches")
     from clearance.batch.compared import compared_batches
     from clearance.report.comparison import print_batch_comparison
 

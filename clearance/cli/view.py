@@ -28,15 +28,16 @@ def view(folder: Path, case: str | None) -> None:
 
 
 def _write_case(place: Path, name: str) -> None:
+    from clearance.extras import require
+
+    require("report", "the page of a case")
     from clearance.batch.case_page import write_case_page
     from clearance.batch.listed import item_called, read_list
     from clearance.batch.output import rewrite_page
     from clearance.batch.store import open_store
     from clearance.cli.progress import shown_progress
     from clearance.cli.verdict import print_verdict
-    from clearance.extras import require
 
-    require("report", "the page of a case")
     with open_store(place, make=False) as store:
         item = item_called(read_list(store), name)
     with shown_progress(False, ["measuring", "certifying"]) as progress:

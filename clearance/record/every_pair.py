@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES
 from clearance.record.rows.blocks import BLOCK
-from clearance.record.table import arrow
+from clearance.record.table import pa
 from clearance.world.rules import DEFAULT
-
-if TYPE_CHECKING:
-    import pyarrow as pa
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +35,10 @@ class EveryPair:
     def table(self) -> pa.Table:
         """One row a step and pair: step, link and obstacle (where all steps have them), clearance [m] (null where
         the pair is not measured), body_a, body_b, and the rule that judges it."""
-        return arrow().concat_tables(self.batches()).combine_chunks()
+        return pa.concat_tables(self.batches()).combine_chunks()
 
     def batches(self) -> Iterator[pa.Table]:
         """The rows of `table`, a block of steps at a time."""
-        pa = arrow()
         n_steps, n_pairs = self.clearance.shape
         size = max(1, BLOCK // n_pairs)
         for start in range(0, n_steps, size):
@@ -66,7 +61,6 @@ class EveryPair:
         if len(names) > 1:
             own = np.array([clearance[steps] for _, clearance in self.by_rule])
             codes = np.argmin(np.where(np.isnan(own), np.inf, own), axis=0).astype(np.int32)
-        pa = arrow()
         indices = pa.array(codes.reshape(-1), mask=np.isnan(part).reshape(-1))
         return pa.DictionaryArray.from_arrays(indices, pa.array(names, pa.string()))
 
@@ -79,7 +73,6 @@ def _repeated(names: Sequence[str], times: int) -> pa.DictionaryArray:
     """
     codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
     indices = np.array([codes[name] for name in names], dtype=np.int32)
-    pa = arrow()
     return pa.DictionaryArray.from_arrays(
         pa.array(np.tile(indices, times)), pa.array([*codes], pa.string())
     )

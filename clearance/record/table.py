@@ -8,29 +8,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clearance import extras
+from clearance.extras import Library
 
 if TYPE_CHECKING:
     import pyarrow as pa
+else:
+    pa = Library("pyarrow", "tables", "a table of steps or pairs")
 
 FEW = 100_000
 """Rows that take less time one by one than the import of `pyarrow.compute` does."""
-
-
-def arrow() -> ModuleType:
-    """pyarrow.
-
-    Raises:
-        Unavailable: it is not installed.
-    """
-    with extras.importing("tables", "a table of steps or pairs"):
-        import pyarrow
-    return pyarrow
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +53,6 @@ class Names:
 
     def arrow(self) -> pa.Array:
         """The names as pyarrow has them."""
-        pa = arrow()
         if len(self) < FEW:
             return pa.array(self.tolist(), pa.string())
         return pa.array(self.names, pa.string()).take(pa.array(self.codes, mask=self.codes < 0))
@@ -117,7 +106,6 @@ class Table:
         Raises:
             Unavailable: pyarrow is not installed.
         """
-        pa = arrow()
         return pa.table(
             {
                 name: column.arrow()

@@ -14,9 +14,9 @@ import numpy as np
 
 from clearance.budget.columns import least_between, least_expected, least_proven
 from clearance.errors import BadReport
+from clearance.extras import importing
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
-from clearance.record.table import arrow
 
 MOST_PARTS = 2000
 """Stretches that a screen can resolve."""
@@ -159,8 +159,9 @@ def curve_in(name: str, place: Path) -> ClearanceCurve | None:
     """
     if not (place / _TABLE).is_file():
         return None
-    pa = arrow()
-    import pyarrow.parquet as parquet
+    with importing("tables", "a report's table of steps"):
+        import pyarrow as pa
+        import pyarrow.parquet as parquet
 
     try:
         table = parquet.read_table(place / _TABLE)

@@ -11,8 +11,6 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-
 from clearance.budget.columns import with_proven_between
 from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget
 from clearance.record.contact import StepContact
@@ -21,6 +19,7 @@ from clearance.record.names import LINK_AND_OBSTACLE, SIDES
 from clearance.record.record import Record
 from clearance.record.rows.blocks import blocks
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
+from clearance.record.table import pa
 
 CONTACTS = 10_000
 """Overlaps that are written at a time."""
@@ -103,32 +102,30 @@ def pair_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.
 
 BUDGET = "budget.csv"
 
-BUDGET_SCHEMA = pa.schema(
-    [
-        ("rule", pa.string()),
-        ("step", pa.int64()),
-        ("time", pa.float64()),
-        ("between", pa.bool_()),
-        ("body_a", pa.string()),
-        ("body_b", pa.string()),
-        ("clearance", pa.float64()),
-        ("proven", pa.float64()),
-        ("expected", pa.float64()),
-        ("owner", pa.string()),
-        ("kind", pa.string()),
-        ("part", pa.string()),
-        ("moment", pa.string()),
-        ("tolerance", pa.float64()),
-        ("unit", pa.string()),
-        ("second_tolerance", pa.float64()),
-        ("second_unit", pa.string()),
-        ("takes", pa.float64()),
-        ("deviation", pa.float64()),
-        ("at_most", pa.float64()),
-        ("second_at_most", pa.float64()),
-    ]
-)
-"""A frame has two tolerances, an offset [m] and an angle [rad]; everything else has one."""
+BUDGET_COLUMNS = {
+    "rule": "string",
+    "step": "int64",
+    "time": "float64",
+    "between": "bool",
+    "body_a": "string",
+    "body_b": "string",
+    "clearance": "float64",
+    "proven": "float64",
+    "expected": "float64",
+    "owner": "string",
+    "kind": "string",
+    "part": "string",
+    "moment": "string",
+    "tolerance": "float64",
+    "unit": "string",
+    "second_tolerance": "float64",
+    "second_unit": "string",
+    "takes": "float64",
+    "deviation": "float64",
+    "at_most": "float64",
+    "second_at_most": "float64",
+}
+"""Types in pyarrow. A frame has two tolerances, an offset [m] and an angle [rad]; all else has one."""
 
 
 def budget_table(record: Record, left: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
@@ -136,7 +133,8 @@ def budget_table(record: Record, left: Mapping[str, Sequence[BudgetMoment]]) -> 
     rows = [
         row for one in record.budget or () for worst in left[one.rule] for row in _rows(one, worst)
     ]
-    return pa.Table.from_pylist(rows, schema=BUDGET_SCHEMA)
+    schema = [(name, pa.type_for_alias(kind)) for name, kind in BUDGET_COLUMNS.items()]
+    return pa.Table.from_pylist(rows, schema=pa.schema(schema))
 
 
 def _rows(one: RuleBudget, worst: BudgetMoment) -> Iterator[dict[str, Any]]:

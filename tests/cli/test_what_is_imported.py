@@ -81,6 +81,6 @@ def test_a_check_imports_no_compiler(tmp_path):
         "clearance.report.page",
     }
     compilers = {"numba", "llvmlite"}
-    assert not found & {*OPTIONAL, *other, *compilers, "scipy", "filelock"}
+    assert not found & {*OPTIONAL, *other, *compilers, "scipy", "filelock", "pyarrow"}
     found = imported_by(check(case, "--out", "report"), tmp_path)
     assert not found & {*compilers, "scipy", "clearance.query.contact"}
