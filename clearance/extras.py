@@ -21,6 +21,7 @@ LIBRARIES = {
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
     "mujoco": ("mujoco",),
+    "profiles": ("shapely",),
     "report": ("meshcat", "matplotlib", "pyarrow"),
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),

@@ -17,6 +17,7 @@ from clearance.planar.dxf import read_dxf
 
 ROOT = Path(__file__).parents[1]
 CASE = ROOT / "scenes" / "box_box" / "case.yaml"
+WITH_PROFILES = ROOT / "scenes" / "profiles" / "keep_in.yaml"
 OPTIONAL = sorted({library for libraries in extras.LIBRARIES.values() for library in libraries})
 
 DISTRIBUTION_OF = {
@@ -80,6 +81,7 @@ def test_distance_and_check_need_no_optional_library():
         (["check", CASE, "--cross-check"], "crosscheck", "fcl", "--cross-check needs fcl"),
         (["check", CASE, "--motion", "simulated"], "simulate", "pybullet",
          "--motion simulated needs pybullet"),
+        (["check", WITH_PROFILES], "profiles", "shapely", "a case with profiles needs shapely"),
         (["batch", CASE, "--out", "store"], "tables", "pyarrow", "clearance batch needs pyarrow"),
     ],
 )  # fmt: skip

@@ -6,14 +6,19 @@ Rings are (n, 2) arrays without the first point repeated, outer ones counter-clo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-import shapely
 
+from clearance.extras import Library
 from clearance.kernels.profile.swept_cover import Raster
 
-Region: TypeAlias = shapely.Geometry
+if TYPE_CHECKING:
+    import shapely
+else:
+    shapely = Library("shapely", "profiles", "a profile")
+
+Region: TypeAlias = "shapely.Geometry"
 """A polygon or several, possibly empty."""
 
 GRID = 1e-9

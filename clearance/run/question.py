@@ -71,6 +71,8 @@ class Question(QuestionOptions):
         for name, value, extra in NEED_EXTRAS:
             if getattr(options, name) == value:
                 require(extra, spelled(name, value))
+        if case.profiles:
+            require("profiles", "a case with profiles")
         asked = {one.name: getattr(options, one.name) for one in fields(QuestionOptions)}
         with spelling(CheckOptions, spelled):
             return cls(options.apply(case), **asked)
