@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -17,6 +14,7 @@ from ruamel.yaml import YAML
 
 from clearance.batch.manifest_file import manifest_of
 from clearance.case.waiver_file import load_waivers
+from clearance.cli import run
 from clearance.cli.commands import clearance
 from clearance.formats.schema.case import Case
 from clearance.formats.schema.tolerance import Tolerance
@@ -72,20 +70,14 @@ def test_what_a_page_runs_runs(page, tmp_path, monkeypatch):
             exec(compile(block.text, f"{page}:{block.line}", "exec"), names)
         elif block.language == "bash":
             for command in block.commands:
-                run(command, tmp_path)
+                require_ends_well(command)
 
 
-def run(command: str, folder: Path) -> None:
+def require_ends_well(command: str) -> None:
     """Runs a command of ours; a check may find a violated limit."""
     program, *arguments = shlex.split(command)
     assert program == "clearance", command
-    line = [sys.executable, "-m", "clearance", *arguments]
-    done = subprocess.run(line, cwd=folder, capture_output=True, text=True, env=environment())
-    assert done.returncode in (0, 1), f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
-
-
-def environment() -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(ROOT)}
+    assert run(arguments) in (0, 1), command
 
 
 @pytest.mark.parametrize("block", blocks("console", "bash"))

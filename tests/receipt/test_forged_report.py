@@ -5,10 +5,11 @@ from __future__ import annotations
 import copy
 import hashlib
 import json
-import os
 import re
 import shutil
+import tempfile
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -46,15 +47,8 @@ def report_with_tolerances(tmp_path_factory):
 def answered_once(monkeypatch, tmp_path):
     """A case is answered, proven and reported once, however often one asks: it is the same each time."""
     made = tmp_path / "made"
-
-    save = Run.save
-
-    def again(run, place):
-        if not made.exists():
-            save(run, made)
-        shutil.copytree(made, place, dirs_exist_ok=True, copy_function=os.symlink)
-
-    monkeypatch.setattr(Run, "save", again)
+    monkeypatch.setattr(tempfile, "TemporaryDirectory", lambda: nullcontext(made))
+    monkeypatch.setattr(Run, "save", once(Run.save))
     monkeypatch.setattr(remade_report, "maker", once(remade_report.maker))
     for name in ("answer", "proven", "case_data"):
         monkeypatch.setattr(verifying, name, once(getattr(verifying, name)))
