@@ -1,6 +1,7 @@
 """A changed case as files: what is read back is what was claimed, and nothing else is touched."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -8,7 +9,10 @@ import clearance as cl
 from clearance.errors import BadInput, Unwritable
 from clearance.gains.folder import save_gain
 from clearance.gains.turn import Turn
+from clearance.world.notice import NOT_MEASURED
+from clearance.world.trajectory import Hole
 from tests.gains.making_gain import CROSSING, MOVING, SLOT, write_cell
+from tests.simulate.measure.test_quintic_motion import there_and_back
 
 
 def with_scene_file(folder):
@@ -193,3 +197,22 @@ def test_a_case_of_no_file_and_an_input_are_refused(tmp_path):
     with pytest.raises(Unwritable, match="which this run reads"):
         save_gain(cl.gain(path, "base"), tmp_path, force=True)
     assert path.read_text() == SLOT
+
+
+def test_a_path_with_accelerations_is_written_as_the_cubics_that_were_measured(tmp_path):
+    """The cart keeps 0.2 m where 0.21 are needed."""
+    there_and_back(tmp_path)
+    found = cl.gain(tmp_path / "case.yaml", "waypoints")
+    assert found.kept
+    again = cl.check(save_gain(found, tmp_path / "out") / "case.yaml")
+    assert again.verdict.passed and again.record.timeline.path_error == 0.0
+
+
+@pytest.mark.parametrize(("kind", "how"), [("waypoints", {}), ("base", {"tool_path": "kept"})])
+def test_a_recording_with_holes_is_not_changed(tmp_path, kind, how):
+    case = there_and_back(tmp_path)
+    (placed,) = case.robots
+    holes = (Hole(("rail",), 0.2, 0.3, 0.01, NOT_MEASURED),)
+    moved = replace(placed, trajectory=replace(placed.given_trajectory, holes=holes))
+    with pytest.raises(BadInput, match="the recording of robot 'cart' has holes"):
+        cl.gain(replace(case, robots=(moved,)), kind, **how)

@@ -11,8 +11,6 @@ from clearance.gains.sentences import lines_of
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, standing
 
-SLOWER = [False, True]
-
 
 def two(one, other, *obstacles, fail=0.05):
     """Two blocks along x and along y, each from a place to a place in one second."""
@@ -23,51 +21,31 @@ def two(one, other, *obstacles, fail=0.05):
     return cl.Case("two", (first, second), obstacles, cl.Limits(fail=fail))
 
 
-def refused_at_once(found, told):
+def post(x, y):
+    return standing("post", cl.box((0.1, 0.1, 1.0)), (x, y, 0.0))
+
+
+REFUSED = {
+    "both come to rest": (two((-1.0, 0.0), (-1.0, -0.12)), "they stand there whatever the delay"),
+    "both begin": (two((0.0, 1.0), (-0.12, -1.0)), "they stand there whatever the delay"),
+    "others": (two((5.0, 6.0), (-1.0, 1.0), post(0.12, 0.3)), "nothing of this change moves them"),
+    "on the path": (two((-1.0, 1.0), (5.0, 6.0), post(-0.5, 0.12)), "its path leads there whatever"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("slow_down", [False, True])
+@pytest.mark.parametrize("name", REFUSED)
+def test_where_no_delay_helps_it_is_said_at_once(name, slow_down):
+    case, told = REFUSED[name]
+    found = gain(case, "timing", robot="one", slow_down=slow_down)
     assert not found.kept and found.n_measured == 1 and found.size == 0.0
     lines = dict(lines_of(found))
     assert told in lines["blocked"] and "no change of this kind can" in lines["not kept"]
     assert "bound" not in lines
 
 
-@pytest.mark.parametrize("slow_down", SLOWER)
-def test_where_both_come_to_rest_no_delay_helps(slow_down):
-    found = gain(two((-1.0, 0.0), (-1.0, -0.12)), "timing", robot="one", slow_down=slow_down)
-    refused_at_once(found, "they stand there whatever the delay")
-
-
-@pytest.mark.parametrize("slow_down", SLOWER)
-def test_where_both_begin_no_delay_helps(slow_down):
-    found = gain(two((0.0, 1.0), (-0.12, -1.0)), "timing", robot="one", slow_down=slow_down)
-    refused_at_once(found, "they stand there whatever the delay")
-
-
-@pytest.mark.parametrize("slow_down", SLOWER)
-def test_a_pair_that_the_robot_does_not_move_is_said_at_once(slow_down):
-    post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.12, 0.3, 0.0))
-    found = gain(two((5.0, 6.0), (-1.0, 1.0), post), "timing", robot="one", slow_down=slow_down)
-    refused_at_once(found, "nothing of this change moves them")
-
-
-@pytest.mark.parametrize("slow_down", SLOWER)
-def test_an_obstacle_in_the_way_of_the_path_stays_there(slow_down):
-    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
-    case = two((-1.0, 1.0), (5.0, 6.0), post)
-    refused_at_once(
-        gain(case, "timing", robot="one", slow_down=slow_down), "its path leads there whatever"
-    )
-
-
-def test_what_others_are_allowed_for_a_while_makes_no_difference():
-    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
-    case = two((-1.0, 1.0), (5.0, 6.0), post)
-    case = replace(case, allow=(cl.Allowance(("one", "other"), cl.Window(0.0, 0.4)),))
-    refused_at_once(gain(case, "timing", robot="one"), "its path leads there whatever")
-
-
 def test_where_a_window_ends_a_later_path_may_pass():
-    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
-    case = two((-1.0, 1.0), (5.0, 6.0), post)
+    case, _ = REFUSED["on the path"]
     rule = cl.Rule(("post", "*"), cl.Window(0.0, 0.4), fail=0.05)
     found = gain(replace(case, limits=cl.Limits(rules=(rule,))), "timing", robot="one")
     assert found.kept and 0.1 < found.size < 0.4

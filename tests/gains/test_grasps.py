@@ -11,7 +11,7 @@ from clearance.gains.search import Search
 from clearance.gains.shift import base_shift
 from clearance.gains.turn import Turn
 from tests.gains.gantries import standing
-from tests.gains.test_bounds_that_do_not_follow import cart, part_over_to
+from tests.gains.test_bounds_that_do_not_follow import part_over_to
 
 
 def ways(case):
@@ -60,8 +60,3 @@ def test_a_part_that_is_let_go_too_near_is_let_go_elsewhere():
     found = cl.gain(part_over_to(ball, until=0.9), "waypoints")
     assert not found.before.passed and found.kept and found.after.passed
     assert 0.019 < found.size < 0.03 and found.change[:, 0].min() < -0.019
-
-
-def test_a_base_takes_the_part_that_it_turns_twice_as_far():
-    found = cl.gain(part_over_to(cart(-1.12), until=0.9), "base")
-    assert found.kept and found.size == pytest.approx(0.01, abs=1e-6) and found.n_measured < 12
