@@ -144,7 +144,7 @@ class BadMotion(BadInput):
 
 
 class BadProgram(BadInput):
-    """A robot program that the arm cannot follow, or not as far as a proof needs."""
+    """A robot program that is not understood, or that the arm cannot follow as far as a proof needs."""
 
 
 class BadTolerance(BadInput):

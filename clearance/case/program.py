@@ -164,7 +164,10 @@ def _move(move: schema.Move, frames: _Frames, where: str, name: str) -> Move:
     if move.ptp is not None:
         to = move.ptp.to
         pose = None if to is None else frames.pose(to)
-        return JointMove(name, where, move.ptp.joints, pose, move.ptp.speed, move.ptp.zone)
+        given = move.ptp
+        return JointMove(
+            *(name, where, given.joints, pose, given.speed, given.zone, given.near, given.within)
+        )
     path = move.circ or move.lin
     assert path is not None
     turns = path.to.turns and not (move.circ is not None and move.circ.orientation == "constant")

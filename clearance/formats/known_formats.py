@@ -111,6 +111,7 @@ _MESSAGE = (
     "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "
     ".yaml or .json"
 )
+_PROGRAM = "name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"
 _MJCF = (
     "call it .xml and name it in a case file: robot: {{urdf: {name}}} for a robot, scene: {name} for what stands "
     "around one"
@@ -153,6 +154,13 @@ def _stamped(language: str, suffixes: tuple[str, ...]) -> Format:
     read = f"motion.pose_messages:read_{language.lower()}_poses"
     write, name = f"motion.pose_writer:{language.lower()}_text", f"stamped poses in {language}"
     return Format(name, Kind.POSES, suffixes, read, write, _unseen, _POSE_KEYS)
+
+
+def _program(name: str, suffixes: tuple[str, ...], read: str) -> Format:
+    """A program in the language of a controller."""
+    return Format(
+        name, Kind.PROGRAM, suffixes, f"program.{read}", what=f"a program in {name}", hint=_PROGRAM
+    )
 
 
 FORMATS = (
@@ -203,8 +211,8 @@ FORMATS = (
     Format("YAML", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
            "conversion.scene:converted_scene", _unseen, ("obstacles",)),
     Format("robot program", Kind.PROGRAM, (".yaml", ".yml"), "program.program_yaml:read_yaml_program",
-           sniff=sniff.is_program, what="a robot program",
-           hint="name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"),
+           sniff=sniff.is_program, what="a robot program", hint=_PROGRAM),
+    _program("URScript", (".script", ".urscript"), "urscript:read_urscript"),
     Format("case file", Kind.CASE, (".yaml", ANY), sniff=sniff.is_case, what="a case file",
            hint="`clearance check {name}` checks it; what is asked for is one of the files that it names"),
 )  # fmt: skip

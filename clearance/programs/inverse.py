@@ -92,29 +92,42 @@ SEEDS = 64
 """Starts from which joints for a pose far away are searched."""
 
 
-def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray) -> np.ndarray:
+def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.ndarray) -> np.ndarray:
     """(k,) the joints for a pose (4, 4) that are nearest to where they are now, by the joint that goes farthest.
 
-    Of those that damped least squares find from `SEEDS` starts within the limits: none nearer is excluded.
+    Of those that damped least squares find from `SEEDS` starts within the ranges: none nearer is excluded.
+
+    Args:
+        ranges: (k, 2) where they may be; a joint stays at a range of no width.
 
     Raises:
-        BadInput: none is found within the limits.
+        BadInput: none is found within the ranges.
     """
-    low, high = arm.chain.ranges.T
-    low, high = np.maximum(low, now - np.pi), np.minimum(high, now + np.pi)
+    low, high = ranges.T
+    near, free = np.clip(now, low, high), low < high
     drawn = np.random.default_rng(0).random((SEEDS, len(now)))
     spread = np.linspace(0.0, 1.0, SEEDS)[:, None] ** 2
-    starts = np.clip(now + spread * (low + drawn * (high - low) - now), low, high)
+    low, high = np.maximum(low, near - np.pi), np.minimum(high, near + np.pi)
+    starts = near + spread * (low + drawn * (high - low) - near)
     all_wanted = np.tile(wanted, (SEEDS, 1, 1))
-    found = joints_at(arm.tool, all_wanted, starts, most_steps=MOST_FROM_AFAR)
-    low, high = arm.chain.ranges.T
-    within = (found.positions >= low) & (found.positions <= high)
+    found = joints_at(arm.tool, all_wanted, starts, free, MOST_FROM_AFAR)
+    within = (found.positions >= ranges[:, 0]) & (found.positions <= ranges[:, 1])
     fits = (found.left <= 1e-9) & within.all(axis=1)
     if not fits.any():
         x, y, z = wanted[:3, 3]
         raise BadProgram(
-            f"no joints within their limits bring the tool to ({x:.4g}, {y:.4g}, {z:.4g}) m",
+            f"no joints within {_told(arm, ranges)} bring the tool to ({x:.4g}, {y:.4g}, {z:.4g}) m",
             valid="a pose within reach",
         )
     ways = np.where(fits, np.abs(found.positions - now).max(axis=1), np.inf)
     return np.asarray(found.positions[int(np.argmin(ways))])
+
+
+def _told(arm: Arm, ranges: np.ndarray) -> str:
+    """Ranges of joints, in words: those narrower than their limits."""
+    narrow = [
+        f"{joint.name} {low:.4g} to {high:.4g}"
+        for joint, (low, high), own in zip(arm.joints, ranges, arm.chain.ranges, strict=True)
+        if (low, high) != tuple(own)
+    ]
+    return " and ".join(["their limits", *narrow])

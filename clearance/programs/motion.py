@@ -179,7 +179,16 @@ class _Samples:
         """(k,) where a joint move ends."""
         if move.pose is None:
             return targets_of(self.arm, move)
-        found = nearest_joints(self.arm, move.pose, self.at)
+        near, ranges = self.at.copy(), self.arm.chain.ranges.copy()
+        for name, value in move.near.items():
+            near[self._column(name, "near")] = value
+        for name, (low, high) in move.within.items():
+            row = ranges[self._column(name, "within")]
+            row[:] = max(low, row[0]), min(high, row[1])
+            if row[0] > row[1]:
+                told = f"joint {name!r} cannot be from {low:.4g} to {high:.4g}"
+                raise BadProgram(told, where="within", valid="a range within its limits")
+        found = nearest_joints(self.arm, move.pose, near, ranges)
         told = ", ".join(
             f"{joint.name} {value:.4g}" for joint, value in zip(self.arm.joints, found, strict=True)
         )
@@ -224,14 +233,10 @@ class _Samples:
     def _follower(self, leg: Leg, move: PathMove) -> Follower:
         """The arm on a leg's path, joints that the move tells left out of it."""
         assert leg.stretch is not None
-        names = [joint.name for joint in self.arm.joints]
-        free, held = np.ones(len(names), dtype=bool), np.zeros(len(names))
+        n = len(self.arm.joints)
+        free, held = np.ones(n, dtype=bool), np.zeros(n)
         for name, value in (move.hold or {}).items():
-            if name not in names:
-                raise UnknownJoint(
-                    f"unknown joint {name!r}", where="hold", valid=nearest_name(name, names)
-                )
-            column = names.index(name)
+            column = self._column(name, "hold")
             free[column], held[column] = False, value - self.at[column]
         if free.sum() < 6:
             raise BadProgram(
@@ -239,6 +244,18 @@ class _Samples:
                 valid="six or more; an arm of fewer goes by joint moves",
             )
         return Follower(self.arm, leg.stretch, free, held)
+
+    def _column(self, name: str, where: str) -> int:
+        """The column of a joint.
+
+        Raises:
+            UnknownJoint: it is none of the arm.
+        """
+        names = [joint.name for joint in self.arm.joints]
+        if name not in names:
+            valid = nearest_name(name, names)
+            raise UnknownJoint(f"unknown joint {name!r}", where=where, valid=valid)
+        return names.index(name)
 
     def _n_samples(self, poses: np.ndarray) -> int:
         """How many samples a motion through poses needs where it is quickest."""

@@ -5,7 +5,8 @@ Not for: files (`formats`), how joints follow (`motion`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,6 +20,8 @@ class JointMove:
         joints: targets by name [rad or m]; None where `pose` is given. pose: (4, 4) of the tool [m].
         speed: share of the joints' greatest speeds. acceleration: [1/s^2] of the share of the way; None for the
             default. zone: [m] radius of the corner zone at its end.
+        near: joints to which those for the pose are nearest; those that are not named are where they are.
+        within: from where to where joints for the pose may be, by name.
     """
 
     name: str
@@ -27,6 +30,8 @@ class JointMove:
     pose: np.ndarray | None = None
     speed: float = 1.0
     zone: float = 0.0
+    near: Mapping[str, float] = field(default_factory=dict)
+    within: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)

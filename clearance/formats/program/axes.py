@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.errors import BadProgram, UnknownJoint, at, nearest_name
 from clearance.formats.program.controller_program import AxisTarget, PoseTarget
 from clearance.formats.schema.program_file import Axis
 from clearance.world.robot import Joint, JointKind
@@ -46,9 +46,9 @@ class AxisMap:
         numbers = {name: int(said[name]) if name in said else next(free, 0) for name in own}
         if sorted(numbers.values()) != list(range(1, len(own) + 1)):
             told = ", ".join(f"{name}: {number}" for name, number in numbers.items())
-            raise BadInput(f"the axes are {told}", valid=f"each of 1 to {len(own)} once")
+            raise BadProgram(f"the axes are {told}", valid=f"each of 1 to {len(own)} once")
         if len(set(external.values())) != len(external):
-            raise BadInput("an external axis is there twice", valid="each once")
+            raise BadProgram("an external axis is there twice", valid="each once")
         return cls(joints, {name: rules.get(name, Axis()) for name in names}, numbers, external)
 
     def joints_of(self, target: AxisTarget) -> dict[str, float]:
@@ -58,7 +58,7 @@ class AxisMap:
             BadInput: not as many axes as the arm has; an external axis without a value.
         """
         if len(target.axes) != len(self.numbers):
-            raise BadInput(
+            raise BadProgram(
                 f"{len(target.axes)} axes are given, and the arm has {len(self.numbers)} joints "
                 f"({', '.join(self.numbers)})",
                 valid="another flange (link), or joints that are external axes (axes: {…: {axis: E1}})",
@@ -79,7 +79,7 @@ class AxisMap:
                 continue
             axis, rule = self.external[joint.name], self.rules[joint.name]
             if axis not in target.external:
-                raise BadInput(f"no value of external axis {axis}", valid="one")
+                raise BadProgram(f"no value of external axis {axis}", valid="one")
             slides = joint.kind is JointKind.PRISMATIC
             unit = 1e-3 if slides else np.pi / 180.0
             found[joint.name] = rule.sign * target.external[axis] * unit + rule.offset
@@ -108,6 +108,6 @@ class AxisMap:
             for other, factor in rule.plus.items():
                 with at(f"{name}.plus"):
                     if not 1 <= other <= n or other == number:
-                        raise BadInput(f"axis {other} is given", valid=f"another of 1 to {n}")
+                        raise BadProgram(f"axis {other} is given", valid=f"another of 1 to {n}")
                 matrix[row, other - 1] = factor
         return offset, matrix

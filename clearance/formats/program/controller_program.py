@@ -36,12 +36,14 @@ class PoseTarget:
     Attributes:
         pose: (4, 4) `base_from_tool`: work frame times target [m]. external, name: as of an `AxisTarget`.
         ranges: from where to where axes are in the configuration that is asked for [rad], by number from 1.
+        near: axes from which the nearest configuration is meant [rad]; None for those before the move.
         unchecked: flags of the configuration that are no range of one axis, as text.
     """
 
     pose: np.ndarray
     external: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    near: tuple[float, ...] | None = None
     unchecked: str = ""
     name: str = ""
 

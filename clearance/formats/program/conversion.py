@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, MissingKey, UnknownLink, at, nearest_name
+from clearance.errors import BadProgram, MissingKey, UnknownLink, at, nearest_name
 from clearance.formats.program.axes import AxisMap
 from clearance.formats.program.controller_program import (
     AxisTarget,
@@ -26,13 +26,18 @@ from clearance.formats.program.controller_program import (
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
+from clearance.geometry.pose import inverse
 from clearance.geometry.quaternions import quaternions_of
 from clearance.world.kinematic_chain import KinematicChain, chain_between
+from clearance.world.notice import listed
 from clearance.world.robot import Robot
 
 FLANGE, BASE_LINK = "tool0", "base"
 """The links whose frames are the controller's flange and base, where a robot's file keeps to the convention of
 ROS-Industrial."""
+
+FARTHEST_OFF, MOST_TURNED = 0.01, 0.035
+"""[m] and [rad] Where a file gives a pose and its axes: robots differ from their nominal sizes by less."""
 
 CONTROLLER = "controller"
 """The frame of the moves: the controller's base."""
@@ -72,19 +77,23 @@ def converted(
     program = {"tool": made.tool(), "frames": {CONTROLLER: made.base()}, "start": own}
     checked = validated(schema.Program, {**program, "step": asked.step, "moves": moves}, asked.file)
     places = tuple(place_of(one) for one in read.moves)
-    return ConvertedProgram(
-        checked, places, tuple(_names(read)), (*read.notes, *made.notes), starts_anywhere
-    )
+    notes = (*read.notes, *made.notes, *made.assumed())
+    return ConvertedProgram(checked, places, tuple(_names(read)), notes, starts_anywhere)
 
 
 @dataclass(eq=False)
 class _Conversion:
-    """What is known of robot and controller, and notes on what is assumed."""
+    """What is known of robot and controller, and notes on what is assumed.
+
+    Attributes:
+        compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
+    """
 
     read: ControllerProgram
     asked: ProgramFile
     robot: Robot
     notes: list[str] = field(default_factory=list)
+    compared: tuple[float, float] = (-1.0, 0.0)
 
     @cached_property
     def link(self) -> str:
@@ -118,15 +127,22 @@ class _Conversion:
 
     def base(self) -> dict[str, Any]:
         """The controller's base, as a frame of a program."""
-        if self.asked.base is not None:
+        if self.root_from_base is None or self.asked.base is not None:
+            assert self.asked.base is not None
             return self.asked.base.model_dump(exclude_unset=True)
+        return {"on": schema.BASE, **_written(self.root_from_base)}
+
+    @cached_property
+    def root_from_base(self) -> np.ndarray | None:
+        """(4, 4) the controller's base, seen from the robot's root [m]; None where only the cell says it."""
+        if self.asked.base is not None:
+            return self.asked.base.matrix() if self.asked.base.on == schema.BASE else None
         root = self.robot.link_names[0]
         link = BASE_LINK if BASE_LINK in self.robot.link_names else root
-        chain = chain_between(self.robot, root, link)
-        if chain.masters:
-            link, chain = root, chain_between(self.robot, root, root)
+        if chain_between(self.robot, root, link).masters:
+            link = root
         self.notes.append(f"poses are seen from link {link!r}, taken for the controller's base")
-        return {"on": schema.BASE, **_written(chain.end)}
+        return chain_between(self.robot, root, link).end
 
     def tool(self) -> dict[str, Any]:
         """The tool on the flange.
@@ -138,7 +154,7 @@ class _Conversion:
         for move in using:
             if not np.array_equal(move.tool, using[0].tool):
                 with at(place_of(move)):
-                    raise BadInput("another tool than before", valid="a program of one tool")
+                    raise BadProgram("another tool than before", valid="a program of one tool")
         return {"link": self.link, **_written(using[0].tool)}
 
     def start(self, given: Mapping[str, float]) -> tuple[dict[str, float], bool]:
@@ -160,7 +176,7 @@ class _Conversion:
 
     def stopping_moves(self) -> Iterator[ControllerMove | ControllerWait]:
         """The moves, without corner zones where no move follows at once: controllers stop there."""
-        after = [*self.read.moves[1:], None]
+        after = [*self.read.moves, None][1:]
         for one, other in zip(self.read.moves, after, strict=True):
             follows = isinstance(other, ControllerMove)
             if isinstance(one, ControllerMove) and one.zone and not follows:
@@ -188,11 +204,33 @@ class _Conversion:
         made: dict[str, Any] = {"speed": self._share(one), "zone": one.zone}
         if isinstance(one.to, AxisTarget):
             return {**made, "joints": self.axes.joints_of(one.to)}
-        if self.axes.held(one.to):
-            raise BadInput(
-                "a pose with external axes by a joint move", valid="a line, or positions of axes"
-            )
+        held = {name: [value, value] for name, value in self.axes.held(one.to).items()}
+        made["within"] = {**self.axes.ranges_of(one.to), **held}
+        if one.to.near is not None:
+            made["near"] = self.axes.joints_of(AxisTarget(one.to.near, one.to.external))
+            self._compare(one.to, made["near"], one.tool)
         return {**made, "to": self._target(one, one.to)}
+
+    def _compare(self, to: PoseTarget, joints: Mapping[str, float], tool: np.ndarray) -> None:
+        """Keeps how far a pose is from where its axes have the tool, where the file has both.
+
+        Raises:
+            BadProgram: too far.
+        """
+        if self.root_from_base is None:
+            return
+        off = inverse(self._tool_at(joints, tool)) @ self.root_from_base @ to.pose
+        way, turn = (
+            float(np.linalg.norm(off[:3, 3])),
+            float(np.arccos(np.clip(0.5 * np.trace(off[:3, :3]) - 0.5, -1.0, 1.0))),
+        )
+        if way > FARTHEST_OFF or turn > MOST_TURNED:
+            raise BadProgram(
+                f"{to.name or 'its pose'} and its axes are {way * 1e3:.3g} mm and {np.degrees(turn):.3g} degrees "
+                "apart on this robot",
+                valid="axes, base, link and tools as the controller has them",
+            )
+        self.compared = max(self.compared, (way, turn))
 
     def _path_move(self, one: ControllerMove) -> dict[str, Any]:
         given = {
@@ -216,13 +254,13 @@ class _Conversion:
         name = {"name": to.name} if to.name else {}
         if isinstance(to, PoseTarget):
             return {"frame": CONTROLLER, **_written(to.pose), **name}
-        joints = self.axes.joints_of(to)
+        pose = self._tool_at(self.axes.joints_of(to), one.tool)
+        return {"frame": schema.BASE, **_written(pose), **name}
+
+    def _tool_at(self, joints: Mapping[str, float], tool: np.ndarray) -> np.ndarray:
+        """(4, 4) `root_from_tool` [m]."""
         row = np.array([[joints[joint.name] for joint in self.chain.masters]])
-        return {
-            "frame": schema.BASE,
-            **_written(self.chain.frames(row)[0, -1] @ one.tool),
-            **name,
-        }
+        return np.asarray(self.chain.frames(row)[0, -1] @ tool)
 
     def _share(self, one: ControllerMove) -> float:
         """The share of the joints' greatest speeds with which a joint move goes."""
@@ -230,6 +268,20 @@ class _Conversion:
             return 1.0 if one.share is None else one.share
         limits = [joint.velocity for joint in self.chain.masters if joint.velocity > 0.0]
         return min(1.0, one.axis_speed / min(limits)) if np.isfinite(min(limits)) else 1.0
+
+    def assumed(self) -> Iterator[str]:
+        """A line each on what the moves leave open, and how that is taken."""
+        joint_moves = [one for one in self._moves if one.kind == "ptp"]
+        if any(one.share is None and one.axis_speed is None for one in joint_moves):
+            yield "joint moves whose speed is the tool's go at the joints' full speeds"
+        if any(one.axis_speed is not None for one in joint_moves):
+            yield "speeds of axes are shares of the slowest joint's greatest speed"
+        ends = [one.to for one in self._moves if isinstance(one.to, PoseTarget)]
+        if unchecked := dict.fromkeys(one.unchecked for one in ends if one.unchecked):
+            yield f"of configurations not checked: {listed([*unchecked])}"
+        if self.compared[0] >= 0.0:
+            way, turn = self.compared[0] * 1e3, np.degrees(self.compared[1])
+            yield f"poses with axes beside them agree with the robot within {way:.2g} mm and {turn:.2g} degrees"
 
     @cached_property
     def _moves(self) -> list[ControllerMove]:
@@ -240,7 +292,7 @@ class _Conversion:
         """
         found = [move for move in self.read.moves if isinstance(move, ControllerMove)]
         if not found:
-            raise BadInput("nothing moves", valid="a program with moves")
+            raise BadProgram("nothing moves", valid="a program with moves")
         return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clearance.errors import BadInput
+from clearance.errors import BadProgram
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.schema.program import Program
 from clearance.formats.schema.strict_model import validated
@@ -17,7 +17,7 @@ def read_yaml_program(asked: ProgramRequest) -> Program:
     """
     others = sorted(asked.asked.model_fields_set - {"file"})
     if others:
-        raise BadInput(
+        raise BadProgram(
             "it is for the language of a controller", where=others[0], valid="no such key"
         )
     return validated(Program, parse_yaml(asked.data, asked.shown), asked.shown)

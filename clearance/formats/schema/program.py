@@ -22,6 +22,8 @@ Above0 = Annotated[float, Field(ge=1e-6, le=1e6)]
 Zone = Annotated[float, Field(ge=0)]
 """[m] The radius of the corner at a move's end."""
 
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+
 
 class Tool(Pose):
     """A tool: the link that it is fixed to, and its pose on it."""
@@ -58,13 +60,16 @@ class Target(Pose):
 
 class JointMove(StrictModel):
     """`ptp`: all joints go straight to their targets, begin together and end together; `speed` is a share of their
-    greatest, and `zone` the radius of the corner at its end [m].
+    greatest, and `zone` the radius of the corner at its end [m]. For the pose `to` the joints are those nearest to
+    `near` (default: to where they are), `within` ranges.
     """
 
     joints: dict[Name, float] | None = None
     to: Target | None = None
     speed: Annotated[float, Field(gt=0, le=1)] = 1.0
     zone: Zone = 0.0
+    near: dict[Name, float] = {}
+    within: dict[Name, Pair] = {}
 
     @model_validator(mode="after")
     def _one_target(self) -> JointMove:
@@ -73,6 +78,8 @@ class JointMove(StrictModel):
                 "joints and to are given" if self.to else "no target is given",
                 valid="joints, or to",
             )
+        if self.joints is not None and (self.near or self.within):
+            raise BadProgram("joints are given", where="near", valid="no such key, or a pose to")
         if self.to is not None and not self.to.turns:
             raise MissingKey("no orientation is given", where="to", valid="quat_xyzw or rpy")
         return self

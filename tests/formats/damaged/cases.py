@@ -102,3 +102,17 @@ moves:
   - wait: 0.5
   - ptp: {joints: {joint_1: -0.5, joint_2: 0.1, joint_3: 0.4, joint_4: 0.1, joint_5: 1.1, joint_6: 0.2}}
 """
+
+URSCRIPT = b"""def weld():
+  set_tcp(p[0, 0, 0.1, 0, 0, 0])
+  home = [-0.5, 0.1, 0.4, 0.1, d2r(60), 0.2]
+  movej(home, a=1.4, v=1.05)
+  i = 0
+  while i < 2:
+    movel(pose_trans(p[0.4, 0.1, 0.3, 0, 3.1416, 0], p[0.1 * i, 0, 0, 0, 0, 0]), v=0.25, r=0.005)
+    i = i + 1
+  end
+  movec(p[0.5, 0.2, 0.3, 0, 3.1416, 0], p[0.6, 0.1, 0.3, 0, 3.1416, 0], a=1.2, v=0.1, mode=0)
+  if home[0] < 0: sleep(0.5) else: movej([0, 0, 0, 0, 0, 0]) end
+end
+"""

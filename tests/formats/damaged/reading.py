@@ -110,6 +110,19 @@ def program(data: bytes, folder: Path, name: str) -> object:
     return program_motion(asked, {}, programmed(), folder, InputFiles(folder), {})
 
 
+def controller(data: bytes, folder: Path, name: str) -> object:
+    """A program of a controller as moves of a robot."""
+    from clearance.formats.known_formats import Kind, format_of, function_at
+    from clearance.formats.program.controller_program import ProgramRequest
+    from clearance.formats.program.conversion import converted
+    from clearance.formats.schema.program_file import ProgramFile
+
+    asked = ProgramFile(file=name, link="tool_tip")
+    row = format_of(Kind.PROGRAM, name, data)
+    read = function_at(row.read)(ProgramRequest(data, name, asked))
+    return converted(read, asked, programmed().robot, {})
+
+
 @lru_cache
 def programmed():
     """The arm that programs move."""

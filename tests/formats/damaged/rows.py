@@ -149,6 +149,10 @@ def _motions() -> dict[str, Reader]:
         "program": Reader(
             "weld.yaml", cases.PROGRAM, reading.program, yaml_damaged, Kind.PROGRAM, yml
         ),
+        "URScript": Reader(
+            *("weld.script", cases.URSCRIPT, reading.controller, lines_damaged, Kind.PROGRAM),
+            (".urscript",),
+        ),
         "pose table": Reader("door.csv", texts.POSES, poses, table_damaged, tables),
         "poses stamped": Reader("door.yaml", texts.STAMPED, poses, yaml_damaged, tables, yml),
         "poses JSON": Reader("door.json", cases.POSES_JSON, poses, json_damaged, tables),

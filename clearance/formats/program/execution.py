@@ -1,0 +1,398 @@
+"""Runs a controller's program as far as its file decides it: what is left are moves, one after another.
+
+Loops are unrolled and calls are followed. A condition, a loop or a target that only the controller knows is
+refused with its line; what moves nothing may be left out. Not for: what instructions do (each language).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Protocol
+
+from clearance.errors import BadProgram, nearest_name
+from clearance.formats.program.controller_program import ControllerMove, ControllerWait
+from clearance.formats.program.effects import Effects
+from clearance.formats.program.expressions import (
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Part,
+    Unknown,
+    names_in,
+    number,
+    value_of,
+)
+from clearance.formats.program.statements import (
+    BREAK,
+    RETURN,
+    STOP,
+    Assign,
+    Do,
+    For,
+    If,
+    Leave,
+    Routine,
+    Statement,
+    Unreadable,
+    While,
+    assigned,
+)
+from clearance.formats.program.tokens import Line
+from clearance.formats.text.notes import counted
+from clearance.world.notice import listed
+
+MOST_STATEMENTS = 500_000
+"""Statements that a program runs; more are a loop that does not end."""
+
+MOST_PASSES = 30
+"""Passes of an endless loop after which it has to repeat itself."""
+
+MOST_MOVES = 20_000
+
+MOST_CALLS = 40
+"""Routines within routines."""
+
+
+class Language(Protocol):
+    """What the words of a language do."""
+
+    def moves(self, name: str) -> bool | None:
+        """Whether an instruction or a function can move the robot; None where it is not known."""
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """Does what an instruction does: a move, a setting, or a wait."""
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        """The value of a function of the language; `Unknown` where only the controller knows it."""
+
+    def value_of(self, name: str) -> Any:
+        """The value of a name that the language itself knows; None where it knows none."""
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        """Values in brackets."""
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """A part of a value."""
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        """Changes a part of a value."""
+
+    @property
+    def state(self) -> Any:
+        """What settings are in force: a loop repeats itself where it is the same."""
+
+
+@dataclass(eq=False)
+class Execution:
+    """A program that runs.
+
+    Attributes:
+        routines: by name. skip: names of instructions, functions and words of loops to leave out.
+        variables: of the whole program; `frames` those of routines that are entered. moves: made so far.
+    """
+
+    language: Language
+    routines: Mapping[str, Routine]
+    skip: frozenset[str]
+    variables: dict[str, Any] = field(default_factory=dict)
+    frames: list[dict[str, Any]] = field(init=False)
+    moves: list[ControllerMove | ControllerWait] = field(default_factory=list)
+    _passed: dict[str, dict[str, None]] = field(default_factory=dict)
+    _n_run: int = 0
+
+    @cached_property
+    def effects(self) -> Effects:
+        """What statements may do."""
+        return Effects(self.language.moves, self.routines, self.skip)
+
+    def __post_init__(self) -> None:
+        self.frames = [self.variables]
+        for name in self.skip:
+            if self.language.moves(name):
+                raise BadProgram(
+                    f"{name} moves the robot", where="skip", valid="what moves nothing, or no skip"
+                )
+
+    @property
+    def notes(self) -> list[str]:
+        """A line each on what was passed over, and where."""
+        return [f"{what}: {listed([*where], 6)}" for what, where in self._passed.items()]
+
+    def note(self, what: str, where: str) -> None:
+        """Keeps something to tell, each place once."""
+        self._passed.setdefault(what, {})[where] = None
+
+    def pass_over(self, name: str, line: Line) -> None:
+        """Keeps that an instruction was passed over since it moves nothing."""
+        self.note("instructions that move nothing", f"{name} ({line})")
+
+    def add(self, move: ControllerMove | ControllerWait) -> None:
+        """A move that the robot makes.
+
+        Raises:
+            BadInput: too many.
+        """
+        self.moves.append(move)
+        if len(self.moves) > MOST_MOVES:
+            raise BadProgram(f"more than {MOST_MOVES:,} moves", valid="a shorter program")
+
+    def run(self, body: Iterable[Statement]) -> Leave | None:
+        """Runs statements, and what they were left by."""
+        for one in body:
+            self._n_run += 1
+            if self._n_run > MOST_STATEMENTS:
+                told = f"more than {MOST_STATEMENTS:,} statements are run"
+                raise BadProgram(told, where=str(one.line), valid="a loop that ends")
+            left = self._step(one)
+            if left is not None:
+                return left
+        return None
+
+    def _step(self, one: Statement) -> Leave | None:
+        match one:
+            case Assign():
+                self._assign(one)
+            case Do():
+                return self._do(one.call)
+            case If():
+                return self._branch(one)
+            case While():
+                return self._while(one)
+            case For():
+                return self._for(one)
+            case Leave():
+                return one
+            case Unreadable():
+                if one.word not in self.skip:
+                    raise _unreadable(one)
+                self.note("left out as asked", f"{one.word} ({one.line})")
+        return None
+
+    # values
+
+    def evaluated(self, one: Expression) -> Any:
+        """The value of an expression, which nothing else changes."""
+        return copy.deepcopy(value_of(one, self))
+
+    def value_of(self, name: Name) -> Any:
+        """The value of a variable; `Unknown` where no file that is given has it."""
+        for place in (self.frames[-1], self.variables):
+            if name.name in place:
+                return place[name.name]
+        own = self.language.value_of(name.name)
+        if own is not None:
+            return own
+        known_names = (*self.frames[-1], *self.variables)
+        hint = f" ({nearest_name(name.name, known_names)})" if known_names else ""
+        return Unknown(f"{name.name!r} is in no file that is given{hint}")
+
+    def result_of(self, call: Call) -> Any:
+        """The value of a function: one of the program, or of the language.
+
+        Raises:
+            BadInput: none of them, which may move the robot.
+        """
+        if call.name in self.skip:
+            self.note("left out as asked", f"{call.name} ({call.line})")
+            return Unknown(f"{call.name} ({call.line}) is left out")
+        if call.name in self.routines:
+            return self._called(self.routines[call.name], call)[0]
+        if self.language.moves(call.name) is None:
+            raise _unknown(call)
+        return self.language.result_of(call, self)
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        """Values in brackets."""
+        return self.language.items(values, kind)
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """A part of a value."""
+        return self.language.part_of(value, by)
+
+    def _assign(self, one: Assign) -> None:
+        name = assigned(one.target)
+        if name is None:
+            raise BadProgram("no variable is given", where=str(one.line), valid="a variable")
+        value = self.evaluated(one.value)
+        if isinstance(one.target, Name):
+            place = self.variables if one.is_of_all else self._place(name.name, one.is_own)
+            place[name.name] = value
+            return
+        assert isinstance(one.target, Part)
+        whole = value_of(one.target.of, self)
+        by = one.target.by if isinstance(one.target.by, str) else value_of(one.target.by, self)
+        if isinstance(whole, Unknown) or isinstance(by, Unknown):
+            self._forget([(name.name, one.line)])
+            return
+        try:
+            self.language.with_part(whole, by, value)
+        except (LookupError, TypeError, ValueError):
+            raise BadProgram(f"there is no part {by!r:.40}", where=str(one.line)) from None
+
+    def _place(self, name: str, is_own: bool = False) -> dict[str, Any]:
+        """Where a variable is, or begins to be."""
+        own = self.frames[-1]
+        return own if is_own or name in own or name not in self.variables else self.variables
+
+    def _forget(self, changed: Iterable[tuple[str, Line]]) -> None:
+        """Makes variables unknown that lines may have changed."""
+        for name, line in changed:
+            self._place(name)[name] = Unknown(f"{name!r} is given a value at {line}")
+
+    # routines
+
+    def _do(self, call: Call) -> Leave | None:
+        if call.name in self.skip:
+            self.note("left out as asked", f"{call.name} ({call.line})")
+        elif call.name in self.routines:
+            return self._called(self.routines[call.name], call)[1]
+        elif self.language.moves(call.name) is None:
+            raise _unknown(call)
+        else:
+            self.language.instruct(call, self)
+        return None
+
+    def _called(self, routine: Routine, call: Call) -> tuple[Any, Leave | None]:
+        """The value of a routine, and the end of the program if it comes in it.
+
+        Raises:
+            BadInput: other arguments than it has; too many routines in one another.
+        """
+        if len(self.frames) > MOST_CALLS:
+            told = f"more than {MOST_CALLS} routines call one another"
+            raise BadProgram(told, where=str(call.line), valid="routines that end")
+        if len(call.args) > len(routine.parameters):
+            told = f"{call.name} is given {counted(len(call.args), 'argument')}"
+            raise BadProgram(told, where=str(call.line), valid=f"{len(routine.parameters)} at most")
+        in_order = dict(zip(routine.parameters, call.args, strict=False))
+        given = {**routine.defaults, **in_order, **call.named}
+        frame = {name: self.evaluated(value) for name, value in given.items()}
+        self.frames.append(frame)
+        left = self.run(routine.body)
+        value = None
+        if left is not None and left.what == RETURN and left.value is not None:
+            value = self.evaluated(left.value)
+        self.frames.pop()
+        for name in routine.returned & given.keys():
+            target = given[name]
+            if assigned(target) is not None:
+                self._assign(Assign(call.line, target, Constant(frame[name])))
+        return value, left if left is not None and left.what == STOP else None
+
+    # what decides
+
+    def _branch(self, one: If) -> Leave | None:
+        for condition, body in one.branches:
+            value = True if condition is None else value_of(condition, self)
+            if isinstance(value, Unknown):
+                self._pass_branches(one, value)
+                return None
+            if value:
+                return self.run(body)
+        return None
+
+    def _pass_branches(self, one: If, why: Unknown) -> None:
+        """Nothing but that variables are not known any more, where no branch moves the robot.
+
+        Raises:
+            BadInput: one does.
+        """
+        bodies = [body for _, body in one.branches]
+        culprit = next((found for body in bodies for found in self.effects.deciding(body)), None)
+        if culprit is not None:
+            told = f"{one.word} decides on {culprit}, and is not known: {why.why}"
+            raise BadProgram(told, where=str(one.line), valid="a condition that the file decides")
+        self.note("conditions that only the controller knows, without moves", f"{one.line}")
+        self._forget(self.effects.assigned_in(bodies))
+
+    def _while(self, one: While) -> Leave | None:
+        n_passes, before = 0, None
+        endless = not names_in(one.condition) and not isinstance(one.condition, Name | Part)
+        while (one.at_end and not n_passes) or self._goes_on(one):
+            if endless and n_passes and self._state() == before:
+                told = "an endless loop: two passes are measured, each further one is the same"
+                self.note(told, f"{one.word} ({one.line})")
+                return Leave(one.line, one.word, STOP)
+            if endless and n_passes == MOST_PASSES:
+                raise BadProgram(
+                    "an endless loop that is never the same",
+                    where=str(one.line),
+                    valid="variables that do not change from pass to pass",
+                )
+            before = self._state() if endless and n_passes else None
+            left = self.run(one.body)
+            n_passes += 1
+            if left is not None and left.what in (RETURN, STOP):
+                return left
+            if left is not None and left.what == BREAK:
+                return None
+        return None
+
+    def _goes_on(self, one: While) -> bool:
+        """Whether a loop has a further pass.
+
+        Raises:
+            BadInput: only the controller knows, and it moves the robot or is not to be left out.
+        """
+        value = value_of(one.condition, self)
+        if not isinstance(value, Unknown):
+            return bool(value) != one.at_end
+        culprit = next(self.effects.deciding(one.body), None)
+        if culprit is not None or one.word not in self.skip:
+            told = (
+                f"{one.word} decides on {culprit}, and" if culprit else f"{one.word} waits for what"
+            )
+            raise BadProgram(
+                f"{told} is not known: {value.why}",
+                where=str(one.line),
+                valid="a condition that the file decides"
+                + ("" if culprit else f", or skip: [{one.word}] to leave such waits out"),
+            )
+        self.note("left out as asked", f"{one.word} ({one.line})")
+        self._forget(self.effects.assigned_in([one.body]))
+        return False
+
+    def _for(self, one: For) -> Leave | None:
+        first, last = (
+            number(self.evaluated(part), one.line, f"the range of {one.name.name!r}")
+            for part in (one.first, one.last)
+        )
+        step = -1.0 if one.turns_back and last < first else 1.0
+        if one.step is not None:
+            step = number(self.evaluated(one.step), one.line, f"the step of {one.name.name!r}")
+        if step == 0.0:
+            raise BadProgram("a step of 0", where=str(one.line), valid="another")
+        place, at = self._place(one.name.name), first
+        while at <= last if step > 0.0 else at >= last:
+            place[one.name.name] = at
+            left = self.run(one.body)
+            if left is not None and left.what in (RETURN, STOP):
+                return left
+            if left is not None and left.what == BREAK:
+                break
+            at += step
+        return None
+
+    def _state(self) -> Any:
+        """What decides how the program goes on."""
+        return copy.deepcopy((self.variables, self.frames, self.language.state))
+
+
+def _unknown(call: Call) -> BadProgram:
+    return BadProgram(
+        f"{call.name!r} is no known instruction, and may move the robot",
+        where=str(call.line),
+        valid=f"a file beside that has it, or skip: [{call.name}] if it moves nothing",
+    )
+
+
+def _unreadable(one: Unreadable) -> BadProgram:
+    return BadProgram(
+        f"{one.word!r} is not understood, and may decide where the robot goes",
+        where=str(one.line),
+        valid=f"a program without it, or skip: [{one.word}] if it does not",
+    )

@@ -1,0 +1,330 @@
+"""Expressions of controllers' languages: what they are made of, how they are read, and their values.
+
+A value is a number, a text, a list, a record, or not known: then it may not decide where the robot goes. Not for:
+what functions mean (each language).
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from clearance.errors import BadProgram, BadSyntax, at
+from clearance.formats.program.tokens import Cursor, Line, Token
+
+MOST_DEPTH = 60
+"""Brackets within brackets."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A value that only the controller knows; `why` says of what it is."""
+
+    why: str
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number, a text, or a truth."""
+
+    value: Any
+
+
+@dataclass(frozen=True)
+class Name:
+    """A variable."""
+
+    name: str
+    line: Line
+
+
+@dataclass(frozen=True)
+class Items:
+    """Values in brackets; `kind` is what stands before them."""
+
+    items: tuple[Expression, ...]
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class Call:
+    """A function or an instruction with its arguments, in their order and by name."""
+
+    name: str
+    args: tuple[Expression, ...]
+    named: Mapping[str, Expression]
+    line: Line
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a value: by an index, or by the name of a field."""
+
+    of: Expression
+    by: Expression | str
+    line: Line
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operator on one or two values."""
+
+    act: Callable[..., Any]
+    on: tuple[Expression, ...]
+    line: Line
+
+
+Expression = Constant | Name | Items | Call | Part | Operation
+
+
+class Scope(Protocol):
+    """Where names and functions have their values."""
+
+    def value_of(self, name: Name) -> Any:
+        """The value of a variable."""
+
+    def result_of(self, call: Call) -> Any:
+        """The value of a function."""
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        """Values in brackets."""
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """A part of a value; raises LookupError or TypeError where there is none."""
+
+
+def value_of(one: Expression, scope: Scope) -> Any:
+    """The value of an expression; `Unknown` where a part that decides it is.
+
+    Raises:
+        BadInput: with the line: what is not there, or does not go together.
+    """
+    match one:
+        case Constant():
+            return one.value
+        case Name():
+            return scope.value_of(one)
+        case Call():
+            return scope.result_of(one)
+        case Items():
+            return scope.items([value_of(item, scope) for item in one.items], one.kind)
+        case Part():
+            by = one.by if isinstance(one.by, str) else value_of(one.by, scope)
+            return _applied(scope.part_of, (value_of(one.of, scope), by), one.line)
+        case Operation():
+            return _applied(one.act, [value_of(item, scope) for item in one.on], one.line)
+
+
+def _applied(act: Callable[..., Any], values: Sequence[Any], line: Line) -> Any:
+    for value in values:
+        if isinstance(value, Unknown):
+            return value
+    try:
+        return act(*values)
+    except (ArithmeticError, LookupError, TypeError, ValueError):
+        given = " and ".join(f"{value!r:.40}" for value in values)
+        raise BadProgram(f"this has no value for {given}", where=str(line)) from None
+
+
+def known(value: Any, line: Line, what: str) -> Any:
+    """The value, if it is known to its last part.
+
+    Raises:
+        BadInput: with the line, and what only the controller knows.
+    """
+    for part in value if isinstance(value, list) else [value]:
+        if isinstance(part, list):
+            known(part, line, what)
+        if isinstance(part, Unknown):
+            raise BadProgram(
+                f"{what} is not known: {part.why}", where=str(line), valid="a constant"
+            )
+    return value
+
+
+def number(value: Any, line: Line, what: str) -> float:
+    """A value that has to be a known number.
+
+    Raises:
+        BadInput: with the line.
+    """
+    if isinstance(known(value, line, what), bool | str | list):
+        raise BadProgram(f"{what} is {value!r:.60}", where=str(line), valid="a number")
+    return float(value)
+
+
+def names_in(one: Expression) -> set[str]:
+    """The names of all functions in an expression."""
+    match one:
+        case Call():
+            parts = [*one.args, *one.named.values()]
+            return {one.name}.union(*(names_in(part) for part in parts))
+        case Items():
+            return set[str]().union(*(names_in(item) for item in one.items))
+        case Part():
+            return names_in(one.of) | (set() if isinstance(one.by, str) else names_in(one.by))
+        case Operation():
+            return set[str]().union(*(names_in(item) for item in one.on))
+        case _:
+            return set()
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """How a language writes expressions.
+
+    Attributes:
+        binary, unary: operators, how firmly each binds, and what it does.
+        constants: words for values. index: the brackets of an index. before_items: words before a bracket of
+            values. optional: what is before the name of an argument (then `:=`); empty where `=` behind it is.
+        folds: whether capital letters mean the same as small ones.
+    """
+
+    binary: Mapping[str, tuple[int, Callable[..., Any]]]
+    unary: Mapping[str, tuple[int, Callable[..., Any]]]
+    constants: Mapping[str, Any] = field(default_factory=dict)
+    index: str = "[]"
+    optional: str = ""
+    before_items: tuple[str, ...] = ()
+    folds: bool = False
+
+
+class ExpressionReader:
+    """Reads expressions where a cursor is."""
+
+    def __init__(self, cursor: Cursor, grammar: Grammar) -> None:
+        self.cursor, self._grammar, self._depth = cursor, grammar, 0
+
+    def expression(self, power: int = 0) -> Expression:
+        """The expression that follows, whose operators bind more firmly than a power.
+
+        Raises:
+            BadSyntax: something else follows.
+        """
+        self._depth += 1
+        if self._depth > MOST_DEPTH:
+            self.cursor.refuse(f"an expression of at most {MOST_DEPTH} brackets")
+        found = self._prefixed()
+        while (rule := self._grammar.binary.get(self._word)) and rule[0] > power:
+            line = self.cursor.take().line
+            found = Operation(rule[1], (found, self.expression(rule[0])), line)
+        self._depth -= 1
+        return found
+
+    def arguments(self, *ends: str) -> tuple[tuple[Expression, ...], dict[str, Expression]]:
+        """The arguments up to one of some words, which is not taken: in their order, and by name.
+
+        Raises:
+            BadSyntax: the text ends before.
+        """
+        args, named = list[Expression](), dict[str, Expression]()
+        cursor, mark = self.cursor, self._grammar.optional
+        while not cursor.is_at(*ends):
+            if mark and cursor.accept(mark):
+                name = self.folded(cursor.expect_kind("name", "the name of an argument").text)
+                named[name] = self.expression() if cursor.accept(":=") else Constant(True)
+            elif not mark and cursor.next.kind == "name" and cursor.after(1).text == "=":
+                name = cursor.take().text
+                cursor.take()
+                named[name] = self.expression()
+            else:
+                args.append(self.expression())
+            if not cursor.accept(",") and not cursor.is_at(*ends, *([mark] if mark else [])):
+                cursor.refuse(", or ".join(repr(one) for one in (",", *ends)))
+        return tuple(args), named
+
+    def folded(self, name: str) -> str:
+        """A name as it is compared."""
+        return name.lower() if self._grammar.folds else name
+
+    @property
+    def _word(self) -> str:
+        word = self.cursor.next
+        return word.text.upper() if self._grammar.folds and word.kind == "name" else word.text
+
+    def _prefixed(self) -> Expression:
+        rule = self._grammar.unary.get(self._word) if self.cursor.next.kind != "string" else None
+        if rule is None:
+            return self._with_parts(self._atom())
+        line = self.cursor.take().line
+        return Operation(rule[1], (self.expression(rule[0]),), line)
+
+    def _atom(self) -> Expression:
+        cursor = self.cursor
+        if cursor.accept("("):
+            found = self.expression()
+            cursor.expect(")")
+            return found
+        if cursor.accept("["):
+            return self._items("")
+        if cursor.next.kind == "number":
+            return Constant(_number(cursor.take()))
+        if cursor.next.kind == "string":
+            return Constant(cursor.take().text[1:-1])
+        word = cursor.expect_kind("name", "a value")
+        if word.text in self._grammar.before_items and cursor.accept("["):
+            return self._items(word.text)
+        if self.folded(word.text) in self._grammar.constants:
+            return Constant(self._grammar.constants[self.folded(word.text)])
+        return self.called(word) if cursor.is_at("(") else Name(self.folded(word.text), word.line)
+
+    def called(self, word: Token) -> Call:
+        """A function's call, whose name is taken and whose bracket follows."""
+        self.cursor.expect("(")
+        args, named = self.arguments(")")
+        self.cursor.expect(")")
+        return Call(self.folded(word.text), args, named, word.line)
+
+    def _items(self, kind: str) -> Items:
+        args, _ = self.arguments("]")
+        self.cursor.expect("]")
+        return Items(args, kind)
+
+    def _with_parts(self, found: Expression) -> Expression:
+        opens, closes = self._grammar.index[0], self._grammar.index[1]
+        while True:
+            line = self.cursor.next.line
+            if self.cursor.accept("."):
+                by = self.cursor.expect_kind("name", "the name of a field").text
+                found = Part(found, self.folded(by), line)
+            elif self.cursor.accept(opens):
+                found = Part(found, self.expression(), line)
+                while self.cursor.accept(","):
+                    found = Part(found, self.expression(), line)
+                self.cursor.expect(closes)
+            else:
+                return found
+
+
+def _number(word: Token) -> float:
+    """A number, as decimals or after 0x or 0b."""
+    text = word.text.lower()
+    bases = {"0x": 16, "0b": 2, "0o": 8}
+    if text[:2] in bases:
+        return float(int(text[2:], bases[text[:2]]))
+    with at(str(word.line)):
+        if not (value := float(text)) < 1e300:
+            raise BadSyntax(f"{text!r:.60} is given", valid="a number of this earth")
+    return value
+
+
+def numeric(act: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    """An operator that refuses all but numbers."""
+
+    def applied(a: Any, b: Any) -> Any:
+        for one in (a, b):
+            if not isinstance(one, float | int) or isinstance(one, bool):
+                raise TypeError
+        return act(a, b)
+
+    return applied
+
+
+COMPARED: Mapping[str, Callable[..., Any]] = {
+    "<": operator.lt,
+    ">": operator.gt,
+    "<=": operator.le,
+    ">=": operator.ge,
+}

@@ -1,0 +1,377 @@
+"""Programs in URScript. Metres, radians, seconds; a pose is a point and a rotation vector, seen from the base.
+
+Sources: Universal Robots, The URScript programming language (moves, `pose_trans`, blends, `movec` modes).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadProgram, MissingKey, at, nearest_name
+from clearance.formats.program.controller_program import (
+    AxisTarget,
+    ControllerMove,
+    ControllerProgram,
+    ControllerWait,
+    PoseTarget,
+    ProgramRequest,
+    Target,
+)
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import (
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Unknown,
+    known,
+    number,
+)
+from clearance.formats.program.tokens import Line, text_of
+from clearance.formats.program.urscript_text import UrScript, script_of
+from clearance.geometry.pose import inverse, pose_from_quaternion
+from clearance.geometry.quaternions import quaternions_of
+
+TCP = "tcp"
+"""The tool that a script takes from the installation, among the tools of a case."""
+
+
+class ToolPose(list[Any]):
+    """A value `p[…]`: a point [m] and a rotation vector [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """The axes that bring the tool to a pose, nearest to some."""
+
+    pose: ToolPose
+    near: list[float] | None
+
+
+_PARAMETERS = {
+    "movej": ("q", "a", "v", "t", "r"),
+    "movel": ("pose", "a", "v", "t", "r"),
+    "movep": ("pose", "a", "v", "r"),
+    "movec": ("pose_via", "pose_to", "a", "v", "r", "mode"),
+}
+_TARGETS = ("q", "pose", "pose_via", "pose_to")
+_DEFAULTS = {"movej": (1.4, 1.05), "movel": (1.2, 0.25), "movep": (1.2, 0.25), "movec": (1.2, 0.25)}
+
+_OTHER_MOVES = frozenset(
+    "servoj servoc servol speedj speedl force_mode freedrive_mode teach_mode run screw_driving "
+    "track_conveyor_linear track_conveyor_circular path_offset_enable path_offset_set "
+    "enable_external_ft_sensor jog start_jog move_until_contact optimovej optimovel".split()
+)
+_STILL = frozenset(
+    "textmsg varmsg popup sync stopj stopl stop_conveyor_tracking end_force_mode end_freedrive_mode "
+    "end_teach_mode kill join enter_critical exit_critical zero_ftsensor powerdown protective_stop "
+    "reset_revolution_counter encoder_enable_pulse_decode encoder_enable_set_tick_count end_screw_driving "
+    "force to_str str_at str_cat str_empty str_find str_len str_sub to_num binary_list_to_integer "
+    "integer_to_binary_list random make_list size struct".split()
+)
+_STILL_BEFORE = (
+    *("set_", "get_", "read_", "write_", "is_", "socket_", "modbus_", "rtde_", "rpc_", "tool_"),
+    *("request_", "assign_", "conveyor_", "xmlrpc", "enable_", "disable_"),
+)
+
+
+def read_urscript(asked: ProgramRequest) -> ControllerProgram:
+    """The moves of a script.
+
+    Raises:
+        BadInput: with the file and the line.
+    """
+    with at(asked.shown):
+        script = script_of(text_of(asked.data, asked.shown))
+        for file, data in asked.beside.items():
+            beside = script_of(text_of(data, file), file)
+            script.routines.update(beside.routines)
+        tool = asked.asked.tools.get(TCP)
+        language = _UrScript(None if tool is None else tool.matrix())
+        run = Execution(language, script.routines, frozenset(asked.asked.skip))
+        run.run(script.body)
+        entry = _entry(script, asked.asked.entry)
+        if entry is not None:
+            run.run(script.routines[entry].body)
+        return ControllerProgram(tuple(run.moves), tuple(run.notes))
+
+
+def _entry(script: UrScript, asked: str | None) -> str | None:
+    """The function that is the program; None where statements outside of all are.
+
+    Raises:
+        BadInput: there is no such function, or several could be it.
+    """
+    outer = [name for name in script.outer if not script.routines[name].is_thread]
+    if asked is not None:
+        if asked not in outer:
+            valid = nearest_name(asked, outer)
+            raise BadProgram(f"there is no function {asked!r}", where="entry", valid=valid)
+        return asked
+    if script.body or not outer:
+        return None
+    if len(outer) > 1:
+        told = f"functions {', '.join(outer)} are there, and nothing calls one"
+        raise MissingKey(told, where="entry", valid="the one that is the program")
+    return outer[0]
+
+
+@dataclass(eq=False)
+class _UrScript:
+    """What URScript's functions do.
+
+    Attributes:
+        tool: (4, 4) `flange_from_tool` [m]; None until it is known. last: the target of the last move, if it
+            stops.
+    """
+
+    tool: np.ndarray | None
+    last: Any = None
+
+    @property
+    def state(self) -> Any:
+        """The tool and where it is."""
+        return (None if self.tool is None else self.tool.tolist(), self.last)
+
+    def moves(self, name: str) -> bool | None:
+        """Whether a function can move the robot; None for one that is not known."""
+        if name in _PARAMETERS or name in _OTHER_MOVES:
+            return True
+        still = name in _STILL or name in _VALUES or name.startswith(_STILL_BEFORE)
+        return False if still or name in ("sleep", "pose_trans", "get_inverse_kin") else None
+
+    def value_of(self, name: str) -> Any:
+        """None: all names but `True` and `False` are variables."""
+        return {"pi": math.pi}.get(name)
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        """A list, or a pose."""
+        return ToolPose(values) if kind else values
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """An item of a list."""
+        return value[_index(by)]
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        """Changes an item of a list."""
+        value[_index(by)] = new
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """A move, a wait, another tool; all else moves nothing.
+
+        Raises:
+            BadInput: a move of another kind.
+        """
+        if call.name in _PARAMETERS:
+            self._move(call, run)
+        elif call.name == "sleep":
+            (seconds,) = (number(run.evaluated(one), call.line, "the time") for one in call.args)
+            if seconds > 0.0:
+                run.add(ControllerWait(call.line.number, seconds, call.line.file))
+        elif call.name == "set_tcp":
+            (pose, *_) = (run.evaluated(one) for one in (*call.args, *call.named.values()))
+            self.tool, self.last = _matrix(_pose(pose, call.line)), None
+        elif call.name == "run":
+            name = call.args[0].value if isinstance(call.args[0], Constant) else ""
+            if name not in run.routines or not run.effects.is_still(run.routines[name]):
+                raise BadProgram(
+                    f"thread {name!r} moves the robot, or may", where=str(call.line), valid="none"
+                )
+            run.note("threads that move nothing", f"{name} ({call.line})")
+        elif self.moves(call.name):
+            raise BadProgram(
+                f"{call.name} moves the robot on a way that the file does not decide",
+                where=str(call.line),
+                valid=f"{', '.join(_PARAMETERS)}",
+            )
+        else:
+            run.pass_over(call.name, call.line)
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        """The value of a function."""
+        args = [run.evaluated(one) for one in call.args]
+        named = {name: run.evaluated(one) for name, one in call.named.items()}
+        if call.name in ("get_actual_tcp_pose", "get_target_tcp_pose"):
+            if isinstance(self.last, ToolPose):
+                return ToolPose(self.last)
+        elif call.name in ("get_actual_joint_positions", "get_target_joint_positions"):
+            if isinstance(self.last, list) and not isinstance(self.last, ToolPose):
+                return [*self.last]
+        elif call.name == "get_inverse_kin":
+            near = named.get("qnear", args[1] if len(args) > 1 else None)
+            pose = args[0] if args else named.get("x")
+            if isinstance(pose, Unknown):
+                return pose
+            with_near = None if near is None else _six(near, call.line, "qnear")
+            return Solved(_pose(pose, call.line), with_near)
+        elif call.name in _VALUES:
+            unknown = [one for one in args if isinstance(one, Unknown)]
+            return unknown[0] if unknown else _value(call, args)
+        return Unknown(f"{call.name}() at {call.line}")
+
+    def _move(self, call: Call, run: Execution) -> None:
+        given = _arguments(call, run)
+        values = {name: run.evaluated(one) for name, one in given.items()}
+        told = {
+            name: number(value, call.line, name)
+            for name, value in values.items()
+            if name in ("a", "v", "t", "r", "mode")
+        }
+        acceleration, speed = (
+            told.get(name, usual)
+            for name, usual in zip(("a", "v"), _DEFAULTS[call.name], strict=True)
+        )
+        for name, value in (("a", acceleration), ("v", speed)):
+            if not value > 0.0:
+                raise BadProgram(f"{name} is {value:g}", where=str(call.line), valid="more than 0")
+        if told.get("t", 0.0) > 0.0:
+            run.note("times of moves (t) are not followed, but speeds", f"{call.line}")
+        ends = [key for key in _TARGETS if key in given]
+        if len(ends) != (2 if call.name == "movec" else 1):
+            raise MissingKey(f"{call.name} has no target", where=str(call.line))
+        targets = [_target(values[key], given[key], call.line) for key in ends]
+        is_joints = call.name == "movej"
+        move = ControllerMove(
+            call.line.number,
+            "ptp" if is_joints else "lin" if len(ends) == 1 else "circ",
+            targets[-1],
+            self._tool(call.line, is_joints and isinstance(targets[-1], AxisTarget)),
+            targets[0] if len(ends) == 2 else None,
+            "tangent" if told.get("mode") == 1.0 else "to",
+            speed=None if is_joints else speed,
+            acceleration=None if is_joints else acceleration,
+            axis_speed=speed if is_joints else None,
+            zone=told.get("r", 0.0),
+            file=call.line.file,
+        )
+        run.add(move)
+        self.last = values[ends[-1]] if move.zone == 0.0 else None
+
+    def _tool(self, line: Line, is_any: bool) -> np.ndarray:
+        """The tool.
+
+        Raises:
+            MissingKey: the script takes that of the installation, and the case does not say it.
+        """
+        if self.tool is not None or is_any:
+            return np.eye(4) if self.tool is None else self.tool
+        raise MissingKey(
+            "no set_tcp before this move: its tool is that of the installation",
+            where=str(line),
+            valid=f"program: {{tools: {{{TCP}: {{xyz: […]}}}}}}, its pose on the flange",
+        )
+
+
+def _target(value: Any, one: Expression, line: Line) -> Target:
+    """The target that a value is, with the name that it has in the script."""
+    known(value, line, "the target")
+    within = one.args[0] if isinstance(one, Call) and one.args else one
+    name = within.name if isinstance(within, Name) else ""
+    if isinstance(value, Solved):
+        near = None if value.near is None else tuple(value.near)
+        return PoseTarget(_matrix(value.pose), near=near, name=name)
+    if isinstance(value, ToolPose):
+        return PoseTarget(_matrix(_pose(value, line)), name=name)
+    return AxisTarget(tuple(_six(value, line, "the target")), name=name)
+
+
+def _arguments(call: Call, run: Execution) -> dict[str, Expression]:
+    """The arguments of a move, by name.
+
+    Raises:
+        BadInput: one that it does not have.
+    """
+    names = _PARAMETERS[call.name]
+    if len(call.args) > len(names):
+        told = f"{call.name} is given {len(call.args)} arguments"
+        raise BadProgram(told, where=str(call.line), valid=f"at most {len(names)}")
+    for name in call.named:
+        if name not in names:
+            valid = nearest_name(name, names)
+            raise BadProgram(f"{call.name} has no {name!r}", where=str(call.line), valid=valid)
+    return {**dict(zip(names, call.args, strict=False)), **call.named}
+
+
+def _index(by: Any) -> int:
+    if by != int(by) or by < 0:
+        raise IndexError(by)
+    return int(by)
+
+
+def _six(value: Any, line: Line, what: str) -> list[float]:
+    if not isinstance(value, list) or len(value) != 6:
+        raise BadProgram(f"{what} is {value!r:.60}", where=str(line), valid="six numbers")
+    return [number(one, line, what) for one in value]
+
+
+def _pose(value: Any, line: Line) -> ToolPose:
+    known(value, line, "the pose")
+    if not isinstance(value, ToolPose):
+        raise BadProgram(f"{value!r:.60} is given", where=str(line), valid="a pose p[…]")
+    return ToolPose(_six(value, line, "the pose"))
+
+
+def _matrix(pose: ToolPose) -> np.ndarray:
+    """(4, 4) of a pose [m]."""
+    vector = np.array(pose[3:])
+    angle = float(np.linalg.norm(vector))
+    axis = vector / angle if angle > 0.0 else vector
+    return pose_from_quaternion(pose[:3], [*(math.sin(0.5 * angle) * axis), math.cos(0.5 * angle)])
+
+
+def _written(matrix: np.ndarray) -> ToolPose:
+    """The pose of a (4, 4) matrix [m]."""
+    quaternion = quaternions_of(matrix[None, :3, :3])[0]
+    sine = float(np.linalg.norm(quaternion[:3]))
+    angle = 2.0 * math.atan2(sine, quaternion[3])
+    vector = quaternion[:3] * (angle / sine if sine > 0.0 else 2.0)
+    return ToolPose([*matrix[:3, 3].tolist(), *vector.tolist()])
+
+
+def _value(call: Call, args: list[Any]) -> Any:
+    try:
+        return _VALUES[call.name](*args)
+    except (ArithmeticError, IndexError, TypeError, ValueError, AttributeError):
+        given = ", ".join(f"{one!r:.40}" for one in args)
+        raise BadProgram(f"{call.name} has no value for {given}", where=str(call.line)) from None
+
+
+def _of_poses(act: Callable[..., np.ndarray]) -> Callable[..., ToolPose]:
+    """A function of poses by one of their matrices."""
+
+    def applied(*poses: Any) -> ToolPose:
+        if not all(isinstance(one, ToolPose) and len(one) == 6 for one in poses):
+            raise TypeError
+        return _written(act(*(_matrix(one) for one in poses)))
+
+    return applied
+
+
+def _added(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """`pose_add`: points added, the rotations one after the other."""
+    found = a @ b
+    found[:3, 3] = a[:3, 3] + b[:3, 3]
+    return found
+
+
+_VALUES: Mapping[str, Callable[..., Any]] = {
+    "d2r": math.radians,
+    "r2d": math.degrees,
+    **{
+        name: getattr(math, name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2")
+    },
+    **{name: getattr(math, name) for name in ("sqrt", "pow", "floor", "ceil", "log")},
+    "fabs": abs,
+    "abs": abs,
+    "norm": lambda a: abs(a) if isinstance(a, float) else math.hypot(*a),
+    "length": lambda a: float(len(a)),
+    "pose_trans": _of_poses(lambda a, b: a @ b),
+    "pose_inv": _of_poses(inverse),
+    "pose_add": _of_poses(_added),
+    "point_dist": lambda a, b: math.dist(a[:3], b[:3]),
+}

@@ -1,0 +1,169 @@
+"""URScript: the moves that a script makes, by hand; a line for what the file does not decide."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.formats.program.controller_program import AxisTarget, PoseTarget
+from tests.formats.program.reading import read
+
+TOOL = "set_tcp(p[0, 0, 0.1, 0, 0, 0])\n"
+CELL = """# -*- begin: made by hand
+def Program():
+  set_tcp(p[0, 0, 0.1, 0, 0, 0])
+  set_payload(1.2)
+  global home = [0, d2r(-90), 1.5, -1.5, -1.5, 0]
+  global P1 = p[0.4, 0.1, 0.3, 0, 3.141592653589793, 0]
+  def pick(at, up=0.1):
+    movel(pose_trans(at, p[0, 0, -up, 0, 0, 0]), a=1.0, v=0.25, r=0.01)
+    movel(at, v=0.1)
+    set_digital_out(0, True)
+    sleep(0.5)
+  end
+  while (True):
+    $ 1 "Robot Program"
+    movej(home, a=1.4, v=0.8)
+    i = 0
+    while i < 2:
+      pick(pose_trans(P1, p[0.1 * i, 0, 0, 0, 0, 0]))
+      i = i + 1
+    end
+    if get_digital_in(1): textmsg("ready") end
+  end
+end
+"""
+
+
+def moves_of(text, **asked):
+    return read("a.script", text, **asked).moves
+
+
+def place(move):
+    return move.to.pose[:3, 3].tolist()
+
+
+def test_calls_and_loops_become_moves_with_their_lines():
+    found = read("a.script", CELL)
+    one, two = found.moves[:7], found.moves[7:]
+    assert [move.line for move in one] == [15, 8, 9, 11, 8, 9, 11] == [move.line for move in two]
+    home, over, on, wait, _, next_, _ = one
+    assert home.to == AxisTarget((0.0, -math.pi / 2, 1.5, -1.5, -1.5, 0.0), name="home")
+    assert (home.kind, home.axis_speed, home.zone) == ("ptp", 0.8, 0.0)
+    # a tool that looks down (half a turn about y): its -z is up, its x is back
+    assert place(over) == pytest.approx([0.4, 0.1, 0.4]) and over.zone == 0.01
+    assert place(on) == pytest.approx([0.4, 0.1, 0.3]) and on.speed == 0.1
+    assert place(next_) == pytest.approx([0.3, 0.1, 0.3])
+    assert np.allclose(on.to.pose[:3, :3], np.diag([-1.0, 1.0, -1.0]), atol=1e-15)
+    assert wait.seconds == 0.5 and over.tool[2, 3] == 0.1
+    told = "\n".join(found.notes)
+    for what in ("set_payload (line 4)", "without moves: line 21", "endless loop", "two passes"):
+        assert what in told
+
+
+def test_a_rotation_vector_is_axis_times_angle():
+    (move,) = moves_of(TOOL + "movel(p[0, 0, 0, 0, 0, 1.5707963267948966])")
+    assert np.allclose(move.to.pose[:3, :3], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
+
+
+def test_arcs_blends_and_joint_targets():
+    text = TOOL + "movec(p[1,0,0,0,0,0], p[1,1,0,0,0,0], mode=1, r=0.02)\nmovep([0,0,0,0,0,0])"
+    arc, line = moves_of(text)
+    assert (arc.kind, arc.orientation, arc.zone, place(arc)) == ("circ", "tangent", 0.02, [1, 1, 0])
+    assert arc.via.pose[:3, 3].tolist() == [1.0, 0.0, 0.0]
+    assert line.kind == "lin" and line.to == AxisTarget((0.0,) * 6)
+
+
+def test_joints_beside_a_pose_say_which_are_meant():
+    text = TOOL + "W_p = p[1,0,0,0,0,0]\nmovej(get_inverse_kin(W_p, qnear=[1,2,3,4,5,6]))"
+    (move,) = moves_of(text)
+    assert isinstance(move.to, PoseTarget) and move.to.near == (1, 2, 3, 4, 5, 6)
+    assert move.to.name == "W_p" and move.kind == "ptp"
+
+
+def test_where_the_tool_is_is_known_after_a_move_that_stops():
+    text = (
+        TOOL + "movel(p[1,0,0,0,0,0])\nmovel(pose_trans(get_actual_tcp_pose(), p[0,0,0.1,0,0,0]))"
+    )
+    assert place(moves_of(text)[1]) == pytest.approx([1.0, 0.0, 0.1])
+    with pytest.raises(cl.ClearanceError, match=r"line 3: the target is not known: get_actual_tcp"):
+        moves_of(text.replace("0,0])\n", "0,0], r=0.01)\n"))
+
+
+def test_the_installations_tool_is_asked_for():
+    with pytest.raises(cl.ClearanceError, match=r"line 1: no set_tcp .*tools: \{tcp"):
+        moves_of("movel(p[1,0,0,0,0,0])")
+    (move,) = moves_of("movel(p[1,0,0,0,0,0])", tools={"tcp": {"xyz": [0.0, 0.0, 0.2]}})
+    assert move.tool[2, 3] == 0.2
+    assert moves_of("movej([0,0,0,0,0,0])")[0].tool[2, 3] == 0.0
+
+
+def test_encodings_are_read():
+    text = "# Stück\nmovej([0,0,0,0,0,0]) # für\n"
+    for data in (text.encode("latin-1"), b"\xef\xbb\xbf" + text.encode(), text.encode("utf-8")):
+        assert [move.line for move in moves_of(data.replace(b"\n", b"\r\n"))] == [2]
+    with pytest.raises(cl.ClearanceError, match="no text of single bytes"):
+        moves_of(text.encode("utf-16"))
+
+
+Q = "movej([0,0,0,0,0,0])"
+
+FAULTS = {
+    "if get_digital_in(1):\n"
+    + Q
+    + "\nend": "line 1: if decides on movej at line 2, and is not known",
+    "while not get_digital_in(1):\nsync()\nend": "line 1: while waits for what is not known",
+    "i = 0\nwhile True:\n"
+    + Q
+    + "\ni = i + 1\nend": "line 2: an endless loop that is never the same",
+    "servoj([0,0,0,0,0,0])": "line 1: servoj moves the robot on a way",
+    "grip(20)": "line 1: 'grip' is no known instruction",
+    "x = grip(20)": "line 1: 'grip' is no known instruction",
+    "movej(home)": "line 1: the target is not known: 'home' is in no file",
+    "movej(get_list())": "line 1: the target is not known: get_list() at line 1",
+    "movej([0,0,0])": "six numbers",
+    "movej([0,0,0,0,0,0], v=0)": "line 1: v is 0; more than 0",
+    "movej([0,0,0,0,0,0], speed=1)": "movej has no 'speed'",
+    "movej([0,0,0,0,0,0": "line 1: the file ends; ',', or ']' is needed",
+    "movej(p[0,0,0,0,0,0": "line 1: the file ends",
+    "def f():\n" + Q: "line 2: the file ends; 'end' is needed",
+    "def f():\n" + Q + "\nend\ndef g():\n" + Q + "\nend": "entry: functions f, g are there",
+    "def f():\nf()\nend\nf()": "more than 40 routines call one another",
+    "movej(1 / 0)": "this has no value",
+    "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
+    "while 1 == 1:\nx = [1]\nx[3] = 2\nend": "line 3: there is no part 3.0",
+    "movej([0,0,0,0,0,1e999])": "a number of this earth",
+    "a b": "line 1: 'b' is given; the end of the line is needed",
+}
+
+
+@pytest.mark.parametrize("text", FAULTS)
+def test_what_the_file_does_not_decide_is_refused_with_its_line(text):
+    with pytest.raises(cl.ClearanceError, match=r"^a\.script: ") as caught:
+        moves_of(text)
+    assert FAULTS[text] in str(caught.value)
+
+
+def test_what_moves_nothing_is_left_out_by_name():
+    text = "grip(20)\nwhile not get_digital_in(1):\nsync()\nend\n" + Q
+    found = read("a.script", text, skip=["grip", "while"])
+    assert len(found.moves) == 1
+    assert any(
+        re.search(r"left out as asked: grip \(line 1\), while \(line 2\)", one)
+        for one in found.notes
+    )
+    with pytest.raises(cl.ClearanceError, match="skip: movej moves the robot"):
+        moves_of(Q, skip=["movej"])
+
+
+def test_a_function_is_chosen_and_files_stand_beside():
+    main = "def f():\nhelp()\nend\ndef g():\nend"
+    beside = {"more.script": b"def help():\n\nmovej([0,0,0,0,0,0])\nend"}
+    (move,) = read("a.script", main, beside, entry="f").moves
+    assert (move.file, move.line) == ("more.script", 3)
+    with pytest.raises(cl.ClearanceError, match="there is no function 'h'"):
+        moves_of(main, entry="h")

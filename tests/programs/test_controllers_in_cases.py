@@ -1,0 +1,111 @@
+"""Programs of controllers in case files: the motion is that of our own form; the robot has to fit the file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import clearance as cl
+from tests.programs.arms import FILES
+from tests.programs.test_programs_in_cases import START, case, far, tool_at
+
+BEND = {"joint_2": {"offset": "-90deg", "sign": -1}}
+
+
+def controller_case(folder: Path, name: str, text: str, **asked) -> Path:
+    """A case with a program of a controller beside it."""
+    (folder / name).write_text(text)
+    program = {"file": name, "link": "tool_tip", **asked}
+    content = {
+        "robot": {"urdf": str(FILES["heron6"]), "base": {"xyz": [1.0, -0.5, 0.2]}},
+        "trajectory": {"program": program},
+        "scene": {"obstacles": [far()]},
+        "limits": {"fail": 0.0},
+    }
+    (folder / "controller.yaml").write_text(yaml.safe_dump(content))
+    return folder / "controller.yaml"
+
+
+def axes_of(joints: dict[str, float]) -> list[float]:
+    """The axes of a controller whose second is `BEND`."""
+    found = list(joints.values())
+    found[1] = -(found[1] + np.pi / 2)
+    return found
+
+
+def script(off: float = 0.0) -> str:
+    """A line across and an arc back; the first target has its axes beside it."""
+    at = tool_at(START)
+    (x, y, z), turn = at[:3, 3].tolist(), rotation_vector(at)
+    pose = lambda *xyz: f"p[{', '.join(map(repr, [*xyz, *turn]))}]"  # noqa: E731
+    return f"""set_tcp(p[0, 0, 0, 0, 0, 0])
+P1 = {pose(x, y, z)}
+movej({axes_of({**START, "joint_1": -0.4})})
+movej(get_inverse_kin(P1, qnear={(np.array(axes_of(START)) + off).tolist()}), v=0.8)
+movel({pose(x, y + 0.1, z)}, a=0.5, v=0.1)
+movec({pose(x + 0.03, y + 0.05, z)}, {pose(x, y, z)}, a=0.5, v=0.1)
+"""
+
+
+def rotation_vector(pose: np.ndarray) -> list[float]:
+    angle = np.arccos(0.5 * np.trace(pose[:3, :3]) - 0.5)
+    skew = pose[:3, :3] - pose[:3, :3].T
+    return (np.array([skew[2, 1], skew[0, 2], skew[1, 0]]) * angle / (2 * np.sin(angle))).tolist()
+
+
+def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
+    found = cl.load_case(controller_case(tmp_path, "a.script", script(), axes=BEND))
+    x, y, z = tool_at(START)[:3, 3].tolist()
+    place = lambda *xyz: {"frame": "base", "xyz": list(xyz)}  # noqa: E731
+    moves = [
+        {"ptp": {"joints": START, "speed": 0.5}},
+        {"lin": {"to": place(x, y + 0.1, z), "acceleration": 0.5, "speed": 0.1}},
+        {
+            "circ": {
+                "via": place(x + 0.03, y + 0.05, z),
+                "to": place(x, y, z),
+                "acceleration": 0.5,
+                "speed": 0.1,
+            }
+        },
+    ]
+    own = cl.load_case(case(tmp_path, moves, [far()], start={**START, "joint_1": -0.4}))
+    one, two = (each.robots[0].trajectory for each in (found, own))
+    assert np.abs(one.times - two.times).max() < 1e-9
+    assert np.abs(one.positions - two.positions).max() < 1e-9
+    assert [move.name for move in one.moves] == ["PTP 3", "PTP 4 → P1", "LIN 5", "CIRC 6"]
+    told = "\n".join(found.notes)
+    assert "with axes beside them agree" in told and "taken for the controller's base" in told
+
+
+def test_how_it_comes_to_its_first_point_is_not_measured(tmp_path):
+    path = controller_case(tmp_path, "a.script", script(), axes=BEND)
+    run = cl.check(path)
+    assert any("not measured: how robot" in notice.text for notice in run.record.case.notices)
+
+
+@pytest.mark.parametrize(("off", "axes"), [(0.02, BEND), (0.0, {})])
+def test_poses_and_axes_that_do_not_fit_the_robot_are_refused(tmp_path, off, axes):
+    path = controller_case(tmp_path, "a.script", script(off), axes=axes)
+    with pytest.raises(cl.ClearanceError, match=r"a.script: line 4: P1 and its axes are .* mm and"):
+        cl.load_case(path)
+
+
+def test_faults_of_the_motion_have_the_line(tmp_path):
+    path = controller_case(
+        tmp_path, "a.script", script() + "movel(p[9, 0, 0, 0, 0, 0])\n", axes=BEND
+    )
+    with pytest.raises(cl.ClearanceError, match=r"a.script: line 7: the tool cannot go on"):
+        cl.load_case(path)
+
+
+def test_keys_for_controllers_are_refused_beside_our_own_form(tmp_path):
+    path = case(tmp_path, [{"wait": 1.0}], [far()])
+    content = yaml.safe_load(path.read_text())
+    content["trajectory"]["program"] = {"file": "program.yaml", "skip": ["WaitDI"]}
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(cl.ClearanceError, match="skip: it is for the language of a controller"):
+        cl.load_case(path)
