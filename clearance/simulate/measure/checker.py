@@ -29,7 +29,8 @@ from clearance.world.kinematics import moving_positions
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.notice import KINDS, Notice, Severity, worst_first
-from clearance.world.pairs import measured_pairs
+from clearance.world.one_time import left_to_the_run, phase_at
+from clearance.world.pairs import Pair, measured_pairs, nothing_to_measure, selected_pairs
 from clearance.world.plausibility import notices_of
 from clearance.world.plausible_motion import largest_usual, notices_on_positions
 from clearance.world.reach import require_within_reach
@@ -86,8 +87,11 @@ class Checker:
     Threads may share a checker, but its questions are answered one at a time; give each thread its own.
 
     Args:
-        case: its trajectories say only which joints a configuration gives, and in which order. Obstacles that move
-            are where their tables begin, parts that are carried where they lie, and windows of time say nothing.
+        case: its trajectories say only which joints a configuration gives, and in which order.
+        time: [s] of the case's run, from which windows of time, parts in hands, obstacles that move, and actors
+            that come and go are taken; where two phases of the run meet, the later. Without it obstacles that
+            move are where their tables begin, parts that are carried lie where they are before, rows of `allow`
+            that hold for a time excuse nothing, and nobody is absent: a warning names each.
         accept: kinds of suspect input to accept ("units", "limits", …), with those that the case accepts.
 
     Attributes:
@@ -100,10 +104,15 @@ class Checker:
     Raises:
         SuspectInput: suspect input, as in `check`, in the case or in joints that no configuration gives.
         NothingToMeasure: no pair remains. BadInput: a body from a CAD file. BadDimension: a body far beyond any
-            place that a robot works at.
+            place that a robot works at. BadTime: a time outside the run.
+
+    Warns:
+        UserWarning: no time is given, and the case is otherwise at other times of its run.
     """
 
-    def __init__(self, case: Case, *, accept: Sequence[str] = ()) -> None:
+    def __init__(
+        self, case: Case, *, time: float | None = None, accept: Sequence[str] = ()
+    ) -> None:
         if not isinstance(case, Case):
             raise BadInput(
                 f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it"
@@ -111,10 +120,10 @@ class Checker:
         self._names = [placed.joints_given for placed in case.robots]
         self.joint_names = tuple(name for names in self._names for name in names)
         self._asked = AskedPositions(case, self._names, accept)
-        self.case = case
         self.notices = worst_first((*notices_of(case), *self._asked.at_rest()))
         self._asked.require_not_suspect(self.notices)
-        pairs, _ = measured_pairs(case)
+        case, pairs = _measured(case, time)
+        self.case = case
         bodies = [body.body_in(case) for pair in pairs for body in pair]
         require_no_shortfall(bodies, "a Checker")
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
@@ -216,6 +225,23 @@ class Checker:
     def _wanted(self, n_dimensions: int) -> str:
         rows = "n rows of " if n_dimensions == 2 else ""
         return f"{rows}one number for each of {', '.join(self.joint_names)}"
+
+
+def _measured(case: Case, time: float | None) -> tuple[Case, list[Pair]]:
+    """The case at a time [s] of its run, and its pairs; without one a warning says what is left out."""
+    if time is not None:
+        phase = phase_at(case, time)
+        pairs = selected_pairs(phase).pairs
+        if not pairs:
+            raise nothing_to_measure()
+        return phase.case, pairs
+    left_out = left_to_the_run(case)
+    if left_out:
+        told = "; ".join(left_out)
+        warnings.warn(
+            f"this Checker knows no time: {told}; give time=, [s] of the run", stacklevel=3
+        )
+    return case, measured_pairs(case)[0]
 
 
 def _placing(case: Case, names: Sequence[tuple[str, ...]]) -> tuple[np.ndarray, np.ndarray]:

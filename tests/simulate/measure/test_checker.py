@@ -1,12 +1,16 @@
 """One configuration after another against a run over the same positions, bit for bit, in any order."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadInput, BadShape, NotFinite, NothingToMeasure, SuspectInput
+from clearance.errors import BadInput, BadShape, BadTime, NotFinite, NothingToMeasure, SuspectInput
+from clearance.world.rules import Allowance
+from clearance.world.timing import Window
+from tests.cells import cell
 from tests.examples import first_fast
 from tests.made_cases import arm, at, ball, faces_of, flying
 
@@ -70,6 +74,40 @@ def test_two_robots_are_asked_about_together():
     assert len(checker.joint_names) == 2 * len(one.trajectory.joint_names)
     for i, row in enumerate(one.trajectory.positions):
         assert_row(checker.distance([*row, *row]), run.steps, i)
+
+
+def cell_with_a_window():
+    case = cell(3, apart=2.0)
+    row = Allowance(("left/*", "post"), window=Window(2.0, 4.0))
+    return replace(case, allow=(row,))
+
+
+def test_at_a_time_of_the_run_parts_are_in_hands_and_windows_hold_as_in_the_run():
+    case = cell_with_a_window()
+    run = cl.check(case, certify=False, accept=["units", "limits"])
+    positions = np.hstack([motion.positions for motion in run.record.motions])
+    ends = {0.0, 2.0, 4.0, *(t for one in case.carries for t in one.window.ends)}
+    times = run.steps["time"].to_pylist()
+    steps = [i for i, time in enumerate(times) if time not in ends]  # there the run has two answers
+    in_hands = [i for i in steps if any(c.window.holds(times[i], times[i]) for c in case.carries)]
+    for i in {*steps[:: len(steps) // 3], *in_hands[:: len(in_hands) // 2]}:
+        checker = cl.Checker(case, time=times[i], accept=["units", "limits"])
+        assert_row(checker.distance(positions[i]), run.steps, i)
+    with pytest.raises(BadTime, match=r"7 s is outside the run; a time from 0 s to 6 s"):
+        cl.Checker(case, time=7.0)
+
+
+def test_what_changes_in_the_run_is_left_out_only_with_a_warning():
+    case = cell_with_a_window()
+    with pytest.warns(UserWarning, match="give time=") as told:
+        cl.Checker(case, accept=["units", "limits"])
+    (one,) = told
+    for part in ("part 'part' is carried", "obstacle 'door' moves", "allow[0]"):
+        assert part in str(one.message)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cl.Checker(case, time=1.0, accept=["units", "limits"])
+        cl.Checker(swaying())
 
 
 def test_without_a_trajectory_all_joints_that_are_not_fixed_are_given():
