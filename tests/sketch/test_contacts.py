@@ -17,12 +17,6 @@ def verdict(s):
     return result.status, result.freedom, result.redundant
 
 
-def test_a_d_of_free_radius_and_length():
-    s = Sketch.load(SKETCHES / "d_cell.yaml")
-    assert verdict(s) == ("under", 2, [])
-    assert s.solve().freedom_of["rear"] == 1  # it slides and keeps its direction
-
-
 @pytest.mark.parametrize("given", [0, 1, 2])
 def test_a_d_with_its_dimensions_given_one_after_another(given):
     s = Sketch.load(SKETCHES / "d_cell.yaml")

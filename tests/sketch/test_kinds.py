@@ -115,16 +115,6 @@ def test_circles_touch_inside_and_outside(inside):
     assert gap == pytest.approx(2.0 if inside else 4.0, abs=1e-12)
 
 
-def test_same_side_mirrors_what_is_drawn_on_the_wrong_side():
-    s = Sketch()
-    a, b = s.point(0, 0), s.point(4, 0)
-    line = s.line(a, b)
-    p, q = s.point(1, 1), s.point(3, -0.8)
-    s.fix(a), s.fix(b), s.distance(p, a, 1.5), s.distance(p, b, 3.5)
-    s.distance(q, a, 3.2), s.distance(q, b, 1.4), s.same_side(p, q, line)
-    assert s.solve().solved and q.position[1] > 0.0 and p.position[1] > 0.0
-
-
 def test_apollonius_a_circle_from_three_tangencies():
     s = Sketch()
     p = [s.point(*q) for q in ((0, 0), (4, 0), (1, 3))]
