@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.findings.finding_text import finding_line
@@ -18,7 +19,7 @@ from clearance.simulate.measure.sections import section_plan
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
-from tests.programs.arms import FILES, arm
+from tests.programs.arms import FILES, arm, turned
 
 JOINTS = ("joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6")
 START = dict(zip(JOINTS, (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2), strict=True))
@@ -98,15 +99,77 @@ def test_a_line_of_no_length_changes_nothing(tmp_path):
     assert np.array_equal(one.times, two.times) and np.array_equal(one.positions, two.positions)
 
 
+def turned_places() -> list[dict]:
+    """Four targets about where the tool begins, each turned otherwise."""
+    start = tool_at(START)
+    ways = ((0.0, 0.1, 0.0), (0.06, 0.16, 0.03), (0.0, 0.2, 0.1), (0.05, 0.05, 0.1))
+    turns = ((0.1, 0.0, 0.2), (0.0, 0.0, 0.0), (-0.2, 0.1, 0.0), (0.0, 0.3, 0.1))
+    found = []
+    for way, turn in zip(ways, turns, strict=True):
+        quat = Rotation.from_matrix(turned(turn) @ start[:3, :3]).as_quat()
+        found.append(place(start[:3, 3] + way) | {"quat_xyzw": quat.tolist()})
+    return found
+
+
+@pytest.mark.slow
 def test_a_program_in_reverse_has_the_same_least_clearance(tmp_path):
-    move, middle, _ = line_and_arc_of_joints()
-    there = cl.load_case(case(tmp_path, [move], [ball(middle + [0.3, 0.0, 0.0])]))
-    trajectory = there.robots[0].trajectory
-    last = dict(zip(trajectory.joint_names, map(float, trajectory.positions[-1]), strict=True))
-    back = {"lin": {"to": place(tool_at(START)[:3, 3])}}
-    and_back = cl.load_case(case(tmp_path, [back], [ball(middle + [0.3, 0.0, 0.0])], start=last))
-    worst = [cl.check(one).record.worst.clearance for one in (there, and_back)]
-    assert worst[0] == pytest.approx(worst[1], abs=1e-6) and worst[0] > 0.0
+    a, via, b, c = turned_places()
+    start = tool_at(START)
+    home = place(start[:3, 3]) | {
+        "quat_xyzw": Rotation.from_matrix(start[:3, :3]).as_quat().tolist()
+    }
+    through = {"frame": "base", "xyz": via["xyz"]}
+    there = [{"lin": {"to": a}}, {"circ": {"via": through, "to": b}}, {"lin": {"to": c}}]
+    back = [{"lin": {"to": b}}, {"circ": {"via": through, "to": a}}, {"lin": {"to": home}}]
+    obstacles = [ball(np.array(via["xyz"]) + [0.0, 0.08, -0.15], 0.04)]
+    forth = cl.check(case(tmp_path, there, obstacles))
+    made = forth.record.case.robots[0].trajectory
+    last = dict(zip(made.joint_names, map(float, made.positions[-1]), strict=True))
+    again = cl.check(case(tmp_path, back, obstacles, start=last))
+    assert forth.worst["move"] == again.worst["move"] == "CIRC 2"
+    assert forth.worst["clearance"] == pytest.approx(again.worst["clearance"], abs=1e-6)
+    assert forth.worst["clearance"] > 0.0
+
+
+@pytest.mark.slow
+def test_a_program_that_moves_with_its_frame_and_the_scene_answers_the_same(tmp_path):
+    draw = np.random.default_rng(1)
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turned(draw.uniform(-2.0, 2.0, 3)), draw.uniform(-3.0, 3.0, 3)
+    moves = [{"lin": {"to": one | {"frame": "jig"}, "zone": 0.004}} for one in turned_places()]
+    del moves[-1]["lin"]["zone"]
+    least = []
+    for moved in (np.eye(4), pose):
+        frames = {"jig": {"on": "world"} | as_yaml(moved @ at_base())}
+        post = ball(tool_at(START)[:3, 3] + [0.0, 0.25, -0.1], 0.05)
+        post["pose"] = as_yaml(moved @ at(np.array(post["pose"]["xyz"])))
+        path = case(tmp_path, moves, [post], frames=frames)
+        content = yaml.safe_load(path.read_text())
+        content["robot"]["base"] = as_yaml(moved @ at_base())
+        path.write_text(yaml.safe_dump(content))
+        least.append(cl.check(path).record)
+    one, other = (record.case.robots[0].trajectory for record in least)
+    assert np.abs(one.positions - other.positions).max() < 1e-9
+    assert least[0].worst.clearance == pytest.approx(least[1].worst.clearance, abs=1e-9)
+    assert 0.0 < least[0].worst.clearance < 0.1 and least[0].worst.link == least[1].worst.link
+
+
+def as_yaml(pose: np.ndarray) -> dict:
+    """A pose (4, 4) as files have it."""
+    quat = Rotation.from_matrix(pose[:3, :3]).as_quat()
+    return {"xyz": pose[:3, 3].tolist(), "quat_xyzw": quat.tolist()}
+
+
+def at(place: np.ndarray) -> np.ndarray:
+    """(4, 4) a pose that is not turned."""
+    pose = np.eye(4)
+    pose[:3, 3] = place
+    return pose
+
+
+def at_base() -> np.ndarray:
+    """(4, 4) where the robot stands."""
+    return at(np.array(BASE))
 
 
 def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
