@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from clearance.world.case import Case, PlacedRobot
+from clearance.world.trajectory import MoveSpan
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,28 +17,24 @@ class RobotMoves:
     """The moves of one robot's program that take time.
 
     Attributes:
-        robot: its name. prefix: of its moves in tables; empty where there is one robot.
-        names: (m,) of the moves. starts, ends: (m,) [s] of the run. repeats: whether it begins again at its end.
+        robot: its name. names: (m,) of the moves, with that of the robot before them where several have programs.
+        starts, ends: (m,) [s] of the run. repeats: whether it begins again at its end.
     """
 
     robot: str
-    prefix: str
     names: Sequence[str]
     starts: np.ndarray
     ends: np.ndarray
     repeats: bool
 
     @classmethod
-    def of(cls, placed: PlacedRobot, prefix: str) -> RobotMoves | None:
-        """Those of a robot; None without a program."""
-        moves = () if placed.trajectory is None else placed.trajectory.moves
-        taken = [one for one in moves if one.end > one.start]
-        if not taken:
-            return None
+    def of(cls, placed: PlacedRobot, prefix: str) -> RobotMoves:
+        """Those of a robot that has some."""
+        taken = _taken(placed)
         edges = placed.timing.run_times(np.array([*(one.start for one in taken), taken[-1].end]))
         names = [prefix + one.name for one in taken]
         repeats = placed.timing.after == "loop"
-        return cls(placed.robot.name, prefix, names, edges[:-1], edges[1:], repeats)
+        return cls(placed.robot.name, names, edges[:-1], edges[1:], repeats)
 
     def places(self, times: np.ndarray) -> np.ndarray:
         """(n,) which move is made at times (n,) [s]; -1 for none. The end of a move is its own, not the next's."""
@@ -57,8 +54,10 @@ class MadeMoves:
     @classmethod
     def of(cls, case: Case) -> MadeMoves:
         """Those of a case."""
-        every = (RobotMoves.of(placed, case.prefix_of(placed)) for placed in case.robots)
-        return cls(tuple(one for one in every if one is not None))
+        programmed = [placed for placed in case.robots if _taken(placed)]
+        several = len(programmed) > 1
+        prefixes = (case.prefix_of(placed) if several else "" for placed in programmed)
+        return cls(tuple(map(RobotMoves.of, programmed, prefixes)))
 
     def codes(self, times: np.ndarray) -> tuple[np.ndarray, list[str]]:
         """(n,) which of some names is of times (n,) [s], -1 where no program goes on; and the names."""
@@ -97,3 +96,9 @@ class MadeMoves:
         if isinstance(start, float) and isinstance(end, float):
             found["moves"] = self.over(start, end)
         return found
+
+
+def _taken(placed: PlacedRobot) -> list[MoveSpan]:
+    """The moves of a robot's program that take time."""
+    moves = () if placed.trajectory is None else placed.trajectory.moves
+    return [one for one in moves if one.end > one.start]

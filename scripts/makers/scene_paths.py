@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from scripts.makers import door, handover, turntable
+from scripts.makers import door, handover, turntable, welding
 from scripts.makers.paths import (
     Arm,
     JointTable,
@@ -127,5 +127,9 @@ TABLES: dict[str, Callable[[], dict[str, Table]]] = {
     "dual_arm_handover": handover.tables,
     "turntable_cell": turntable.tables,
     "door_and_arm": door.tables,
+    "welding_cell": welding.tables,
 }
 """Scene name to the function that makes its tables, by file name."""
+
+PROGRAMS: dict[str, Callable[[], dict[str, str]]] = {"welding_cell": welding.programs}
+"""The same of the programs of robots, as texts."""

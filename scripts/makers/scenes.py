@@ -1,4 +1,4 @@
-"""Makes the trajectories, pose tables and meshes of scenes/; the case files beside them are written by hand.
+"""Makes the trajectories, programs, pose tables and meshes of scenes/; case files beside them are written by hand.
 
     python -m scripts.makers.scenes [--out REPOSITORY] [SCENE ...]
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from scripts.makers.paths import write_table
 from scripts.makers.scene_meshes import MESHES
-from scripts.makers.scene_paths import TABLES
+from scripts.makers.scene_paths import PROGRAMS, TABLES
 from scripts.makers.solids import write_stl
 
 
@@ -23,6 +23,8 @@ def make(root: Path, name: str) -> None:
         write_stl(folder / "meshes" / f"{mesh_name}.stl", shape())
     for file_name, table in TABLES[name]().items():
         write_table(folder / file_name, table)
+    for file_name, text in PROGRAMS.get(name, dict)().items():
+        (folder / file_name).write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ VERDICTS = {  # the statuses that occur, as scenes/README.md promises
     "dual_arm_handover": {"clear"},
     "turntable_cell": {"clear", "near"},
     "door_and_arm": {"clear", "near"},
+    "welding_cell": {"clear", "near"},
 }
 
 

@@ -32,8 +32,9 @@ def joint_tables() -> list[tuple[Path, dict]]:
         case = case_of(scene)
         for robot in case.get("robots") or [case["robot"]]:
             asked = robot.get("trajectory") or case["trajectory"]
-            path = scene / (asked if isinstance(asked, str) else asked["file"])
-            found.append((path, robot))
+            if isinstance(asked, str) or "file" in asked:
+                path = scene / (asked if isinstance(asked, str) else asked["file"])
+                found.append((path, robot))
     return found
 
 
@@ -76,7 +77,7 @@ def remade(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_all_scenes_are_there() -> None:
     names = {scene.name for scene in SCENES}
     assert names >= {"box_box", "box_pipe", "iiwa_pipe_rack", "panda_shelf", "hot_cell"}
-    assert names >= {"dual_arm_handover", "turntable_cell", "door_and_arm"}
+    assert names >= {"dual_arm_handover", "turntable_cell", "door_and_arm", "welding_cell"}
     assert all(case_of(scene)["name"] == scene.name for scene in SCENES)
 
 
@@ -127,6 +128,12 @@ def test_meshes_are_remade_byte_for_byte(mesh: Path, remade: Path) -> None:
 def test_urdf_is_remade_byte_for_byte(remade: Path) -> None:
     path = "robots/heron6/heron6.urdf"
     assert (remade / path).read_bytes() == (ROOT / path).read_bytes()
+
+
+@pytest.mark.cold
+@pytest.mark.parametrize("path", sorted(ROOT.glob("scenes/*/weld.yaml")), ids=name_of)
+def test_programs_are_remade_byte_for_byte(path: Path, remade: Path) -> None:
+    assert (remade / path.relative_to(ROOT)).read_bytes() == path.read_bytes()
 
 
 TABLES = sorted({path for path, _ in joint_tables()} | set(pose_tables()))

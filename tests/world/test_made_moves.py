@@ -45,6 +45,7 @@ def test_each_robot_that_makes_a_move_is_named_and_one_without_a_program_is_not(
     moves = made(
         robot("left", Timing()), robot("right", Timing(start=3.0)), robot("still", Timing(), ())
     )
+    assert made(robot("left", Timing()), robot("still", Timing(), ())).at(0.5) == "PTP 1"
     assert moves.at(0.5) == "left/PTP 1" and moves.at(3.5) == "left/LIN 3, right/PTP 1"
     assert (
         moves.over(0.5, 6.0) == "left/PTP 1 to right/LIN 3"

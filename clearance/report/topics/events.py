@@ -7,10 +7,10 @@ from dataclasses import asdict
 from typing import Any
 
 from clearance.record.row_status import status_counts
-from clearance.record.wording import count, mm, span_text
+from clearance.record.wording import count, mm, seconds, span_text
 from clearance.report.blocks import Cell, Content, Paragraph, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import at_moment, name_shown, time_of
+from clearance.report.moment import at_moment, name_shown
 from clearance.report.topic import Line, Topic
 
 MOST_ROWS, MOST_INTERVALS = 200, 4
@@ -64,7 +64,16 @@ def sections(content: PageContent) -> Iterator[Section]:
         return
     several = len(summary["rules"]) > 1
     rows = [Row([*_cells(event, several=several)], at_moment(event)) for event in found[:MOST_ROWS]]
-    heads = [">Time", ">Step", "What", ">mm", ">Least, mm", "Between", *(["Rule"] * several)]
+    heads = [
+        ">Time",
+        ">Step",
+        *(["Move"] * ("move" in found[0])),
+        "What",
+        ">mm",
+        ">Least, mm",
+        "Between",
+        *(["Rule"] * several),
+    ]
     notes = [faint(text) for text in _notes(summary, len(found) - len(rows))]
     yield Section("Events", [Table(heads, rows, "clickable", tall=True), *notes])
 
@@ -80,8 +89,10 @@ def _notes(summary: dict[str, Any], more: int) -> Iterator[str]:
 
 
 def _cells(event: dict[str, Any], *, several: bool) -> Iterator[Content | Cell]:
-    yield number(time_of(event))
+    yield number(seconds(event["time"]))
     yield number(f"{event['step']:,}{'+' if event['between'] else ''}")
+    if "move" in event:
+        yield event["move"]
     yield event["what"]
     unknown = event["clearance"] is None
     yield number("" if unknown else mm(event["clearance"]))
