@@ -12,6 +12,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from clearance.codes import code_of_error, coded
+
 MOST_NAMES, NEAREST_NAMES = 40, 5
 """Valid names that a message lists in full, and those that it lists of more."""
 
@@ -40,6 +42,16 @@ class ClearanceError(Exception):
         self.problem = problem
         self.where = where
         self.valid = valid
+
+    @property
+    def code(self) -> str:
+        """The stable code of this class of errors: `CL104`."""
+        return code_of_error(type(self))
+
+    @property
+    def line(self) -> str:
+        """The text with its code, as a user sees it."""
+        return coded(str(self), self.code)
 
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""

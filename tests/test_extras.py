@@ -93,7 +93,10 @@ def test_a_command_refuses_first_what_a_missing_library_could_not_do(
     assert run([*map(str, command)]) == ExitCode.BAD_INPUT
     told = capsys.readouterr()
     assert told.out == "" and list(tmp_path.iterdir()) == []
-    assert told.err == f"error: {line}, which is not installed; pip install 'clearance[{extra}]'\n"
+    assert (
+        told.err
+        == f"error: {line}, which is not installed; pip install 'clearance[{extra}]' [CL702]\n"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +110,7 @@ def test_view_says_which_extra_it_needs(hidden, report, capsys, library):
     hidden(library)
     assert run(["view", str(report)]) == ExitCode.BAD_INPUT
     line = f"the live view needs {library}, which is not installed; pip install 'clearance[view]'"
-    assert capsys.readouterr().err == f"error: {line}\n"
+    assert capsys.readouterr().err == f"error: {line} [CL702]\n"
 
 
 def refused_by(function, *arguments) -> str:

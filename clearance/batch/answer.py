@@ -25,11 +25,11 @@ from clearance.batch.shared_waivers import (
     failing_waivers_of_cells,
 )
 from clearance.batch.store import Store
+from clearance.codes import coded, codes
+from clearance.findings.doubts import UNUSED_WAIVER
 from clearance.findings.finding import NOT_PROVEN
 
-STALE = "stale waiver"
-
-STATUSES = ("clear", "near", STALE, NOT_PROVEN, "violated", "contact", "suspect", ERROR)
+STATUSES = ("clear", "near", UNUSED_WAIVER, NOT_PROVEN, "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
 
 BASES = {
@@ -66,11 +66,11 @@ class BatchAnswer:
     Attributes:
         rows: of the cases, in order, with the columns of `CASE`. Where a case has no answer, its status is
             "error", its text says why, and most columns are null.
-        stale: what is wrong with waivers that the cases share, one line each.
+        waiver_faults: what is wrong with waivers that the cases share, one line each.
     """
 
     rows: pa.Table
-    stale: tuple[str, ...] = ()
+    waiver_faults: tuple[str, ...] = ()
 
     def column(self, name: str) -> list[Any]:
         """A column, a value a case."""
@@ -101,13 +101,13 @@ class BatchAnswer:
     @property
     def exit_code(self) -> int:
         """The greatest of all cases, and 1 for a waiver that should go."""
-        return max([0, *self.column("exit_code"), VIOLATED if self.stale else 0])
+        return max([0, *self.column("exit_code"), VIOLATED if self.waiver_faults else 0])
 
     @property
     def status(self) -> str:
-        """The worst of all cases; "stale waiver" where that is all that fails."""
+        """The worst of all cases; "unused waiver" where that is all that fails."""
         worst = next(reversed(self.counts), "clear")
-        return STALE if self.stale and worst in ("clear", "near") else worst
+        return UNUSED_WAIVER if self.waiver_faults and worst in ("clear", "near") else worst
 
     @cached_property
     def bases(self) -> dict[str, int]:
@@ -169,7 +169,8 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
         for some in in_parts(items)
     ]
     rows = pa.concat_tables([CASE.empty_table(), *parts]).combine_chunks()
-    return BatchAnswer(rows, _stale(outcome, items, rows) if outcome.whole else ())
+    faults = _waiver_faults(outcome, items, rows) if outcome.whole else ()
+    return BatchAnswer(rows, tuple(coded(fault, codes()[UNUSED_WAIVER]) for fault in faults))
 
 
 def in_parts(values: Sequence[Item]) -> Iterator[Sequence[Item]]:
@@ -191,7 +192,7 @@ def _rows(
             yield row | {"case": item.name, "key": None}
 
 
-def _stale(outcome: Outcome, items: Sequence[Item], rows: pa.Table) -> tuple[str, ...]:
+def _waiver_faults(outcome: Outcome, items: Sequence[Item], rows: pa.Table) -> tuple[str, ...]:
     """What is wrong with waivers that cases share. While a case has no row it may be the one that needs a waiver:
     then only those that are expired are wrong.
     """

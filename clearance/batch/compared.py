@@ -61,8 +61,10 @@ def compared_batches(before: Path, now: Path) -> BatchComparison:
         for name in old.numbers
         if name not in new.numbers
     ]
-    stale = tuple(line for line in new.answer.stale if line not in old.answer.stale)
-    return BatchComparison((*cases, *gone), stale)
+    waiver_faults = tuple(
+        line for line in new.answer.waiver_faults if line not in old.answer.waiver_faults
+    )
+    return BatchComparison((*cases, *gone), waiver_faults)
 
 
 def _compared_case(name: str, old: _Answer, new: _Answer) -> ComparedCase:

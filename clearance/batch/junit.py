@@ -29,7 +29,7 @@ def write_batch_junit(answer: BatchAnswer, name: str, path: Path) -> None:
 
 
 def _results(answer: BatchAnswer) -> Iterator[TestResult]:
-    yield from (TestResult("waiver", text, text, "StaleWaiver") for text in answer.stale)
+    yield from (TestResult("waiver", text, text, "UnusedWaiver") for text in answer.waiver_faults)
     yield from map(_of_case, answer.rows.select(_COLUMNS).to_pylist())
 
 

@@ -21,6 +21,7 @@ from clearance.batch.manifest_file import TrajectoryOptions
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.shared_waivers import as_shared
 from clearance.case.case_file import CellFile, load_cell, read_case, with_trajectory_file
+from clearance.codes import code_of_error, coded
 from clearance.errors import ClearanceError, Incomplete
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.files.mesh_paths import variables_of
@@ -122,9 +123,10 @@ class _Work:
         try:
             self._measure(item)
         except ClearanceError as error:
-            self.faults.append(Fault(item.number, str(error)))
+            self.faults.append(Fault(item.number, error.line))
         except Exception as error:
             text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
+            text = coded(text, code_of_error(type(error)))
             self.faults.append(Fault(item.number, text, traceback.format_exc()))
 
     def _measure(self, item: Item) -> None:

@@ -41,7 +41,7 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
         name=place.name,
         verdict=_counted(answer),
         worst=answer.status.split()[0],
-        basis="; ".join([_basis(answer), *answer.stale]),
+        basis="; ".join([_basis(answer), *answer.waiver_faults]),
         data=page_data(answer, place),
     )
 

@@ -18,7 +18,7 @@ from clearance.batch.store_files import CASES, FINDINGS
 from clearance.errors import BadBatch
 from clearance.files import written_file
 
-_STALE = b"stale waivers"
+_WAIVER_FAULTS = b"unused waivers"
 """Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""
 
 _FINDING = pa.schema([pa.field("case", pa.string()), *FINDING])
@@ -30,7 +30,7 @@ def write_tables(answer: BatchAnswer, store: Store) -> None:
     Raises:
         Unwritable: there is no way or no room.
     """
-    marked = answer.rows.replace_schema_metadata({_STALE: json.dumps(answer.stale)})
+    marked = answer.rows.replace_schema_metadata({_WAIVER_FAULTS: json.dumps(answer.waiver_faults)})
     with _writer(store.place / CASES, marked.schema) as cases:
         cases.write_table(marked)
     with _writer(store.place / FINDINGS, _FINDING) as findings:
@@ -53,8 +53,8 @@ def written_answer(place: Path) -> BatchAnswer | None:
             where=str(place),
             valid="the same `clearance batch` writes it anew",
         )
-    stale = (rows.schema.metadata or {}).get(_STALE, b"[]")
-    return BatchAnswer(rows, tuple(json.loads(stale)))
+    waiver_faults = (rows.schema.metadata or {}).get(_WAIVER_FAULTS, b"[]")
+    return BatchAnswer(rows, tuple(json.loads(waiver_faults)))
 
 
 @contextmanager

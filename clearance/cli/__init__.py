@@ -1,8 +1,8 @@
 """The command line: one file a command, and here what they share: exit codes and one-line errors.
 
-Exit codes: 0 clear; 1 a limit is violated, or a waiver is stale; 2 bad input, or input that is suspect; 3 the
-cross-check disagrees; 4 incomplete, of several cases some have no answer yet (each puts those before it in doubt,
-so the greatest that holds goes); 70 a fault of this program, with its traceback; 130 interrupted.
+Exit codes: 0 clear; 1 a limit is violated, or a waiver is unused or expired; 2 bad input, or suspect input;
+3 the cross-check disagrees; 4 incomplete, of several cases some have no answer yet (each puts those before it in
+doubt, so the greatest that holds goes); 70 a fault of this program, with its traceback; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from enum import IntEnum
 from typing import NoReturn
+
+from clearance.codes import code_of_error, coded
 
 
 class ExitCode(IntEnum):
@@ -52,14 +54,15 @@ def run(arguments: Sequence[str]) -> int:
             return ExitCode.PIPE_CLOSED
         raise
     except OSError as error:
-        _say(f"error: {_shown(error)}")
+        _say(coded(f"error: {_shown(error)}", code_of_error(type(error))))
         return ExitCode.BAD_INPUT
-    except Exception:
+    except Exception as error:
         import traceback
 
         with suppress(OSError):
             traceback.print_exc()
-        _say("error: a fault of this program, not of the input; please report the lines above")
+        told = "error: a fault of this program, not of the input; please report the lines above"
+        _say(coded(told, code_of_error(type(error))))
         return ExitCode.FAULT
 
 
@@ -82,13 +85,14 @@ def _dispatch(arguments: list[str]) -> int:
         error.show()
         return ExitCode.BAD_INPUT
     except click.ClickException as error:
-        _say(f"error: {' '.join(error.format_message().split())}{_hint(error)}")
+        told = f"error: {' '.join(error.format_message().split())}{_hint(error)}"
+        _say(coded(told, code_of_error(type(error))))
         return ExitCode.BAD_INPUT
     except Incomplete as error:
-        _say(f"incomplete: {error}")
+        _say(f"incomplete: {error.line}")
         return ExitCode.INCOMPLETE
     except ClearanceError as error:
-        _say(f"error: {error}")
+        _say(f"error: {error.line}")
         return ExitCode.BAD_INPUT
 
 

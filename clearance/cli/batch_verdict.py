@@ -65,7 +65,7 @@ def _counted(answer: BatchAnswer) -> str:
 
 
 def _print_facts(answer: BatchAnswer) -> None:
-    for text in answer.stale:
+    for text in answer.waiver_faults:
         click.echo(shown(f"  waivers     {text}"))
     if n_waived := answer.n_waived:
         click.echo(

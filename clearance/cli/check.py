@@ -52,7 +52,7 @@ def check(
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
     written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear
-    (or near), 1 a limit is violated or, with tolerances, not proven, or a waiver is stale, 2 bad
+    (or near), 1 a limit is violated or, with tolerances, not proven, or a waiver is unused or expired, 2 bad
     or suspect input, 3 the cross-check disagrees; the greatest that holds. A baseline does not
     change it: `clearance compare` has an exit code of its own.
     """

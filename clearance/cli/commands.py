@@ -13,6 +13,7 @@ from clearance.cli.check import check
 from clearance.cli.comparison import compare
 from clearance.cli.convert import convert
 from clearance.cli.demo import demo
+from clearance.cli.explain import explain
 from clearance.cli.gain import gain
 from clearance.cli.new import new
 from clearance.cli.pack import pack
@@ -50,6 +51,7 @@ for command in (
     compare,
     convert,
     demo,
+    explain,
     gain,
     new,
     pack,

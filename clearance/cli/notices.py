@@ -17,4 +17,4 @@ def say_notices(case: Case) -> None:
 
     for notice in notices_of(case):
         if notice.severity is not Severity.SUSPECT or notice.kind not in case.accept:
-            click.echo(f"{notice.severity}: {case.name}: {notice.text}", err=True)
+            click.echo(f"{notice.severity}: {case.name}: {notice.line}", err=True)

@@ -42,7 +42,7 @@ def pre_commit(files: tuple[Path, ...], **given: Any) -> int:
         try:
             worst = max(worst, *(_checked(path, options) for path in cases_in(file)))
         except ClearanceError as error:
-            click.echo(f"{file}: {error}", err=True)
+            click.echo(f"{file}: {error.line}", err=True)
             worst = max(worst, ExitCode.BAD_INPUT)
     return worst
 
@@ -62,10 +62,10 @@ def _checked(path: Path, options: CheckOptions) -> ExitCode:
 def _why(run: Run) -> list[str]:
     """What is broken, the worst first, then what else fails the run: input in doubt, waivers that should go."""
     from clearance.findings.doubts import doubts_of
-    from clearance.findings.finding_text import finding_line
+    from clearance.findings.finding_text import coded_line
     from clearance.report.comparison_text import doubt_text
 
-    broken = [finding_line(finding) for finding in run.findings if finding.fails]
+    broken = [coded_line(finding) for finding in run.findings if finding.fails]
     more = [f"and {len(broken) - MOST} more"] if len(broken) > MOST else []
     doubts = [
         doubt_text(doubt) for doubt in doubts_of(run.record, run.report.waived) if doubt.fails

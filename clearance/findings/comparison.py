@@ -145,11 +145,11 @@ class BatchComparison:
 
     Attributes:
         cases: in the order of now, then those that only before has.
-        stale: what is wrong now with waivers that cases share, and was not before, one line each.
+        waiver_faults: what is wrong now with waivers that cases share, and was not before, one line each.
     """
 
     cases: tuple[ComparedCase, ...]
-    stale: tuple[str, ...] = ()
+    waiver_faults: tuple[str, ...] = ()
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -167,7 +167,7 @@ class BatchComparison:
     @property
     def passed(self) -> bool:
         """True if nothing alarms, and as much is known as before."""
-        return not (self.failing or self.stale)
+        return not (self.failing or self.waiver_faults)
 
 
 def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE) -> Comparison:

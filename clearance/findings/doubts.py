@@ -6,10 +6,12 @@ the verdict that is drawn from it (`verdict`).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from clearance.codes import codes
 from clearance.world.notice import Notice, Severity
 
 if TYPE_CHECKING:
@@ -17,10 +19,10 @@ if TYPE_CHECKING:
     from clearance.record.record import Record
     from clearance.world.case import Case
 
-SUSPECT, DISPUTED, STALE_WAIVER = "suspect", "disputed", "stale waiver"
+SUSPECT, DISPUTED, UNUSED_WAIVER = "suspect", "disputed", "unused waiver"
 NOT_CHECKED, WARNING, ACCEPTED, NOTE = "not checked", "warning", "accepted", "note"
 
-FAILING = (SUSPECT, DISPUTED, STALE_WAIVER)
+FAILING = (SUSPECT, DISPUTED, UNUSED_WAIVER)
 """Those by which a run is not passed, whatever was measured."""
 
 KINDS = (*FAILING, NOT_CHECKED, WARNING, ACCEPTED, NOTE)
@@ -48,6 +50,12 @@ class Doubt:
     text: str
 
     @property
+    def code(self) -> str:
+        """The stable code of its kind; empty for a kind that a file has and this version does not."""
+        of = self.about if self.kind in (SUSPECT, WARNING, ACCEPTED) else self.kind
+        return not_checked_code(self.text) if of == NOT_CHECKED else codes().get(of, "")
+
+    @property
     def fails(self) -> bool:
         """True if the run is not passed by it."""
         return self.kind in FAILING
@@ -67,6 +75,11 @@ def open_suspects(record: Record) -> tuple[Notice, ...]:
     """The notices of suspect input that the case does not accept."""
     suspects = (one for one in record.notices if one.severity is Severity.SUSPECT)
     return tuple(one for one in suspects if one.kind not in record.case.accept)
+
+
+def not_checked_code(name: str) -> str:
+    """The stable code of what is not checked, whichever robot it is of."""
+    return codes().get(re.split(r" of | \(", name)[0], "")
 
 
 def not_checked(case: Case) -> Iterator[str]:
@@ -108,4 +121,4 @@ def _of_answer(record: Record, judgement: Judgement | None) -> Iterator[Doubt]:
             DISPUTED, check.peer, f"{check.peer} disagrees at {n_steps} of {check.n_steps} steps"
         )
     for fault in () if judgement is None else judgement.faults:
-        yield Doubt(STALE_WAIVER, "", fault)
+        yield Doubt(UNUSED_WAIVER, "", fault)

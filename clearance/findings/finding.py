@@ -9,6 +9,7 @@ import hashlib
 import json
 from dataclasses import dataclass, replace
 
+from clearance.codes import codes
 from clearance.record.status import Status
 from clearance.world.made_moves import MadeMoves
 
@@ -118,6 +119,11 @@ class Finding:
         move = "" if self.time is None else made.at(self.time)
         stretch = "" if self.start is None or self.end is None else made.over(self.start, self.end)
         return replace(self, move=move, moves=stretch)
+
+    @property
+    def code(self) -> str:
+        """The stable code of its kind; empty for a kind that a file has and this version does not."""
+        return codes().get(self.kind, "")
 
     @property
     def broken(self) -> bool:

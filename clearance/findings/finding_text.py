@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from clearance.codes import coded
 from clearance.findings.finding import (
     JOINT_LIMITS,
     OF_TOLERANCES,
@@ -44,6 +45,11 @@ def finding_line(finding: Finding) -> str:
             f"nothing is below the warn limit of {limit_mm(finding.warn)} mm{of_rule(finding.rule)}"
         )
     return f"{_how_near(finding)}: {bodies_text(finding)} at {when_text(finding)}"
+
+
+def coded_line(finding: Finding) -> str:
+    """The same with its code."""
+    return coded(finding_line(finding), finding.code)
 
 
 def _how_near(finding: Finding) -> str:

@@ -75,6 +75,9 @@ def findings_text(found: FindingList) -> str:
     """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances and moves
     nothing where there are none."""
     told = asdict(found)
+    for name in ("doubts", "findings"):
+        rows = zip(told[name], getattr(found, name), strict=True)
+        told[name] = [row | {"code": one.code} for row, one in rows]
     if not found.measured.tolerances:
         del told["measured"]["tolerances"]
     for finding in told["findings"]:

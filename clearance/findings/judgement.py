@@ -164,7 +164,7 @@ class _WaivedRun:
     def _use(self, i: int, broken: bool) -> WaiverUse:
         waiver = self.waivers[i]
         if self._expired(i):
-            return WaiverUse(waiver, fault=_stale(waiver, f"has expired on {waiver.until}"))
+            return WaiverUse(waiver, fault=_unless_shared(waiver, f"has expired on {waiver.until}"))
 
         def is_of(*pair: Any) -> bool:
             return self._owner(*pair) == i
@@ -173,7 +173,7 @@ class _WaivedRun:
         findings = [f for rule in answers for f in self._covered(waiver, rule)]
         if not any(finding.broken for finding in findings):
             why = f"is not needed: {self._why_not_needed(i)}"
-            return WaiverUse(waiver, fault=_stale(waiver, why))
+            return WaiverUse(waiver, fault=_unless_shared(waiver, why))
         failing = [finding for finding in findings if finding.fails]
         why = why_undecided(self.session.record.case)
         fault = _fault(waiver, failing[0], why) if failing else ""
@@ -201,7 +201,7 @@ class _WaivedRun:
         return told or "what it is of keeps to its rule, or a later waiver is of it"
 
 
-def _stale(waiver: Waiver, why: str) -> str:
+def _unless_shared(waiver: Waiver, why: str) -> str:
     """Why a waiver should go; empty for one that other cases may need."""
     return "" if waiver.shared else f"{waiver} {why}"
 

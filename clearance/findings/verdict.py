@@ -11,9 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
-from clearance.findings.finding import NOT_PROVEN, Finding
-from clearance.findings.finding_text import finding_line, waived_lines
+from clearance.codes import coded, codes
+from clearance.findings.doubts import (
+    DISPUTED,
+    SUSPECT,
+    UNUSED_WAIVER,
+    not_checked,
+    not_checked_code,
+    open_suspects,
+)
+from clearance.findings.finding import CLEARANCE, NOT_PROVEN, PROFILE, UNPROVEN, Finding
+from clearance.findings.finding_text import coded_line, waived_lines
 from clearance.findings.judgement import Judgement
 from clearance.findings.of_budget import tolerance_lines
 from clearance.findings.of_rule import code_of, why_undecided
@@ -44,9 +52,6 @@ from clearance.world.rules import DEFAULT
 MOTION, SAMPLES, POSE = "motion", "samples", "pose"
 """What a verdict rests on: a proof for the continuous motion, the samples of the trajectory only, or one pose."""
 
-STALE = "stale waiver"
-"""The status where all would be well, but for a waiver that has expired or that nothing needs."""
-
 KEPT, ACCEPTED = "kept", "accepted"
 """What tolerances make of limits: proven to be kept with them, or not, which may pass; else `NOT_PROVEN`."""
 
@@ -59,7 +64,7 @@ class Verdict:
 
     Attributes:
         status: "clear", "near", "violated", "contact", "suspect" where input is in doubt and not accepted, or
-            "stale waiver" where a waiver has expired, or is not needed, and all else is well; "not proven" where
+            "unused waiver" where a waiver has expired, or is not needed, and all else is well; "not proven" where
             all limits are kept as measured and one is not proven to be with the case's tolerances.
         measured: the status by what was measured alone, less what is waived.
         basis: "motion", "samples" or "pose", of a run of one step.
@@ -75,7 +80,7 @@ class Verdict:
         clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
             for one clock and all of the run.
         waived: what is below a limit and waived, one line each. n_waivers: how many waivers that takes.
-        stale: what is wrong with waivers, one line each.
+        waiver_faults: what is wrong with waivers, one line each.
         tolerances: what they make of limits that are kept as measured: "kept", "not proven", or "accepted" where
             that is so and may pass; empty without any.
         with_tolerances: what they leave, one line each.
@@ -96,7 +101,7 @@ class Verdict:
     clocks: str = ""
     waived: tuple[str, ...] = ()
     n_waivers: int = 0
-    stale: tuple[str, ...] = ()
+    waiver_faults: tuple[str, ...] = ()
     tolerances: str = ""
     with_tolerances: tuple[str, ...] = ()
     at_level: str = ""
@@ -105,17 +110,20 @@ class Verdict:
     @property
     def scope(self) -> tuple[str, ...]:
         """The pairs of links that were measured, and all that was not checked, one line each."""
-        return (*self.self_clearance, *(f"{name} not checked" for name in self.not_checked))
+        left_out = (
+            coded(f"{name} not checked", not_checked_code(name)) for name in self.not_checked
+        )
+        return (*self.self_clearance, *left_out)
 
     @property
     def exit_code(self) -> int:
-        """0 clear or near, 1 violated, contact, not proven with tolerances or a stale waiver, 2 suspect, 3 a peer
-        disagrees; the greatest that holds."""
+        """0 clear or near, 1 violated, contact, not proven with tolerances or an unused waiver, 2 suspect, 3 a
+        peer disagrees; the greatest that holds."""
         if self.disputed_by is not None:
             return 3
         if self.status == SUSPECT:
             return 2
-        failing = self.stale or self.tolerances == NOT_PROVEN
+        failing = self.waiver_faults or self.tolerances == NOT_PROVEN
         return 0 if self.measured in _PASSING and not failing else 1
 
     @property
@@ -138,7 +146,7 @@ class Verdict:
             text += " at a single pose"
         if self.clocks:
             text += f", {self.clocks}"
-        if self.status in (SUSPECT, STALE):
+        if self.status in (SUSPECT, UNUSED_WAIVER):
             text = f"{shown(self.status)} (would be {text})"
         return text if self.disputed_by is None else f"{text}, but {self.disputed_by} disagrees"
 
@@ -174,19 +182,19 @@ def verdict_of(
     unproven = _unproven(record, judging)
     worst = record.worst if judgement is None else judgement.worst
     reasons = [reason for reason in (_occurring(record, worst), unproven) if reason is not None]
-    open_lines = [finding_line(finding) for finding in of_tolerances]
+    open_lines = [coded_line(finding) for finding in of_tolerances]
     reasons = [*open_lines, *reasons] if measured in _PASSING else [*reasons, *open_lines]
-    stale = () if judgement is None else judgement.faults
-    reasons += stale
-    reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
-    broken = [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
-    reasons += broken
-    reasons += [f"suspect {one.kind}: {one.text}" for one in suspects]
+    faults = () if judgement is None else judgement.faults
+    waiver_faults = tuple(_of_kind(fault, UNUSED_WAIVER) for fault in faults)
+    reasons += waiver_faults
+    kept = (_of_kind(profile_text(one), PROFILE) for one in record.profiles if not one.passed)
+    broken = [f"{one.kind}: {one.line}" for one in notices if one.severity is Severity.VIOLATED]
+    reasons += [*kept, *broken, *(f"suspect {one.kind}: {one.line}" for one in suspects)]
     if disputing is not None:
         n_steps = count(len(disputing.disagreements), "step")
-        reasons.append(f"{disputing.peer} disagrees at {n_steps}")
+        reasons.append(_of_kind(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
     return Verdict(
-        status=SUSPECT if suspects else _less_open(measured, of_tolerances, stale),
+        status=SUSPECT if suspects else _less_open(measured, of_tolerances, waiver_faults),
         measured=measured,
         basis=record.basis,
         reasons=tuple(reasons),
@@ -201,18 +209,23 @@ def verdict_of(
         clocks=_when(record.case),
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
-        stale=stale,
+        waiver_faults=waiver_faults,
         tolerances=_tolerances(record.case, measured, of_tolerances),
         with_tolerances=tolerance_lines(record),
         at_level=_at_level(judging),
     )
 
 
-def _less_open(measured: str, open_limits: Sequence[Finding], stale: Sequence[str]) -> str:
+def _of_kind(text: str, kind: str) -> str:
+    """A line with the code of its kind."""
+    return coded(text, codes()[kind])
+
+
+def _less_open(measured: str, open_limits: Sequence[Finding], waiver_faults: Sequence[str]) -> str:
     """The status, where no input is suspect."""
     if measured not in _PASSING:
         return measured
-    return NOT_PROVEN if open_limits else STALE if stale else measured
+    return NOT_PROVEN if open_limits else UNUSED_WAIVER if waiver_faults else measured
 
 
 def _tolerances(case: Case, measured: str, open_limits: Sequence[Finding]) -> str:
@@ -266,7 +279,7 @@ def _occurring(record: Record, worst: Moment | None) -> str | None:
     """The moment that stands worst of what decides, if it is below a limit."""
     if worst is None or record.status_of(worst) == Status.CLEAR:
         return None
-    return moment_line(record, worst)
+    return _of_kind(moment_line(record, worst), CLEARANCE)
 
 
 def _nearest(record: Record) -> str | None:
@@ -299,10 +312,11 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
     start, end = map(float, record.motions[0].times[[step, step + 1]])
     when = span_text(start, end, record.moves.over(start, end))
     above = f"above the {name} limit of {limit_mm(limit)} mm" if limit > 0.0 else "out of contact"
-    return (
+    told = (
         f"not proven to stay {above}{of_rule(rule.name)}: at least "
         f"{mm(least)} mm, {when}; {why_undecided(record.case)}"
     )
+    return _of_kind(told, UNPROVEN)
 
 
 def _at_level(judging: Sequence[RuleAnswer]) -> str:
@@ -341,9 +355,9 @@ def profile_text(answer: ProfileAnswer) -> str:
 
 def _warnings(record: Record, notices: tuple[Notice, ...]) -> list[str]:
     """Warnings, and suspect input that is accepted; each once."""
-    told = [one.text for one in notices if one.severity is Severity.WARNING]
+    told = [one.line for one in notices if one.severity is Severity.WARNING]
     told += [
-        f"{one.text} (accepted: {one.kind})"
+        f"{one.line} (accepted: {one.kind})"
         for one in notices
         if one.severity is Severity.SUSPECT and one.kind in record.case.accept
     ]

@@ -46,5 +46,5 @@ def _reasons(run: Run) -> list[str]:
 def _doubts(run: Run) -> list[str]:
     """Why what was measured is not to be trusted, whichever pair is asked about."""
     verdict = run.verdict
-    told = [f"suspect {one.kind}: {one.text}" for one in verdict.suspects]
+    told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
     return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]

@@ -192,7 +192,9 @@ def _rule_names(content: dict[str, Any]) -> Iterator[str]:
 def _one_line(excinfo: pytest.ExceptionInfo[BaseException]) -> str | None:
     """What is to be told of an error of ours; None for others, which keep their traceback."""
     error = excinfo.value
-    return str(error) if isinstance(error, NotClear | ClearanceError) else None
+    if isinstance(error, ClearanceError):
+        return error.line
+    return str(error) if isinstance(error, NotClear) else None
 
 
 def check_case(path: Path, config: pytest.Config) -> Run:

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.findings.finding import Finding
-from clearance.findings.finding_text import finding_line
+from clearance.findings.finding_text import coded_line
 from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
 from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.record.record import Record
@@ -42,7 +42,9 @@ def annotation_lines(model: ReportModel, root: Path) -> Iterator[str]:
 
 
 def _of_verdict(verdict: Verdict) -> list[str]:
-    told = [f"suspect {one.kind}: {one.text}" for one in verdict.suspects] + [*verdict.stale]
+    told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects] + [
+        *verdict.waiver_faults
+    ]
     if verdict.disputed_by is not None:
         told.append(f"{verdict.disputed_by} disagrees")
     return told
@@ -67,7 +69,7 @@ def _of_findings(record: Record, findings: tuple[Finding, ...], root: Path) -> I
             if row is not None and row.line is not None:
                 place["line"] = str(row.line)
             title = {"title": f"clearance: {record.case.name}"}
-            yield command("error", place | title, finding_line(finding))
+            yield command("error", place | title, coded_line(finding))
 
 
 def _shown(path: str, root: Path) -> str:

@@ -138,7 +138,7 @@ def print_comparison(comparison: Comparison) -> None:
 def print_batch_comparison(found: BatchComparison) -> None:
     """What became of cases and findings of a batch, on stdout: what alarms first."""
     _print([f"since the baseline: {_batch_verdict(found)}"])
-    _print([f"waivers: {line}" for line in found.stale])
+    _print([f"waivers: {line}" for line in found.waiver_faults])
     _print(_shared_doubts(found))
     alone = [one for one in found.cases if one.comparison is None]
     _print(f"{one.name}: {one.why}" for one in sorted(alone, key=lambda one: not one.alarms))
@@ -149,8 +149,8 @@ def _batch_verdict(found: BatchComparison) -> str:
     told = []
     if found.failing:
         told.append(f"NEW, WORSE OR LESS KNOWN in {count(len(found.failing), 'case')}")
-    if found.stale:
-        told.append("NEW stale waiver")
+    if found.waiver_faults:
+        told.append("NEW unused waiver")
     findings = ", ".join(f"{n:,} {change}" for change, n in found.counts.items())
     told.append(f"{count(len(found.cases), 'case')}: {findings or 'no finding to compare'}")
     return "; ".join(told)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from clearance.codes import coded
 from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
@@ -68,7 +69,7 @@ def doubt_lines(comparison: Comparison) -> list[str]:
 def doubt_text(doubt: Doubt) -> str:
     """A doubt in one line, its kind before."""
     about = f" {doubt.about}" if doubt.about and doubt.kind not in (ACCEPTED, NOTE) else ""
-    return f"{doubt.kind}{about}: {doubt.text}"
+    return coded(f"{doubt.kind}{about}: {doubt.text}", doubt.code)
 
 
 def comparison_cells(row: ComparedFinding) -> tuple[str, ...]:

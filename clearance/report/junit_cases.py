@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from clearance.codes import coded, codes
+from clearance.findings.doubts import UNUSED_WAIVER
 from clearance.findings.finding import (
     CLEARANCE,
     OF_TOLERANCES,
@@ -15,7 +17,7 @@ from clearance.findings.finding import (
     WAIVED_TOLERANCES,
     Finding,
 )
-from clearance.findings.finding_text import bodies_text, finding_line, waived_text
+from clearance.findings.finding_text import bodies_text, coded_line, waived_text
 from clearance.findings.judgement import Judgement
 from clearance.findings.of_budget import budget_lines
 from clearance.findings.of_rule import code_of
@@ -100,8 +102,9 @@ def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
 
 def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
     for use in judgement.uses:
-        fault = "StaleWaiver" if use.fault else ""
-        yield TestResult("waiver", str(use.waiver), use.fault or use.waiver.reason, fault)
+        fault = "UnusedWaiver" if use.fault else ""
+        text = coded(use.fault, codes()[UNUSED_WAIVER]) if fault else use.waiver.reason
+        yield TestResult("waiver", str(use.waiver), text, fault)
 
 
 def _of_rules(model: ReportModel) -> Iterator[TestResult]:
@@ -141,7 +144,10 @@ def _of_pairs(model: ReportModel) -> Iterator[TestResult]:
 def _of_finding(finding: Finding) -> TestResult:
     by = "" if finding.rule == DEFAULT else f" [{finding.rule}]"
     name = f"{bodies_text(finding)}{by}"
-    group, text = finding.body_a, f"{finding_line(finding)} (finding {finding.id})"
+    group, text = (
+        finding.body_a,
+        f"{coded_line(finding)} (finding {finding.id})",
+    )
     if finding.kind == UNPROVEN:
         group, name = "unproven", f"{name or 'the motion between the samples'}"
     if finding.kind in OF_TOLERANCES:
@@ -222,4 +228,4 @@ def _of_notices(record: Record) -> Iterator[TestResult]:
         if notice.severity is Severity.SUSPECT and notice.kind in record.case.accept:
             fault = ""
         name = f"{notice.kind}: {notice.text}"
-        yield TestResult(str(notice.severity), name, notice.text, fault)
+        yield TestResult(str(notice.severity), name, notice.line, fault)

@@ -25,7 +25,7 @@ def run_html(model: ReportModel) -> str:
         *([f"nearest of all {verdict.nearest}"] if verdict.nearest else []),
         *verdict.with_tolerances,
         *verdict.scope,
-        *(f"suspect {one.kind}: {one.text}" for one in verdict.suspects),
+        *(f"suspect {one.kind}: {one.line}" for one in verdict.suspects),
         *verdict.warnings,
     ]
     several = bool(record.case.limits.rules)

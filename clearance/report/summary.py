@@ -12,7 +12,7 @@ from typing import Any
 from clearance.report.model import ReportModel
 from clearance.report.topics import EVERY
 
-FORMAT = 3
+FORMAT = 4
 """Which keys there are: `scripts/docs/results.md`."""
 
 

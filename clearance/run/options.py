@@ -27,13 +27,14 @@ from clearance.options import (
     options_in,
 )
 from clearance.tolerance import CERTIFY_GAP
-from clearance.world.notice import GAPS, KINDS
+from clearance.world.notice import GAPS, KINDS, accepted_kind
 
 if TYPE_CHECKING:
     from clearance.world.budget import Budget
     from clearance.world.case import Case, Limits
     from clearance.world.waiver import Waiver
 
+KIND = Sort("KIND|CODE", "a kind of suspect input, or its code", accepted_kind)
 NEEDS = ("steps", "pairs", "limit", "minimum")
 MOTIONS = ("kinematic", "simulated", "recorded")
 METHODS = ("exact", "paper")
@@ -191,7 +192,10 @@ class CheckOptions(QuestionOptions):
         None, LENGTH, "Warn limit instead of the case's; rules with a limit of their own keep it."
     )
     accept: tuple[str, ...] = option(
-        (), one_of(KINDS), "Accept suspect input of this kind.", many=True
+        (),
+        KIND,
+        f"Accept suspect input of this kind ({', '.join(KINDS)}), or with this code.",
+        many=True,
     )
     tolerance: Budget | Mapping[str, Any] | Path | None = option(
         None, TOLERANCE, "Tolerances of the real machine, instead of the case's."

@@ -9,6 +9,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from clearance.codes import coded, codes, kind_of
+from clearance.errors import BadInput
+
 
 class Severity(StrEnum):
     """Effects of a notice on the verdict, worst first."""
@@ -26,6 +29,23 @@ recordings (then bridged straight), tables that never move at the same time, tur
 as written), and goals without a start (then single poses)."""
 
 WRAP, START = "wrap", "start"
+
+CODES_OF_KINDS = tuple(codes()[kind] for kind in KINDS)
+"""By these a case can accept them too."""
+
+
+def accepted_kind(given: object) -> str:
+    """The kind of suspect input that is given by its name or its code.
+
+    Raises:
+        BadInput: no kind that can be accepted.
+    """
+    kind = kind_of(given) if isinstance(given, str) else ""
+    if kind not in KINDS:
+        valid = f"kinds of suspect input: {', '.join(KINDS)}, or their codes"
+        raise BadInput(f"{given!r:.60} is given", valid=valid)
+    return kind
+
 
 HOLD, LINEAR, NOT_MEASURED = GAPS = ("hold", "linear", "not_measured")
 """How joints move in a hole of a recording, as the case says: they stay until just before their next message, they
@@ -48,6 +68,16 @@ class Notice:
     kind: str
     text: str
     about: str = ""
+
+    @property
+    def code(self) -> str:
+        """The stable code of its kind: `CL120`."""
+        return codes()[self.kind]
+
+    @property
+    def line(self) -> str:
+        """The text with its code, as a user sees it."""
+        return coded(self.text, self.code)
 
 
 def worst_first(notices: Iterable[Notice]) -> tuple[Notice, ...]:

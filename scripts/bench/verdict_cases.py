@@ -69,7 +69,7 @@ CASES: dict[str, VerdictCase | str] = {
     "nothing to measure": VerdictCase((0.1,), lines=('allow: [[box, "gate_*"]]',)),
     "waived": VerdictCase((0.003,), lines=(WAIVED,), options=IN_TIME),
     "waiver expired": VerdictCase((0.003,), lines=(WAIVED,), options=TOO_LATE),
-    "waiver stale": VerdictCase((0.1,), lines=(WAIVED,), options=IN_TIME),
+    "waiver unused": VerdictCase((0.1,), lines=(WAIVED,), options=IN_TIME),
     "nearer than waived": VerdictCase((0.001,), lines=(WAIVED,), options=IN_TIME),
     "tolerances proven": VerdictCase((0.05,), lines=(ERRORS,)),
     "tolerances not proven": VerdictCase((0.007,), lines=(ERRORS,)),

@@ -116,7 +116,7 @@ def test_cases_that_one_batch_has(folder, capsys):
 WAIVER = "- {{between: [slider, wall], at_least: 0.03, reason: soft, by: N. N., until: {}}}\n"
 
 
-def test_a_waiver_that_is_gone_or_stale_alarms(folder, capsys):
+def test_a_waiver_that_is_gone_or_unused_alarms(folder, capsys):
     (folder / "w.yaml").write_text(WAIVER.format("2027-03-31"))
     assert batch("old", "--waivers", "w.yaml", "--today", "2026-11-01") == 0
     assert batch("new") == 1
@@ -125,7 +125,7 @@ def test_a_waiver_that_is_gone_or_stale_alarms(folder, capsys):
     assert lines[-1].endswith("(waived before, and is not now)")
     assert batch("new", "--waivers", "w.yaml", "--today", "2027-11-01") == 1
     code, lines = compared(capsys)
-    assert code == 1 and "; NEW stale waiver; " in lines[0] and "has expired" in lines[1]
+    assert code == 1 and "; NEW unused waiver; " in lines[0] and "has expired" in lines[1]
 
 
 def test_a_mistake_is_one_line(folder, capsys):

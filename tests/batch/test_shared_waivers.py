@@ -47,28 +47,29 @@ TABLE = {
         "waivers     waiver slider - wall (waivers.yaml: waivers[0]) has expired on 2026-10-31",
     ),
     "no case needs it": (
-        waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",
+        waiver() + waiver("[slider, floor]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
         "waivers     waiver slider - floor (waivers.yaml: waivers[1]) is not needed: no body is called 'floor'",
     ),
     "no case needs it, and its bodies are there": (
-        waiver() + waiver("[ground, wall]"), 1, "STALE WAIVER  3 cases: 3 clear",
+        waiver() + waiver("[ground, wall]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
         "waivers     waiver ground - wall (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
     ),
     "of no body": (
-        waiver() + waiver("[slider, wal]"), 1, "STALE WAIVER", "no body is called 'wal'; did you mean 'wall'?",
+        waiver() + waiver("[slider, wal]"), 1, "UNUSED WAIVER", "no body is called 'wal'; did you mean 'wall'?",
     ),
     "of no rule": (
-        waiver() + waiver(rule="defalt"), 1, "STALE WAIVER", "no rule is called 'defalt'; did you mean 'default'?",
+        waiver() + waiver(rule="defalt"), 1, "UNUSED WAIVER",
+        "no rule is called 'defalt'; did you mean 'default'?",
     ),
     "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
     "of a case": (
         waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers",
     ),
     "of another case": (
-        waiver() + waiver(case="t000"), 1, "STALE WAIVER", "waivers[1]) is not needed: what it is of keeps",
+        waiver() + waiver(case="t000"), 1, "UNUSED WAIVER", "waivers[1]) is not needed: what it is of keeps",
     ),
     "of no case": (
-        waiver() + waiver(case="t02"), 1, "STALE WAIVER", "no case is called 't02'; did you mean 't002'?",
+        waiver() + waiver(case="t02"), 1, "UNUSED WAIVER", "no case is called 't02'; did you mean 't002'?",
     ),
 }  # fmt: skip
 
@@ -105,7 +106,7 @@ def test_a_manifest_names_waivers_as_the_command_line_does(folder, capsys):
     (folder / "batch.yaml").write_text(manifest + "waivers: own/soft.yaml\n")
     assert batch() == 1
     told = capsys.readouterr().out
-    assert told.startswith("STALE WAIVER  3 cases: 3 clear")
+    assert told.startswith("UNUSED WAIVER  3 cases: 3 clear")
     assert "(soft.yaml: waivers[1]) is not needed: no case is called 't02'" in told
 
 
@@ -193,10 +194,10 @@ CELL_TABLE = {
     "one motion needs it": (waiver(), 0, "CLEAR with waivers  3 cases: 3 clear", "waived      1 case with what"),
     "expired": (waiver(until="2026-10-31"), 1, "VIOLATED", "has expired on 2026-10-31"),
     "no motion needs it": (
-        waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",
+        waiver() + waiver("[slider, floor]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
         "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: no body is called 'floor'",
     ),
-    "of no motion": (waiver() + waiver(case="t02"), 1, "STALE WAIVER", "did you mean 't002'?"),
+    "of no motion": (waiver() + waiver(case="t02"), 1, "UNUSED WAIVER", "did you mean 't002'?"),
     "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
 }  # fmt: skip
 
@@ -226,4 +227,4 @@ def test_a_waiver_that_another_cell_needs_is_not_needed_for_that(folder, capsys)
     )
     asked = ["batch", "batch.yaml", "far/batch.yaml", "--out", "store", "--jobs", "1"]
     assert run([*asked, "--today", DAY]) == 1
-    assert capsys.readouterr().out.startswith("STALE WAIVER  4 cases: 4 clear")
+    assert capsys.readouterr().out.startswith("UNUSED WAIVER  4 cases: 4 clear")

@@ -38,7 +38,7 @@ def test_a_hint_names_the_command_that_was_typed(typed, told, folder, capsys):
     assert run(["batch", *typed, "batch.yaml", "--out", "store", "--shard", "5/2"]) == 2
     err = capsys.readouterr().err
     assert "'5/2' is no part; i/n with i from 1 to n" in err
-    assert err.endswith(f"(see clearance {told} --help)\n")
+    assert err.endswith(f"(see clearance {told} --help) [CL710]\n")
     assert run(["batch", "--help"]) == 0
     assert "--shard" in capsys.readouterr().out
 

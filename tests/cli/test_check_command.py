@@ -60,7 +60,7 @@ def test_near_passes_and_nothing_is_written(folder, capsys):
     before = files(folder)
     code, out, err = check(capsys, "--cross-check")
     assert (code, err) == (0, "") and out.startswith("NEAR  rail: least clearance 100.0 mm")
-    assert out.splitlines()[1].strip() == "self-collision not checked"
+    assert out.splitlines()[1].strip() == "self-collision not checked [CL531]"
     assert "slider - wall" in out and "agrees at all 3 steps" in out
     assert "certified   at least" in out and "joints moving linearly" in out
     assert files(folder) == before

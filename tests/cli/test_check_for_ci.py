@@ -42,7 +42,7 @@ def test_a_waiver_and_its_day(place, capsys):
     assert check(*waived, "--today", "2027-04-01") == 1
     assert "has expired on 2027-03-31" in capsys.readouterr().out
     assert check("clear/case.yaml", "--waivers", "waivers.yaml", "--today", "2026-11-01") == 1
-    assert capsys.readouterr().out.startswith("STALE WAIVER (would be CLEAR)")
+    assert capsys.readouterr().out.startswith("UNUSED WAIVER (would be CLEAR)")
 
 
 def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, capsys):
@@ -226,4 +226,4 @@ def test_the_hook_tells_all_that_fails(place, capsys):
     assert first == "broken/case.yaml: SUSPECT (would be VIOLATED)"
     assert lines[0].startswith("  3.000 mm, below the fail limit of 5 mm: box - gate_a")
     assert lines[1].startswith("  suspect units: CHECK UNITS: obstacle 'gate_b'")
-    assert lines[2].startswith("  stale waiver: waiver box - gate_a") and len(lines) == 3
+    assert lines[2].startswith("  unused waiver: waiver box - gate_a") and len(lines) == 3

@@ -169,7 +169,11 @@ def test_tolerances_that_no_receipt_covers_are_told_in_a_line_of_their_own(home,
             ExitCode.INTERRUPTED,
             "the report is whole, and has no receipt\ninter",
         ),
-        (too_many(9_400_000, 8_000_000), ExitCode.BAD_INPUT, "at most; --receipt sampled\n"),
+        (
+            too_many(9_400_000, 8_000_000),
+            ExitCode.BAD_INPUT,
+            "at most; --receipt sampled [CL631]\n",
+        ),
     ],
 )
 def test_who_does_not_get_a_receipt_keeps_the_answer(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 
 import pytest
 
@@ -75,9 +76,9 @@ TABLE = {
         {}, {"extra": "allow: [[box, gate_b]]"}, False, "LESS IS KNOWN",
         "not measured as before: box - gate_b",
     ),
-    "a waiver is stale": ({}, {"waivers": (waiver(),)}, False, "NEW stale waiver", "is not needed"),
+    "a waiver is unused or expired": ({}, {"waivers": (waiver(),)}, False, "NEW unused waiver", "is not needed"),
     "a waiver is as stale": (
-        {"waivers": (waiver(),)}, {"waivers": (waiver(),)}, True, "stale waiver as before", "is not needed",
+        {"waivers": (waiver(),)}, {"waivers": (waiver(),)}, True, "unused waiver as before", "is not needed",
     ),
 }  # fmt: skip
 
@@ -126,6 +127,9 @@ def test_what_is_not_listed_hides_what_is_broken(tmp_path):
 def test_doubts_read_back_as_they_were_written(tmp_path):
     found = listed(tmp_path, notices=(SUSPECT, WARNING), clock=Clock(float("inf")))
     (tmp_path / "findings.json").write_text(findings_text(found))
+    told = json.loads(findings_text(found))
+    assert [one["code"] for one in told["doubts"]] == ["CL120", "CL531", "CL221", "CL130", "CL130"]
+    assert {one["code"] for one in told["findings"]} == {"CL501"}
     assert read_findings(tmp_path) == found and found.measured.clock_slack == "not tied"
     assert [one.kind for one in found.doubts][:2] == ["suspect", "not checked"]
 

@@ -93,7 +93,7 @@ def test_every_answer_says_the_same(name, tmp_path):
     headline, second, *_ = printed(one)
     assert (
         headline.startswith(verdict.text(str.upper))
-        and second.strip() == "self-collision not checked"
+        and second.strip() == "self-collision not checked [CL531]"
     )
     badge = header(content_of(one))
     assert "at the samples only" in badge.badge and "Self-collision not checked" in repr(badge)

@@ -37,7 +37,7 @@ def checked(folder, gates, *waivers: Waiver, **changes) -> Run:
     return answer(Question(case, today=TODAY, **changes))
 
 
-CLEAR, VIOLATED, CONTACT, STALE = "clear", "violated", "contact", "stale waiver"
+CLEAR, VIOLATED, CONTACT, UNUSED_WAIVER = "clear", "violated", "contact", "unused waiver"
 
 TABLE = {
     # what: gates, waivers, status, exit code, n waivers, names of waived, a word of a reason
@@ -45,19 +45,19 @@ TABLE = {
     "covered": (NEAR_A, [waiver()], CLEAR, 0, 1, [A], ""),
     "to its last day": (NEAR_A, [waiver(until="2026-11-01")], CLEAR, 0, 1, [A], ""),
     "expired": (NEAR_A, [waiver(until="2026-10-31")], VIOLATED, 1, 0, [], "has expired on 2026-10-31"),
-    "expired and not needed": (A_CLEAR, [waiver(until="2026-10-31")], STALE, 1, 0, [], "has expired"),
-    "not needed": (A_CLEAR, [waiver()], STALE, 1, 0, [], "is not needed"),
-    "not needed for a near miss": (A_WARNS, [waiver()], STALE, 1, 0, [], "is not needed"),
+    "expired and not needed": (A_CLEAR, [waiver(until="2026-10-31")], UNUSED_WAIVER, 1, 0, [], "has expired"),
+    "not needed": (A_CLEAR, [waiver()], UNUSED_WAIVER, 1, 0, [], "is not needed"),
+    "not needed for a near miss": (A_WARNS, [waiver()], UNUSED_WAIVER, 1, 0, [], "is not needed"),
     "worse than it": (NEAR_A, [waiver(at_least=0.0035)], VIOLATED, 1, 0, [], "less occurs"),
     "exactly it": (NEAR_A, [waiver(at_least=0.003)], CLEAR, 0, 1, [A], ""),
     "contact": (TOUCHES, [waiver(at_least=0.0)], CONTACT, 1, 0, [], "of no contact"),
     "another is worse": (NEAR_BOTH, [waiver()], VIOLATED, 1, 1, [A], "box - gate_b"),
     "both covered": (NEAR_BOTH, [waiver(), waiver(B)], CLEAR, 0, 2, [A, B], ""),
     "one for both": (NEAR_BOTH, [waiver("gate_*")], CLEAR, 0, 1, [A, B], ""),
-    "the last counts": (NEAR_A, [waiver(at_least=0.004), waiver()], STALE, 1, 1, [A], "a later waiver"),
+    "the last counts": (NEAR_A, [waiver(at_least=0.004), waiver()], UNUSED_WAIVER, 1, 1, [A], "a later waiver"),
     "the last counts and fails": (NEAR_A, [waiver(), waiver(at_least=0.004)], VIOLATED, 1, 0, [], "less occurs"),
     "an expired one counts for nothing": (
-        NEAR_A, [waiver(), waiver(at_least=0.0, until="2026-10-31")], STALE, 1, 1, [A], "has expired",
+        NEAR_A, [waiver(), waiver(at_least=0.0, until="2026-10-31")], UNUSED_WAIVER, 1, 1, [A], "has expired",
     ),
     "hides nothing behind it": (TOGETHER, [waiver()], VIOLATED, 1, 1, [A], "box - gate_b"),
     "of another case": (NEAR_A, [waiver(case="weld_*")], VIOLATED, 1, 0, [], "below the fail limit"),

@@ -137,7 +137,7 @@ def test_a_bad_case_fails_in_one_line(inside, pytester):
     assert "Traceback" not in result.stdout.str()
 
 
-def test_what_is_waived_is_skipped_and_a_stale_waiver_fails(inside, pytester):
+def test_what_is_waived_is_skipped_and_an_unused_waiver_fails(inside, pytester):
     (pytester.path / "waivers.yaml").write_text(
         "- {between: [box, gate_a], at_least: 0.002, reason: gives way, by: N. N., until: 9999-01-01}\n"
     )

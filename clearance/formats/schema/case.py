@@ -21,7 +21,7 @@ from clearance.formats.schema.pose import Base, WindowedEntry
 from clearance.formats.schema.strict_model import Level, Name, StrictModel
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.schema.tolerance import Tolerance
-from clearance.world.notice import KINDS
+from clearance.world.notice import accepted_kind
 
 
 def _without_stroke(name: str) -> str:
@@ -106,15 +106,7 @@ class Profile(StrictModel):
     links: list[Name] = []
 
 
-def _known_kind(kind: str) -> str:
-    if kind not in KINDS:
-        raise BadInput(
-            f"{kind!r:.60} is given", valid=f"kinds of suspect input: {', '.join(KINDS)}"
-        )
-    return kind
-
-
-Kind = Annotated[str, AfterValidator(_known_kind)]
+Kind = Annotated[str, AfterValidator(accepted_kind)]
 
 
 class Report(StrictModel):

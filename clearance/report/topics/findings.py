@@ -86,7 +86,7 @@ def _row(finding: Finding, since: ComparedFinding | None, compared: bool) -> Row
         stretch_text(finding),
         *([since_text(since)] if compared else []),
         Cell(waived_text(finding), "wide" if finding.waived else ""),
-        Inline(finding.id, element="code"),
+        Inline(f"{finding.id} {finding.code}", element="code"),
     ]
     if finding.step is None:
         return Row(cells)

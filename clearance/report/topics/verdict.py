@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from clearance.findings.doubts import NOTE, doubts_of
 from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.of_budget import NOT_WORKED_OUT
-from clearance.findings.verdict import ACCEPTED, STALE, Verdict
+from clearance.findings.verdict import ACCEPTED, UNUSED_WAIVER, Verdict
 from clearance.record.wording import count, least_proven, limits_text, mm
 from clearance.report.blocks import Bullets, Cell, Content, Header, Inline, capital
 from clearance.report.model import PageContent, ReportModel
@@ -21,7 +22,7 @@ _TITLES = {
     "violated": "limit violated",
     "contact": "contact",
     "suspect": "suspect input",
-    STALE: STALE,
+    UNUSED_WAIVER: UNUSED_WAIVER,
     NOT_PROVEN: NOT_PROVEN,
 }
 
@@ -47,14 +48,21 @@ def data(model: ReportModel) -> dict[str, Any]:
         "unproven": verdict.unproven,
         "broken": list(verdict.broken),
         "warnings": list(verdict.warnings),
-        "suspects": [{"kind": one.kind, "text": one.text} for one in verdict.suspects],
+        "suspects": [
+            {"code": one.code, "kind": one.kind, "text": one.text} for one in verdict.suspects
+        ],
+        "doubts": [
+            {"code": one.code, "kind": one.kind, "about": one.about, "text": one.text}
+            for one in doubts_of(model.record, model.waived)
+            if one.kind != NOTE  # `notes` has them
+        ],
         "disputed_by": verdict.disputed_by,
         "not_checked": list(verdict.not_checked),
         "nearer": verdict.nearest,
         "clocks": verdict.clocks,
         "waived": list(verdict.waived),
         "n_waivers": verdict.n_waivers,
-        "stale": list(verdict.stale),
+        "waiver_faults": list(verdict.waiver_faults),
         "at_level": verdict.at_level,
     }
 
@@ -67,7 +75,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
     if verdict.nearest:
         yield "nearest", verdict.nearest
     yield from (("waived", text) for text in verdict.waived)
-    yield from (("waivers", text) for text in verdict.stale)
+    yield from (("waivers", text) for text in verdict.waiver_faults)
     yield from (("violated", text) for text in verdict.broken)
     yield from (("tolerances", text) for text in verdict.with_tolerances)
     if verdict.unproven:
@@ -77,7 +85,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
 
 
 def _suspect(notice: Notice) -> str:
-    return f"{notice.text} (--accept {notice.kind})" if notice.kind in KINDS else notice.text
+    return f"{notice.line} (--accept {notice.kind})" if notice.kind in KINDS else notice.line
 
 
 def header(content: PageContent) -> Header:
@@ -92,7 +100,7 @@ def header(content: PageContent) -> Header:
         ("Cross-check", _cross_check_word(summary["cross_check"])),
         *((name.capitalize(), value) for name, value in signed.items() if value),
     ]
-    failing = verdict.disputed_by or verdict.status in (STALE, NOT_PROVEN)
+    failing = verdict.disputed_by or verdict.status in (UNUSED_WAIVER, NOT_PROVEN)
     kind = "violated" if failing else verdict.status
     beside = Bullets(_beside(verdict, summary.get("tolerances")), "beside")
     told = [Bullets(_headline(summary, verdict), "beside headline"), beside]
@@ -140,17 +148,19 @@ def _headline(summary: dict[str, Any], verdict: Verdict) -> list[Content | Cell]
 
 def _beside(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content | Cell]:
     """What a reader must know beside the clearance, right below the verdict."""
-    failing = [*(f"Violated: {text}" for text in verdict.broken), *map(capital, verdict.stale)]
+    failing = [
+        *(f"Violated: {text}" for text in verdict.broken),
+        *map(capital, verdict.waiver_faults),
+    ]
     doubts = [text for text in (verdict.at_level, verdict.unproven) if text]
     doubts += [f"Warning: {text}" for text in verdict.warnings]
     return [
-        *(Cell(f"Suspect {one.kind}: {one.text}", "text-suspect") for one in verdict.suspects),
+        *(Cell(f"Suspect {one.kind}: {one.line}", "text-suspect") for one in verdict.suspects),
         *(Cell(text, "text-violated") for text in failing),
         *(Cell(f"Waived: {text}", "text-near") for text in verdict.waived),
         *_with_tolerances(tolerances),
         *(Cell(capital(text), "text-near") for text in doubts),
-        *map(capital, verdict.self_clearance),
-        *(f"{name.capitalize()} not checked" for name in verdict.not_checked),
+        *map(capital, verdict.scope),
     ]
 
 

@@ -28,7 +28,7 @@ from clearance.world.joint_positions import joint_extents
 from clearance.world.kinematics import moving_positions
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
-from clearance.world.notice import KINDS, Notice, Severity, worst_first
+from clearance.world.notice import Notice, Severity, accepted_kind, worst_first
 from clearance.world.one_time import left_to_the_run, phase_at
 from clearance.world.pairs import Pair, measured_pairs, nothing_to_measure, selected_pairs
 from clearance.world.plausibility import notices_of
@@ -279,19 +279,15 @@ class AskedPositions:
             meant, with those that the case accepts.
 
     Raises:
-        BadInput: a kind that is not one of `KINDS`.
+        BadInput: neither a kind of suspect input nor the code of one.
     """
 
     def __init__(
         self, case: Case, names: Sequence[tuple[str, ...]], accept: Collection[str]
     ) -> None:
-        unknown = [kind for kind in accept if kind not in KINDS]
-        if unknown:
-            raise BadInput(
-                f"{unknown[0]!r} is given", where="accept", valid=f"kinds: {', '.join(KINDS)}"
-            )
         self._case, self._names = case, names
-        self._accept = frozenset((*case.accept, *accept))
+        with at("accept"):
+            self._accept = frozenset((*case.accept, *map(accepted_kind, accept)))
         self._least, self._greatest = self._bounds(far=False)
 
     def are_usual(self, given: np.ndarray) -> bool:

@@ -12,6 +12,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 import clearance
+from clearance.codes import entries
 from clearance.gains.request import Request
 from clearance.options import Option, flag_of, options_in
 from clearance.run import CheckOptions
@@ -52,10 +53,25 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 
 def on_page_markdown(markdown: str, **_: object) -> str:
-    """A page with the table of options in place of each mark `<!-- options of NAME -->`."""
+    """A page with tables in place of marks: `<!-- options of NAME -->`, `<!-- codes -->`."""
     for name, kind in (("check", CheckOptions), ("gain", Request)):
         markdown = markdown.replace(f"<!-- options of {name} -->", option_table(kind))
-    return markdown
+    return markdown.replace("<!-- codes -->", code_sections())
+
+
+def code_sections() -> str:
+    """All codes by their hundreds: meaning, why it matters, what to do, an example."""
+    parts, group = [], ""
+    for entry in entries().values():
+        if entry.group != group:
+            group = entry.group
+            parts.append(f"## {group}")
+        parts += [f"### {entry.code}: {entry.title}", f"{entry.means} {entry.matters}"]
+        parts += [
+            f"**What to do:** {entry.remedy}",
+            f"```text\n{entry.example} [{entry.code}]\n```",
+        ]
+    return "\n\n".join(parts)
 
 
 def option_table(kind: type) -> str:
