@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from clearance.errors import UnknownJoint, nearest_name
 from clearance.programs.series import ORDER, matrix_product, product, sine_and_cosine
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematic_chain import ChainJoint, KinematicChain, chain_between
@@ -38,6 +39,18 @@ class Arm:
     def joints(self) -> tuple[Joint, ...]:
         """The k joints that are free to move, in the order of the columns of positions."""
         return self.chain.masters
+
+    def column(self, name: str, where: str) -> int:
+        """The column of a joint.
+
+        Raises:
+            UnknownJoint: it is none of the arm; with the field.
+        """
+        names = [joint.name for joint in self.joints]
+        if name not in names:
+            valid = nearest_name(name, names)
+            raise UnknownJoint(f"unknown joint {name!r}", where=where, valid=valid)
+        return names.index(name)
 
     @cached_property
     def end(self) -> np.ndarray:

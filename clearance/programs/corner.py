@@ -1,11 +1,14 @@
 """How far admissible paths through a corner zone take the links of a robot from its nominal motion, proven.
 
-Admissible is every path of the tool's point in the triangle entry, corner, exit, with any rotation between:
+Between lines, admissible is every path of the tool's point in the triangle entry, corner, exit, with any rotation
+between:
 
-    p = E + a d1 + b d2,   0 <= b <= a <= 1,   R = exp(b' w2) exp(a' w1) R_E,   0 <= a', b' <= 1.
+    p = E + f1(a) + f2(b),   0 <= b <= a <= 1,   R = exp(b' w2) exp(a' w1) R_E,   0 <= a', b' <= 1,   f(s) = d s.
 
 The nominal motion has a = 2u - u^2 and b = u^2. A path's point with a + b = 2u is held against the nominal one at
-u, from which it is off by s (d1 - d2), -(u - u^2) <= s <= min(u, 1 - u) - (u - u^2). The ranges of s, a' and b'
+u, at strokes off by s and -s, -(u - u^2) <= s <= min(u, 1 - u) - (u - u^2). Where a side is an arc, f is the arc,
+and admissible are all points of the convex hull of entry, corner, exit and arcs: p with a ball about it
+(`_hull`). The ranges of s, a' and b'
 are cut into cells until `enclosure` proves a box of joints for the poses of each cell about the nominal cubic,
 shifted for it. Where no two joints in the hull of a cell's and its neighbours' boxes hold the same pose, a path
 that goes on without a jump is in these boxes everywhere. Not for: what that takes of a clearance
@@ -15,23 +18,17 @@ that goes on without a jump is in these boxes everywhere. Not for: what that tak
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadProgram
-from clearance.kernels.motion.kinematics import NO_COLUMN, NO_PARENT, SLIDING, Links
-from clearance.programs.arm import Arm
 from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
 from clearance.programs.following import Follower
 from clearance.programs.inverse import joints_at
+from clearance.programs.links_off import Cells, links_off
 from clearance.programs.path_samples import PathSamples
-from clearance.programs.series import half_skew
 from clearance.programs.tool_path import Stretch
-from clearance.world.corner_zone import CornerZone, Deviation
-from clearance.world.kinematics import links_of_robot, poses_by_link
-from clearance.world.robot import JointKind, Robot
-from clearance.world.tool import rates_of
+from clearance.world.corner_zone import CornerZone
 
 PATH_ERROR = 1e-6
 """[rad or m] How far a joint may be off its cubic on lines and arcs; a robot of 1 m loses some 6 um of
@@ -61,7 +58,9 @@ def corner_of(
         found = _cells(follower, samples, n_cells)
         if found is not None:
             ends = start + samples.times[[0, -1]]
-            links = _links(follower.arm, *found)
+            proven, spread = found
+            cells = Cells(proven.middle, spread.joints, proven.variation.within, proven.box)
+            links = links_off(follower.arm, cells)
             return CornerZone(name, float(ends[0]), float(ends[1]), radius, links)
     raise BadProgram(
         f"a corner zone of {radius * 1e3:g} mm is too wide to be proven where the arm is",
@@ -135,7 +134,17 @@ def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
     )
     solved = joints_at(follower.arm.tool, poses, near[i], follower.free)
-    return _Grid(shape, Spread(solved.positions - near[i], shifts, halves))
+    return _Grid(shape, Spread(solved.positions - near[i], shifts, halves, _hull(stretch)))
+
+
+def _hull(stretch: Stretch) -> float:
+    """[m] No point of the convex hull of the entry, the corner, the exit and the arcs is farther from some p.
+
+    An arc is off its chord by an eighth of its bend at most, hence the hull off the flat triangle, and the
+    triangle off the p.
+    """
+    sags = [0.125 * way.bend for way in stretch.ways]
+    return sum(sags) + max(sags)
 
 
 def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
@@ -157,134 +166,3 @@ def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
     entered = 0, grid.shape[1] // 2, 0, 0
     reach[entered] = np.maximum(reach[entered], np.abs(joints[entered]) + PATH_ERROR)
     return reach.reshape(box.shape)
-
-
-def _links(arm: Arm, found: Enclosed, spread: Spread) -> dict[str, Deviation]:
-    """How far each link that the arm moves may be off the nominal motion, in any cell."""
-    robot = arm.robot
-    moving = [joint.name for joint in robot.moving_joints]
-    columns = [moving.index(joint.name) for joint in arm.joints]
-    links, lengths = links_of_robot(robot), _path_lengths(robot)
-    at, off = np.zeros((2, len(found.box), len(moving)))
-    at[:, columns], off[:, columns] = found.middle - spread.joints, found.middle
-    nominal, shifted = poses_by_link(links, at), poses_by_link(links, off)
-    told: dict[str, Deviation] = {}
-    for i, name in enumerate(robot.link_names):
-        above = _Above.of(links, i, columns)
-        if not above.driven:
-            continue
-        carrier = robot.link_names[above.driven[0][0]]
-        if above.others == 0:
-            told[name] = _off(links, nominal, shifted, above, lengths[name], found, spread)
-        elif carrier in told and above.others == above.others_below:
-            held, farther = told[carrier], lengths[name] - lengths[carrier]
-            told[name] = Deviation(held.at(farther) * MORE, held.turn)
-        else:
-            turned, slid = above.sums(np.abs(spread.joints) + found.box)
-            ways = lengths[name] * turned + slid
-            told[name] = Deviation(float(ways.max()) * MORE, float(turned.max()) * MORE)
-    return told
-
-
-class _Above(NamedTuple):
-    """The joints between a link and the root.
-
-    Attributes:
-        link: whose they are. driven: those that the arm drives, from the link to the root: the link below each and
-            its place among the arm's.
-        columns, factors, slides: (m,) of those joints: their place among the arm's, and how they follow it.
-        others: how many joints are not the arm's, wherever they are. others_below: how many of them are below the
-            driven.
-    """
-
-    link: int
-    driven: tuple[tuple[int, int], ...]
-    columns: np.ndarray
-    factors: np.ndarray
-    slides: np.ndarray
-    others: int
-    others_below: int
-
-    @classmethod
-    def of(cls, links: Links, link: int, columns: list[int]) -> _Above:
-        """Those of a link, where an arm drives some columns."""
-        driven, others, others_below, above = [], 0, 0, link
-        while above != NO_PARENT:
-            if int(links.columns[above]) in columns:
-                driven.append((above, columns.index(int(links.columns[above]))))
-            elif links.columns[above] != NO_COLUMN:
-                others += 1
-                others_below += not driven
-            above = int(links.parents[above])
-        own, at = np.array(driven, dtype=np.int64).reshape(-1, 2).T
-        slides = links.kinds[own] == SLIDING
-        return cls(link, tuple(driven), at, links.factors[own], slides, others, others_below)
-
-    def sums(self, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) [rad] what those that turn, and (n,) [m] what those that slide, move by with the arm's ways (n,
-        k)."""
-        moved = np.abs(self.factors) * ways[:, self.columns]
-        return moved[:, ~self.slides].sum(axis=1), moved[:, self.slides].sum(axis=1)
-
-    def change(
-        self, length: float, moved: np.ndarray, ways: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) [m] and [rad] by how much more joints that go by `ways` move the link once joints are `moved` (n,
-        k).
-
-        The column of a joint that turns has a way of at most `length` for the link's origin; a turn by a turns it
-        by a at most, a slide by d moves it by d. That of a joint that slides has length 1 and turns likewise.
-
-        Args:
-            length: [m] of the path from the root to the link.
-        """
-        (turned, slid), (turns, slides) = self.sums(moved), self.sums(ways)
-        return turns * (length * turned + slid) + slides * turned, turns * turned
-
-
-def _off(
-    links: Links,
-    nominal: np.ndarray,
-    shifted: np.ndarray,
-    above: _Above,
-    length: float,
-    found: Enclosed,
-    spread: Spread,
-) -> Deviation:
-    """How far a link may be off that the arm alone moves.
-
-    At the middle of an interval the shift of a cell moves a link by what both poses differ by; within it by more
-    by the change of the Jacobian with the shift, times how far the cubics go; and the box by the Jacobian there.
-    """
-    box, within, i = found.box, found.variation.within, above.link
-    by_shift = above.change(length, np.abs(spread.joints), within)
-    by_box = above.change(length, within + box, box)
-    rates = rates_of(links, shifted, shifted[:, i, :3, 3], above.driven, box.shape[1])
-    rest = (np.abs(rates) @ box[..., None])[..., 0]
-    ways = np.linalg.norm(shifted[:, i, :3, 3] - nominal[:, i, :3, 3], axis=1)
-    ways += np.linalg.norm(rest[:, :3], axis=1) + by_shift[0] + by_box[0]
-    turns = _angles(nominal[:, i, :3, :3], shifted[:, i, :3, :3])
-    turns += np.linalg.norm(rest[:, 3:], axis=1) + by_shift[1] + by_box[1]
-    return Deviation(float(ways.max()) * MORE, float(turns.max()) * MORE)
-
-
-def _path_lengths(robot: Robot) -> dict[str, float]:
-    """[m] No link's frame is farther from a joint above it than this, by link; slides reach to their limits."""
-    path = {robot.link_names[0]: 0.0}
-    for joint in robot.joints:
-        own = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
-        if joint.kind is JointKind.PRISMATIC:
-            own += max(abs(joint.lower), abs(joint.upper))
-        path[joint.child] = path[joint.parent] + own
-    return path
-
-
-MORE = 1.0 + 1e-6
-"""What covers rounding."""
-
-
-def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(n,) [rad] between rotations (n, 3, 3)."""
-    between = np.swapaxes(a, 1, 2) @ b
-    cosines = 0.5 * (np.trace(between, axis1=1, axis2=2) - 1.0)
-    return np.arctan2(np.linalg.norm(half_skew(between), axis=1), cosines)

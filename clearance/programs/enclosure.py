@@ -56,11 +56,13 @@ class Spread(NamedTuple):
     Attributes:
         joints: (n, k) [rad or m] how far the cubics are shifted for it.
         shifts, halves: (n, 3) the middle of s, a and b, and half their range.
+        ball: [m] how far the point may be from there, in any direction.
     """
 
     joints: np.ndarray
     shifts: np.ndarray
     halves: np.ndarray
+    ball: float = 0.0
 
     @classmethod
     def none(cls, n: int, k: int) -> Spread:
@@ -103,10 +105,11 @@ def enclosed(
 ) -> Enclosed:
     """What is proven of the joints that hold the tool at any pose of a spread about the path."""
     half = 0.5 * given.lengths[:, None]
-    joints, strokes = _cubics(given, half), _strokes(given, half)
+    joints, strokes = cubic_series(given, half), _strokes(given, half)
     joints[0] += spread.joints
     turn, origin = arm.series(joints)
-    path_turn, path_origin = stretch.series(*_shifted(strokes, spread))
+    of_point, of_turn = _shifted(strokes, spread)
+    path_turn, path_origin = stretch.series(of_point, of_turn)
     between = matrix_product(np.swapaxes(path_turn, 2, 3), turn)
     off = np.concatenate([origin - path_origin, half_skew(between)], axis=2)
     _, rates = arm.tool.poses_and_rates(joints[0])
@@ -118,7 +121,9 @@ def enclosed(
     error += (np.abs(inverse) @ unknown[..., None])[..., 0]
     sizes = np.linalg.norm(inverse.reshape(*inverse.shape[:2], 2, 3), axis=3).transpose(2, 0, 1)
     off_middle = 1.1 * greatest(half_skew(between)).sum(axis=1)
-    by_spread, turned = _of_spread(stretch, spread, inverse, sizes[1], path_turn[0], off_middle)
+    by_spread, turned = _of_spread(
+        stretch, spread, of_point, inverse, sizes, path_turn[0], off_middle
+    )
     within = np.abs(joints[1:]).sum(axis=0)
     varied = np.einsum("nkc,ncji->nkji", inverse, arm.second_rates(joints[0], path_turn[0]))
     variation = _Variation(np.abs(varied), sizes, within, off_middle + turned, longest)
@@ -138,6 +143,7 @@ def _shifted(strokes: np.ndarray, spread: Spread) -> tuple[np.ndarray, np.ndarra
 def _of_spread(
     stretch: Stretch,
     spread: Spread,
+    of_point: np.ndarray,
     inverse: np.ndarray,
     sizes: np.ndarray,
     path_turn: np.ndarray,
@@ -145,22 +151,26 @@ def _of_spread(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(n, k) what the poses of a spread add to |Y F|, and (n,) [rad] how far they are turned from its middle.
 
-    A stroke by a turns the tool by a w1 about an axis that the second stroke turns by up to |w2|; what two turns
-    come to is off their sum by half the product, and their sine by half their product with how far the tool is
-    off the middle.
+    A point that goes by s along strokes whose ways bend is off s times their slopes at the middle by how far the
+    slopes change. A stroke by a turns the tool by a w1 about an axis that the second stroke turns by up to |w2|;
+    two turns come to their sum but for half the product, and their sine but for half their product with how far
+    the tool is off the middle.
     """
     s, a, b = spread.halves.T
     own = np.linalg.norm(stretch.turns, axis=1)
     seen = stretch.turns @ path_turn
-    by_way = np.abs(inverse[:, :, :3] @ (stretch.ways[0] - stretch.ways[1]))
+    slopes = [way.slopes(of_point[0, :, k]) for k, way in enumerate(stretch.ways)]
+    by_way = np.abs(inverse[:, :, :3] @ (slopes[0] - slopes[1])[..., None])[..., 0]
+    bends = np.array([way.bend for way in stretch.ways])
+    bent = s * (np.abs(of_point[1:]).sum(axis=0) @ bends + 0.5 * s * bends.sum())
     by_turn = np.abs(np.einsum("nkc,nac->ank", inverse[:, :, 3:], seen))
     turned = a * own[0] + b * own[1]
     rest = turned * (turned + off) + own[0] * own[1] * a
     found = s[:, None] * by_way + a[:, None] * by_turn[0] + b[:, None] * by_turn[1]
-    return found + sizes * rest[:, None], turned
+    return found + sizes[0] * (bent + spread.ball)[:, None] + sizes[1] * rest[:, None], turned
 
 
-def _cubics(given: Intervals, half: np.ndarray) -> np.ndarray:
+def cubic_series(given: Intervals, half: np.ndarray) -> np.ndarray:
     """(ORDER + 1, n, k) the series of the cubics about the middle, in halves of the interval."""
     a, b = given.before, given.after
     va, vb = half * given.rates[0], half * given.rates[1]

@@ -4,11 +4,12 @@ refused where they cannot follow. Not for: what lies between samples (`enclosure
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput, BadProgram
+from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.inverse import joints_at, least_motion
 from clearance.programs.tool_path import Stretch
@@ -77,13 +78,13 @@ class Follower:
     def _strokes(self, shares: np.ndarray) -> np.ndarray:
         return self.stretch.strokes(shares, np.ones_like(shares), np.zeros_like(shares))
 
-    def _rates_at(self, position: np.ndarray, share: float) -> np.ndarray:
+    def rates_at(self, position: np.ndarray, share: float) -> np.ndarray:
         """(k,) how the joints go with the share."""
         return self.rates(position[None], self._strokes(np.array([share])), np.ones(1))[0]
 
     def _coarse(self, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Shares (m,), joints and their derivatives by the share (m, k), near enough for cubics between them."""
-        shares, found, rates = [0.0], [start], [self._rates_at(start, 0.0)]
+        shares, found, rates = [0.0], [start], [self.rates_at(start, 0.0)]
         step = 1.0
         while shares[-1] < 1.0:
             step = min(step, 1.0 - shares[-1], LONGEST / max(float(np.abs(rates[-1]).max()), 1e-9))
@@ -94,14 +95,34 @@ class Follower:
             if solved.left[0] <= REACHED and np.abs(solved.positions[0] - near).max() <= FORESEEN:
                 shares.append(share)
                 found.append(solved.positions[0])
-                rates.append(self._rates_at(found[-1], share))
+                rates.append(self.rates_at(found[-1], share))
                 step *= 2.0
             elif (step := 0.5 * step) < SHORTEST:
                 raise _stuck(pose[0], found[-1])
         return np.array(shares), np.array(found), np.array(rates)
 
 
-def _stuck(pose: np.ndarray, joints: np.ndarray) -> BadInput:
+def follower_of(
+    arm: Arm, stretch: Stretch, hold: Mapping[str, float] | None, start: np.ndarray
+) -> Follower:
+    """An arm on a stretch from where its joints are (k,), some of which are told where they go meanwhile.
+
+    Raises:
+        UnknownJoint: one that is told is none of the arm. BadInput: fewer than six are left.
+    """
+    free, held = np.ones(len(start), dtype=bool), np.zeros(len(start))
+    for name, value in (hold or {}).items():
+        column = arm.column(name, "hold")
+        free[column], held[column] = False, value - start[column]
+    if free.sum() < 6:
+        raise BadProgram(
+            f"{int(free.sum())} joints are free to follow the tool's path",
+            valid="six or more; an arm of fewer goes by joint moves",
+        )
+    return Follower(arm, stretch, free, held)
+
+
+def _stuck(pose: np.ndarray, joints: np.ndarray) -> BadProgram:
     x, y, z = pose[:3, 3]
     shown = ", ".join(f"{value:.4g}" for value in joints)
     return BadProgram(

@@ -1,25 +1,23 @@
-"""The legs of a program: each move, lines cut where corner zones begin, and the corners between; how fast each
-begins and ends. Not for: joints (`motion`).
+"""The legs of a program: moves, cut where corner zones begin, and the corners between; how fast each begins and
+ends. Not for: joints along them (`motion`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise, zip_longest
+from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadProgram, UnknownJoint, at, nearest_name
+from clearance.errors import BadProgram, at
 from clearance.programs.arm import Arm
-from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
+from clearance.programs.following import follower_of
+from clearance.programs.joint_way import RUN_UP, JointWay, fastest, joint_law, targets_of
+from clearance.programs.moves import SHARE_OF_WAY, JointMove, Move, PathMove, Program, Wait
 from clearance.programs.time_law import Piece, trapezoid
-from clearance.programs.tool_path import Stretch, arc, line
-
-SHARE_OF_LINE = 0.5
-"""Of a line that a corner zone may take at either end."""
-
-RUN_UP = 0.25
-"""[s] In which a tool that turns on the spot reaches its speed."""
+from clearance.programs.tool_path import Stretch, arc, corner, line
 
 LONGEST = 100.0
 """[m] A longer way is a mistake."""
@@ -27,52 +25,115 @@ LONGEST = 100.0
 SHORTEST = 1e-9
 """[m] and [rad] A line that is shorter, and turns less, is none."""
 
+Way = Stretch | JointWay
+"""How the tool, or the joints, go in a move or in a part of one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Corner:
+    """A corner zone.
+
+    Attributes:
+        radius: [m]. moves: it is between. sides: the parts of both ways that it takes the place of.
+        is_cut: one side would take more than `SHARE_OF_WAY`.
+        joints: (k,) about where the joints are at the corner; None between lines and arcs.
+    """
+
+    radius: float
+    moves: tuple[JointMove | PathMove, JointMove | PathMove]
+    sides: tuple[Way, Way]
+    is_cut: bool
+    joints: np.ndarray | None = None
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """(2,) of both sides."""
+        return np.array([size_of(side) for side in self.sides])
+
 
 @dataclass(frozen=True, eq=False)
 class Leg:
     """A move, or a part of one, or the corner after it.
 
     Attributes:
-        stretch: what the tool follows; None where joints are told. pieces: how fast.
-        radius: [m] of the corner zone that it is; 0 where it is none.
+        way: how it goes; None in a corner beside a joint move, and where nothing moves. pieces: how fast.
+        corner: the zone that it is; None where it is none.
     """
 
     move: Move
-    stretch: Stretch | None = None
+    way: Way | None = None
     pieces: tuple[Piece, ...] = ()
-    radius: float = 0.0
+    corner: Corner | None = None
 
 
-def legs_of(arm: Arm, program: Program, start: np.ndarray) -> list[Leg]:
-    """All legs in order.
+class PlannedWay(NamedTuple):
+    """How a move goes; None where nothing moves. joints: (k,) at its end, as far as joint moves after it need
+    them."""
+
+    move: Move
+    way: Way | None
+    joints: np.ndarray
+
+
+Run = list[tuple[Move, Stretch | None]]
+"""Moves that follow one another without a stop, and what the tool follows in lines and arcs."""
+
+
+def runs_of(arm: Arm, program: Program, start: np.ndarray) -> list[Run]:
+    """All moves in order.
 
     Args:
         start: (k,) the joints at the beginning [rad or m].
 
     Raises:
-        BadInput: an arc that is none, a zone without a next line; with the move.
+        BadInput: an arc that is none, a zone without a next move; with the move.
     """
-    stretches = _stretches(arm, program, start)
-    radii = _radii(program.moves, stretches)
-    found: list[Leg] = []
-    run: list[Leg] = []
-    for i, (move, stretch) in enumerate(zip(program.moves, stretches, strict=True)):
-        if stretch is None:
-            found.append(Leg(move))
-            continue
-        if _is_none(stretch):
-            continue
-        before = radii[i - 1] / stretch.length if i and radii[i - 1] else 0.0
-        after = radii[i] / stretch.length if radii[i] else 0.0
-        run.append(Leg(move, _part(stretch, before, 1.0 - after)))
-        if radii[i]:
-            following = stretches[i + 1]
-            assert following is not None
-            run.append(Leg(move, _corner(stretch, following, radii[i]), radius=radii[i]))
-            continue
-        found += _with_speeds(run)
-        run = []
+    found: list[Run] = []
+    goes_on = False
+    for move, stretch in zip(program.moves, _stretches(arm, program, start), strict=True):
+        if not goes_on:
+            found.append([])
+        found[-1].append((move, stretch))
+        goes_on = has_zone(move)
+    for move, following in zip_longest(program.moves, program.moves[1:]):
+        if has_zone(move) and (following is None or isinstance(following, Wait)):
+            with at(move.where):
+                valid = "0, or a move next"
+                raise BadProgram("a corner zone without a move after it", where="zone", valid=valid)
     return found
+
+
+def has_zone(move: Move) -> bool:
+    """True where it is not to stop at its end."""
+    return not isinstance(move, Wait) and move.zone > SHORTEST
+
+
+def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
+    """The legs of moves that follow one another without a stop.
+
+    Raises:
+        BadInput: a zone beside a move of no length; with the move.
+    """
+    before, legs = 0.0, list[Leg]()
+    for (move, way, joints), (next_move, following, _) in pairwise(ways):
+        assert way is not None and following is not None
+        assert not isinstance(move, Wait) and not isinstance(next_move, Wait)
+        with at(move.where):
+            radius, into, out = _cut(arm, move.zone, way, following)
+        legs.append(Leg(move, way.part(before, 1.0 - into)))
+        first, second = way.part(1.0 - into, 1.0), following.part(0.0, out)
+        zone = Corner(radius, (move, next_move), (first, second), radius < move.zone)
+        if isinstance(first, Stretch) and isinstance(second, Stretch):
+            legs.append(Leg(move, corner(first, second), corner=zone))
+        else:
+            is_cut = SHARE_OF_WAY in (into, out)
+            legs.append(Leg(move, corner=replace(zone, is_cut=is_cut, joints=joints)))
+        before = out
+    last, way, _ = ways[-1]
+    if way is None:
+        yield Leg(last)
+        return
+    yield from _with_speeds(arm, [*legs, Leg(last, way.part(before, 1.0))])
 
 
 def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | None]:
@@ -84,7 +145,7 @@ def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | 
                 found.append(own := _stretch(pose, move))
                 if not own.length <= LONGEST:
                     raise BadProgram(f"a way of {own.length:.3g} m", valid=f"{LONGEST:g} m or less")
-                if not _is_none(own):
+                if not is_none(own):
                     pose = own.poses(np.array([[1.0, 0.0]]))[0]
                 continue
             found.append(None)
@@ -97,28 +158,11 @@ def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | 
     return found
 
 
-def _is_none(stretch: Stretch) -> bool:
-    """True where the tool stays: the next stretch begins where this one does."""
-    return stretch.length < SHORTEST and stretch.turned < SHORTEST
-
-
-def targets_of(arm: Arm, move: JointMove) -> np.ndarray:
-    """(k,) the joints that a move names.
-
-    Raises:
-        BadInput: not each joint of the arm, or another.
-    """
-    names, given = [joint.name for joint in arm.joints], move.joints or {}
-    for name in given:
-        if name not in names:
-            raise UnknownJoint(
-                f"unknown joint {name!r}", where="joints", valid=nearest_name(name, names)
-            )
-    missing = [name for name in names if name not in given]
-    if missing:
-        told = f"no target of {', '.join(missing)}"
-        raise BadProgram(told, where="joints", valid="one for each joint of the arm")
-    return np.array([given[name] for name in names])
+def is_none(way: Way) -> bool:
+    """True where nothing moves: the next way begins where this one does."""
+    if isinstance(way, JointWay):
+        return way.share < SHORTEST or not way.whole.any()
+    return way.length < SHORTEST and way.turned < SHORTEST
 
 
 def _stretch(start: np.ndarray, move: PathMove) -> Stretch:
@@ -126,116 +170,151 @@ def _stretch(start: np.ndarray, move: PathMove) -> Stretch:
     if move.keeps_orientation:
         end = end.copy()
         end[:3, :3] = start[:3, :3]
-    if move.via is None:
-        return line(start, end)
-    return arc(start, move.via, end, move.along)
+    return line(start, end) if move.via is None else arc(start, move.via, end, move.along)
 
 
-def _radii(moves: Sequence[Move], stretches: Sequence[Stretch | None]) -> list[float]:
-    """[m] The radius of the corner zone at the end of each move: 0 where it stops there."""
-    found = []
-    for i, (move, own) in enumerate(zip(moves, stretches, strict=True)):
-        radius = 0.0 if isinstance(move, Wait) else move.zone
-        if radius:
-            other = stretches[i + 1] if i + 1 < len(moves) else None
-            if other is None or other.arc is not None or own is None or own.arc is not None:
-                with at(move.where):
-                    raise BadProgram(
-                        "a corner zone that is not between two lines",
-                        where="zone",
-                        valid="0, or a lin move before and after it",
-                    )
-            if min(own.length, other.length) < SHORTEST:
-                with at(move.where):
-                    raise BadProgram(
-                        "a corner zone beside a line of no length",
-                        where="zone",
-                        valid="0, or lines that the tool's point goes along",
-                    )
-            radius = min(radius, SHARE_OF_LINE * own.length, SHARE_OF_LINE * other.length)
-        found.append(radius if radius > SHORTEST else 0.0)
+def ways_of(arm: Arm, run: Run, start: np.ndarray) -> list[PlannedWay]:
+    """How the moves of a run go, from where the joints are (k,).
+
+    Raises:
+        BadInput: a target out of reach; with the move.
+    """
+    joint_moves = [i for i, (move, _) in enumerate(run) if isinstance(move, JointMove)]
+    found, joints = list[PlannedWay](), start
+    for i, (move, stretch) in enumerate(run):
+        with at(move.where):
+            way: Way | None = stretch
+            if isinstance(move, JointMove):
+                way = JointWay.of(arm, move, joints)
+                joints = way.target
+            elif (
+                joint_moves and i < joint_moves[-1] and stretch is not None and not is_none(stretch)
+            ):
+                assert isinstance(move, PathMove)
+                follower = follower_of(arm, stretch, move.hold, joints)
+                joints = follower.positions(joints, np.ones(1))[0]
+        found.append(PlannedWay(move, way, joints))
     return found
 
 
-def _part(stretch: Stretch, start: float, end: float) -> Stretch:
-    """A part of a line or an arc, by shares; the whole of it as it is."""
-    if (start, end) == (0.0, 1.0):
-        return stretch
-    first = stretch.poses(np.array([[start, 0.0]]))[0]
-    return replace(
-        stretch, start=first, ways=(end - start) * stretch.ways, turns=(end - start) * stretch.turns
+def _cut(arm: Arm, zone: float, before: Way, after: Way) -> tuple[float, float, float]:
+    """The radius of a corner zone [m], and what share of either way it takes: at most `SHARE_OF_WAY`.
+
+    Between lines and arcs the radius is the same on both sides; beside joint moves each side is cut alone.
+
+    Raises:
+        BadInput: one side is none, or turns on the spot.
+    """
+    sides = before, after
+    for side in sides:
+        if is_none(side) or (isinstance(side, Stretch) and side.length < SHORTEST):
+            told = "a corner zone beside a line of no length"
+            raise BadProgram(
+                told, where="zone", valid="0, or moves that the tool's point goes along"
+            )
+    lengths = [_half(side) for side in sides if isinstance(side, Stretch)]
+    radius = min(zone, *lengths) if len(lengths) == 2 else zone
+    into, out = (
+        side.ways[0].share_within(min(radius, _half(side)))
+        if isinstance(side, Stretch)
+        else side.share_within(arm, radius, at_end)
+        for side, at_end in ((before, True), (after, False))
     )
+    return radius, min(into, SHARE_OF_WAY), min(out, SHARE_OF_WAY)
 
 
-def _corner(before: Stretch, after: Stretch, radius: float) -> Stretch:
-    """The parabola of a corner zone between two lines."""
-    into, out = radius / before.length, radius / after.length
-    entry = before.poses(np.array([[1.0 - into, 0.0]]))[0]
-    ways = np.array([into * before.ways[0], out * after.ways[0]])
-    return Stretch(
-        entry, ways, np.array([into * before.turns[0], out * after.turns[0]]), is_corner=True
-    )
+def _half(stretch: Stretch) -> float:
+    """[m] How far, straight, the middle of a line or an arc is from its ends."""
+    middle = stretch.poses(np.array([[SHARE_OF_WAY, 0.0]]))[0]
+    return float(np.linalg.norm((middle - stretch.start)[:3, 3]))
 
 
-def _with_speeds(run: list[Leg]) -> Iterator[Leg]:
+def size_of(way: Way) -> float:
+    """The length of a way [m]; of a turn on the spot in rad, and of joints as a share of the move."""
+    if isinstance(way, JointWay):
+        return way.share
+    return way.turned if way.length < SHORTEST else way.length
+
+
+def _limits_of(arm: Arm, move: Move, way: Way) -> tuple[float, float]:
+    """How fast a way may be gone along, and how much faster each second, in its sizes."""
+    if isinstance(way, JointWay):
+        assert isinstance(move, JointMove)
+        return joint_law(arm.joints, way.whole, move.speed)
+    assert isinstance(move, PathMove)
+    if way.length < SHORTEST:
+        return move.turn_speed, move.turn_speed / RUN_UP
+    most = min(move.speed, move.turn_speed * way.length / max(way.turned, 1e-300))
+    return most, move.acceleration
+
+
+def _with_speeds(arm: Arm, run: list[Leg]) -> Iterator[Leg]:
     """Legs that follow one another without a stop, with the pieces of their speed."""
-    speeds = _speeds_at_ends(run)
+    speeds = _speeds_at_ends(arm, run)
     for leg, first, last in zip(run, speeds, speeds[1:], strict=False):
-        move, stretch = leg.move, leg.stretch
-        assert isinstance(move, PathMove) and stretch is not None
-        if _is_none(stretch):
-            continue
-        if leg.radius:
-            rate = first / (2.0 * leg.radius)
+        if leg.corner is not None:
+            rate = first / (2.0 * leg.corner.sizes[0])
             yield replace(leg, pieces=(Piece(1.0 / rate, 0.0, rate, 0.0),))
             continue
-        size, most, change = _size_of(move, stretch)
+        assert leg.way is not None
+        if is_none(leg.way):
+            if isinstance(leg.way, JointWay):
+                yield leg
+            continue
+        size, (most, change) = size_of(leg.way), _limits_of(arm, leg.move, leg.way)
         yield replace(
             leg, pieces=tuple(trapezoid(most / size, change / size, first / size, last / size))
         )
 
 
-def _size_of(move: PathMove, stretch: Stretch) -> tuple[float, float, float]:
-    """The length of a stretch [m], its greatest speed [m/s], and acceleration [m/s^2]; of a turn on the spot in
-    rad."""
-    if stretch.length < SHORTEST:
-        return stretch.turned, move.turn_speed, move.turn_speed / RUN_UP
-    return stretch.length, _speed(move, stretch.length, stretch.turned), move.acceleration
-
-
-def _speed(move: PathMove, length: float, turned: float) -> float:
-    """[m/s] The greatest speed on a way of a length [m] with a turn [rad]."""
-    return min(move.speed, move.turn_speed * length / max(turned, 1e-300))
-
-
-def _speeds_at_ends(run: Sequence[Leg]) -> list[float]:
-    """[m/s] The tool's speed at the beginning of each leg and at the end of the last: 0 where it stops."""
+def _speeds_at_ends(arm: Arm, run: Sequence[Leg]) -> list[float]:
+    """The speed at the beginning of each leg, and at the end of the last, in the sizes of the way there: 0 where
+    it stops."""
     most = [0.0] * (len(run) + 1)
     for i, leg in enumerate(run):
-        if leg.radius:
-            most[i] = most[i + 1] = _speed_in_corner(run[i - 1], leg, run[i + 1])
+        if leg.corner is not None:
+            rate = _rate_in_corner(arm, leg.corner)
+            most[i], most[i + 1] = 2.0 * rate * leg.corner.sizes
     for i in (*range(len(run)), *reversed(range(len(run)))):
-        leg, stretch = run[i], run[i].stretch
-        assert stretch is not None
-        if leg.radius:
+        leg = run[i]
+        if leg.corner is not None:
+            sizes = leg.corner.sizes
+            rate = min(most[i] / sizes[0], most[i + 1] / sizes[1])
+            most[i], most[i + 1] = rate * sizes
+            continue
+        assert leg.way is not None
+        if is_none(leg.way):
             most[i] = most[i + 1] = min(most[i], most[i + 1])
             continue
-        assert isinstance(leg.move, PathMove)
-        gained = 2.0 * leg.move.acceleration * stretch.length
+        gained = 2.0 * _limits_of(arm, leg.move, leg.way)[1] * size_of(leg.way)
         most[i + 1] = min(most[i + 1], float(np.sqrt(most[i] ** 2 + gained)))
         most[i] = min(most[i], float(np.sqrt(most[i + 1] ** 2 + gained)))
     return most
 
 
-def _speed_in_corner(before: Leg, corner: Leg, after: Leg) -> float:
-    """[m/s] The lesser of both lines' speeds, and less where the parabola would take more than the
+def _rate_in_corner(arm: Arm, zone: Corner) -> float:
+    """[1/s] How fast a corner is passed: as both sides allow, and so that its bend takes no more than the
     acceleration."""
-    assert isinstance(before.move, PathMove) and isinstance(after.move, PathMove)
-    assert corner.stretch is not None
-    turned = np.linalg.norm(corner.stretch.turns, axis=1)
-    bend = float(np.linalg.norm(corner.stretch.ways[1] - corner.stretch.ways[0]))
-    acceleration = min(before.move.acceleration, after.move.acceleration)
-    bent = corner.radius * float(np.sqrt(2.0 * acceleration / max(bend, 1e-12)))
-    moves = before.move, after.move
-    speeds = (_speed(move, corner.radius, by) for move, by in zip(moves, turned, strict=True))
-    return float(min(*speeds, bent))
+    before, after = zone.moves
+    sides = (before, zone.sides[0], 1.0), (after, zone.sides[1], 0.0)
+    rates = [_limits_of(arm, move, side)[0] / (2.0 * size_of(side)) for move, side, _ in sides]
+    if zone.joints is None:
+        assert isinstance(before, PathMove) and isinstance(after, PathMove)
+        first, second = (side.ways[0] for side in zone.sides if isinstance(side, Stretch))
+        turned = second.slopes(np.zeros(1)) - first.slopes(np.ones(1))
+        bend = float(np.linalg.norm(turned)) + 2.0 * (first.bend + second.bend)
+        acceleration = min(before.acceleration, after.acceleration)
+    else:
+        ways = [_joint_way(arm, move, side, zone.joints, share) for move, side, share in sides]
+        bend = float((np.abs(ways[1] - ways[0]) / fastest(arm.joints)).max())
+        acceleration = 1.0 / RUN_UP
+    return float(min(*rates, np.sqrt(acceleration / max(2.0 * bend, 1e-12))))
+
+
+def _joint_way(arm: Arm, move: Move, side: Way, joints: np.ndarray, share: float) -> np.ndarray:
+    """(k,) about how far the joints go on one side of a corner, from how they go at its share that is the
+    corner."""
+    if isinstance(side, JointWay):
+        return side.share * side.whole
+    assert isinstance(move, PathMove)
+    return follower_of(arm, side, move.hold, joints).rates_at(joints, share)

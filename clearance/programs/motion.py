@@ -8,30 +8,24 @@ Between two moves without a corner zone the tool stops. Not for: files, and what
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from clearance.errors import (
-    BadDimension,
-    BadInput,
-    BadProgram,
-    UnknownJoint,
-    UnknownLink,
-    at,
-    nearest_name,
-)
+from clearance.errors import BadDimension, BadProgram, UnknownJoint, UnknownLink, at, nearest_name
 from clearance.programs.arm import Arm
 from clearance.programs.corner import PATH_ERROR, corner_of
-from clearance.programs.following import Follower
-from clearance.programs.inverse import nearest_joints
-from clearance.programs.legs import Leg, legs_of, targets_of
+from clearance.programs.following import Follower, follower_of
+from clearance.programs.joint_corner import JointCorner, bow
+from clearance.programs.joint_way import JointWay
+from clearance.programs.legs import Corner, Leg, PlannedWay, legs_of, runs_of, ways_of
 from clearance.programs.moves import STEP_TURN, JointMove, PathMove, Program, Wait
 from clearance.programs.path_samples import PathSamples
-from clearance.programs.time_law import trapezoid
+from clearance.programs.time_law import Piece
+from clearance.programs.tool_path import Stretch
 from clearance.world.corner_zone import CornerZone
-from clearance.world.robot import Joint, Robot
+from clearance.world.robot import Robot
 from clearance.world.trajectory import MoveSpan, Trajectory
 
 MOST_HALVINGS = 8
@@ -42,12 +36,6 @@ SAME_SPEED = 1e-5
 
 MOST_SAMPLES = 1_000_000
 """Most samples of a program: a step in the wrong unit needs more."""
-
-RUN_UP = 0.25
-"""[s] In which a joint reaches its greatest speed, where nothing else is known."""
-
-USUAL_SPEED = 1.0
-"""[rad/s] or [m/s]: the greatest speed of a joint of which no file says it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,9 +65,12 @@ def motion_of(robot: Robot, program: Program) -> ProgramMotion:
         raise BadDimension(f"a step of {program.step * 1e3:g} mm", valid="0.01 to 1000 mm")
     arm = Arm(robot, program.link, program.link_from_tool)
     samples = _Samples(arm, program, _start_of(robot, arm, program))
-    for leg in legs_of(arm, program, samples.at):
-        with at(leg.move.where):
-            samples.add(leg)
+    for run in runs_of(arm, program, samples.at):
+        ways = ways_of(arm, run, samples.at)
+        samples.note_targets(ways)
+        for leg in legs_of(arm, ways):
+            with at(leg.move.where):
+                samples.add(leg)
     return samples.motion()
 
 
@@ -130,15 +121,27 @@ class _Samples:
         began = self.now
         if isinstance(leg.move, Wait):
             self._stand(leg.move.seconds)
-        elif isinstance(leg.move, JointMove):
-            self._straight(leg.move)
-        else:
-            self._along(leg, leg.move)
+        elif leg.way is None and leg.corner is not None:
+            self._beside_joints(leg, leg.corner)
+        elif isinstance(leg.way, JointWay):
+            self._straight(leg, leg.way)
+        elif leg.way is not None and isinstance(leg.move, PathMove):
+            self._along(leg, leg.way, leg.move)
         self._require_limits()
         if self.spans and self.spans[-1].name == leg.move.name:
             self.spans[-1] = replace(self.spans[-1], end=self.now)
         else:
             self.spans.append(MoveSpan(leg.move.name, began, self.now))
+
+    def note_targets(self, ways: Sequence[PlannedWay]) -> None:
+        """Says which joints are taken in moves to a pose."""
+        names = [joint.name for joint in self.arm.joints]
+        for move, way, _ in ways:
+            if isinstance(way, JointWay) and isinstance(move, JointMove) and move.pose is not None:
+                told = [f"{name} {at:.4g}" for name, at in zip(names, way.target, strict=True)]
+                self.notes.append(
+                    f"{move.name}: of the joints that reach its pose the nearest are taken: {', '.join(told)}"
+                )
 
     def motion(self) -> ProgramMotion:
         """All of them, joints that are not of the arm at rest."""
@@ -160,60 +163,72 @@ class _Samples:
     def _stand(self, seconds: float) -> None:
         self._append(np.array([seconds]), self.at[None], np.zeros((1, len(self.at))))
 
-    def _straight(self, move: JointMove) -> None:
+    def _straight(self, leg: Leg, way: JointWay) -> None:
         """All joints in proportion; exact, since a cubic holds what a constant acceleration makes of them."""
-        target = self._target(move)
-        way = target - self.at
-        if not way.any():
+        if not leg.pieces:
             return
-        start, rate, change = self.at, *_joint_law(self.arm.joints, way, move.speed)
-        for piece in trapezoid(rate, change):
-            moved = piece.at(np.linspace(0.0, piece.duration, 33))[:, None] * way
-            n = self._n_samples(self.arm.poses(start + moved))
+        for piece in leg.pieces:
+            moved = way.joints(piece.at(np.linspace(0.0, piece.duration, 33)))
+            n = self._n_samples(self.arm.poses(moved))
             times = np.linspace(0.0, piece.duration, n + 1)[1:]
-            positions = start + piece.at(times)[:, None] * way
-            self._append(times, positions, piece.rates_at(times)[:, None] * way)
-        self._stop_at(target)
+            rates = way.share * piece.rates_at(times)[:, None] * way.whole
+            self._append(times, way.joints(piece.at(times)), rates)
+        self.at = way.joints(np.ones(1))[0]
+        self.positions[-1][-1] = self.at
+        if way.last == 1.0:
+            self.velocities[-1][-1] = 0.0
 
-    def _target(self, move: JointMove) -> np.ndarray:
-        """(k,) where a joint move ends."""
-        if move.pose is None:
-            return targets_of(self.arm, move)
-        near, ranges = self.at.copy(), self.arm.chain.ranges.copy()
-        for name, value in move.near.items():
-            near[self._column(name, "near")] = value
-        for name, (low, high) in move.within.items():
-            row = ranges[self._column(name, "within")]
-            row[:] = max(low, row[0]), min(high, row[1])
-            if row[0] > row[1]:
-                told = f"joint {name!r} cannot be from {low:.4g} to {high:.4g}"
-                raise BadProgram(told, where="within", valid="a range within its limits")
-        found = nearest_joints(self.arm, move.pose, near, ranges)
-        told = ", ".join(
-            f"{joint.name} {value:.4g}" for joint, value in zip(self.arm.joints, found, strict=True)
-        )
-        self.notes.append(
-            f"{move.name}: of the joints that reach its pose the nearest are taken: {told}"
-        )
-        return found
-
-    def _along(self, leg: Leg, move: PathMove) -> None:
+    def _along(self, leg: Leg, stretch: Stretch, move: PathMove) -> None:
         """What the tool's path makes of the joints."""
-        follower = self._follower(leg, move)
-        for n_halved in range(MOST_HALVINGS + 1):
-            samples = PathSamples.of(follower, self.at, leg.pieces, self.program.step / 2**n_halved)
-            off = float(samples.deviations.max(initial=0.0)) + self._seam(samples)
-            if off <= PATH_ERROR:
-                break
-        else:
-            raise _unproven(samples, self.arm)
-        self.error = max(self.error, off)
-        if leg.radius:
-            corner = corner_of(follower, samples, self.now, leg.radius, move.name)
-            self.corners.append(corner)
-            self.notes.append(_note_on(corner, move.zone))
+        follower = follower_of(self.arm, stretch, move.hold, self.at)
+        samples = self._proven(follower, self.at, leg.pieces, self._seam)
+        self.error = max(self.error, float(samples.deviations.max()) + self._seam(samples))
+        if leg.corner is not None:
+            zone = corner_of(follower, samples, self.now, leg.corner.radius, move.name)
+            self._add_corner(zone, leg.corner)
         self._append(samples.times[1:], samples.positions[1:], samples.velocities[1:])
         self.at = samples.positions[-1]
+
+    def _proven(
+        self,
+        follower: Follower,
+        start: np.ndarray,
+        pieces: Sequence[Piece],
+        seam: Callable[[PathSamples], float] = lambda _: 0.0,
+    ) -> PathSamples:
+        """Samples so near to each other that joints between them are within `PATH_ERROR` of their cubics."""
+        for n_halved in range(MOST_HALVINGS + 1):
+            samples = PathSamples.of(follower, start, pieces, self.program.step / 2**n_halved)
+            if float(samples.deviations.max()) + seam(samples) <= PATH_ERROR:
+                return samples
+        raise _unproven(samples, self.arm)
+
+    def _add_corner(self, zone: CornerZone, corner: Corner) -> None:
+        self.corners.append(zone)
+        self.notes.append(_note_on(zone, corner))
+
+    def _beside_joints(self, leg: Leg, corner: Corner) -> None:
+        """The corner zone between two moves of which one is a joint move."""
+        (piece,), joints, wide = leg.pieces, [self.at], np.zeros(len(self.at))
+        for move, side in zip(corner.moves, corner.sides, strict=True):
+            if isinstance(side, JointWay):
+                joints.append(side.joints(np.ones(1))[0])
+                last = side.share * side.whole
+                continue
+            assert isinstance(move, PathMove)
+            follower = follower_of(self.arm, side, move.hold, joints[-1])
+            samples = self._proven(follower, joints[-1], [Piece(1.0, 0.0, 1.0, 0.0)])
+            joints.append(samples.positions[-1])
+            last, wide = samples.velocities[-1], np.maximum(wide, bow(samples))
+        rates = np.stack([self.velocities[-1][-1], 2.0 * piece.rate * last])
+        zone = JointCorner(joints[0], joints[1], joints[2], rates, wide, piece.duration)
+        n = self._n_samples(self.arm.poses(zone.samples(32)[1]))
+        times, positions, velocities = zone.samples(n)
+        ends, links = (self.now, self.now + piece.duration), zone.links_off(self.arm, n)
+        found = CornerZone(leg.move.name, *ends, corner.radius, links)
+        self._add_corner(found, corner)
+        self._append(times[1:], positions[1:], velocities[1:])
+        self.at = positions[-1]
 
     def _seam(self, samples: PathSamples) -> float:
         """[rad or m] How far the first cubic is off that of the samples, as it begins like what was before.
@@ -229,33 +244,6 @@ class _Samples:
                 valid="the same joints held on both sides of a zone, where they are",
             )
         return float(np.abs(samples.positions[0] - self.at).max() + samples.times[1] * rates)
-
-    def _follower(self, leg: Leg, move: PathMove) -> Follower:
-        """The arm on a leg's path, joints that the move tells left out of it."""
-        assert leg.stretch is not None
-        n = len(self.arm.joints)
-        free, held = np.ones(n, dtype=bool), np.zeros(n)
-        for name, value in (move.hold or {}).items():
-            column = self._column(name, "hold")
-            free[column], held[column] = False, value - self.at[column]
-        if free.sum() < 6:
-            raise BadProgram(
-                f"{int(free.sum())} joints are free to follow the tool's path",
-                valid="six or more; an arm of fewer goes by joint moves",
-            )
-        return Follower(self.arm, leg.stretch, free, held)
-
-    def _column(self, name: str, where: str) -> int:
-        """The column of a joint.
-
-        Raises:
-            UnknownJoint: it is none of the arm.
-        """
-        names = [joint.name for joint in self.arm.joints]
-        if name not in names:
-            valid = nearest_name(name, names)
-            raise UnknownJoint(f"unknown joint {name!r}", where=where, valid=valid)
-        return names.index(name)
 
     def _n_samples(self, poses: np.ndarray) -> int:
         """How many samples a motion through poses needs where it is quickest."""
@@ -276,11 +264,6 @@ class _Samples:
             raise BadDimension(
                 f"more than {MOST_SAMPLES:,} samples", where="step", valid="a larger step"
             )
-
-    def _stop_at(self, target: np.ndarray) -> None:
-        """Makes the last sample what a move's end is, without rounding."""
-        self.at = target
-        self.positions[-1][-1], self.velocities[-1][-1] = target, 0.0
 
     def _require_limits(self) -> None:
         """Nothing, if the samples added last are within the limits of the joints.
@@ -305,19 +288,7 @@ class _Samples:
             )
 
 
-def _joint_law(joints: Sequence[Joint], way: np.ndarray, speed: float) -> tuple[float, float]:
-    """[1/s] and [1/s^2] The rate of a joint move, and its change: no joint is faster than it may be."""
-    limits = np.array(
-        [
-            one.velocity if np.isfinite(one.velocity) and one.velocity > 0.0 else USUAL_SPEED
-            for one in joints
-        ]
-    )
-    rate = float(speed * (limits[way != 0.0] / np.abs(way[way != 0.0])).min())
-    return rate, rate / (speed * RUN_UP)
-
-
-def _unproven(samples: PathSamples, arm: Arm) -> BadInput:
+def _unproven(samples: PathSamples, arm: Arm) -> BadProgram:
     """Where nothing is proven of the joints between samples."""
     bad = int(np.argmax(samples.deviations.max(axis=1)))
     x, y, z = arm.poses(samples.positions[bad : bad + 1])[0, :3, 3]
@@ -327,16 +298,18 @@ def _unproven(samples: PathSamples, arm: Arm) -> BadInput:
     )
 
 
-def _note_on(corner: CornerZone, asked: float) -> str:
-    """What a corner zone is taken to admit, whose program asks for a radius [m]."""
-    most = max(off.way for off in corner.links.values())
-    cut = (
-        ""
-        if corner.radius == asked
-        else f" (cut from {asked * 1e3:.4g} mm: at most half of a line)"
-    )
-    size, when = f"{corner.radius * 1e3:.4g} mm{cut}", f"{corner.start:.3f} to {corner.end:.3f} s"
+def _note_on(zone: CornerZone, corner: Corner) -> str:
+    """What a corner zone is taken to admit."""
+    most, asked = max(off.way for off in zone.links.values()), corner.moves[0].zone
+    before = "" if zone.radius == asked else f" from {asked * 1e3:.4g} mm"
+    cut = f" (cut{before}: at most half of a move)" if corner.is_cut else ""
+    if corner.joints is not None:
+        paths = "paths of the joints in its triangle"
+    elif any(isinstance(side, Stretch) and side.ways[0].bend for side in corner.sides):
+        paths = "paths of the tool in the hull of its triangle and arcs"
+    else:
+        paths = "paths of the tool in its triangle"
     return (
-        f"corner zone of {size} after {corner.name}, {when}: all paths of the tool in its triangle count; "
-        f"links are up to {most * 1e3:.3g} mm off the parabola"
+        f"corner zone of {zone.radius * 1e3:.4g} mm{cut} after {zone.name}, {zone.start:.3f} to "
+        f"{zone.end:.3f} s: all {paths} count; links are up to {most * 1e3:.3g} mm off the nominal path"
     )

@@ -90,5 +90,8 @@ class Program:
     step: float = 0.002
 
 
+SHARE_OF_WAY = 0.5
+"""Of a move that a corner zone may take at either end."""
+
 STEP_TURN = np.radians(1.0)
 """[rad] The most that a tool turns from sample to sample."""

@@ -74,6 +74,6 @@ def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
     """How many intervals a piece needs where it is quickest."""
     stretch = follower.stretch
     share = piece.duration * np.abs(piece.rates_at(np.array([0.0, piece.duration]))).max()
-    sizes = np.linalg.norm(stretch.turns, axis=1).sum(), np.linalg.norm(stretch.ways, axis=1).sum()
-    length = stretch.length if stretch.arc is not None else sizes[1]
-    return max(1, int(np.ceil(share * length / step)), int(np.ceil(share * sizes[0] / STEP_TURN)))
+    turned = np.linalg.norm(stretch.turns, axis=1).sum()
+    length = sum(way.length for way in stretch.ways)
+    return max(1, int(np.ceil(share * length / step)), int(np.ceil(share * turned / STEP_TURN)))

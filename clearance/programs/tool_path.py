@@ -1,18 +1,18 @@
-"""Where a tool is to be: straight lines, arcs and the parabolas of corner zones, in the frame of the robot's root.
+"""Where a tool is to be: straight lines, arcs and corners between them, in the frame of the robot's root.
 
 Every stretch is a sum of two strokes, s1 and s2 in [0, 1]:
 
-    p = p0 + d1 s1 + d2 s2 (line, parabola)  or  c + r (cos(phi s1) e1 + sin(phi s1) e2) (arc),
+    p = p0 + f1(s1) + f2(s2),   f(s) = d s (line)  or  r (cos(phi s) - 1) e1 + r sin(phi s) e2 (arc),
     R = exp(s2 w2) exp(s1 w1) R0.
 
-On a line and an arc s2 is 0. In a corner zone s1 = 2 u - u^2 and s2 = u^2 with u from 0 to 1, so that the
-position is the parabola that touches both lines (Bezier), and the turn begins and ends as on them. Not for: how
-fast (`time_law`).
+On a line and an arc s2 is 0. In a corner zone s1 = 2 u - u^2 and s2 = u^2 with u from 0 to 1, so that the path
+touches both its neighbours where it begins and ends (between two lines it is Bezier's parabola), and turns as on
+them. Not for: how fast (`time_law`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,19 +27,53 @@ from clearance.programs.series import (
     sine_and_cosine,
 )
 
-NO_TURN = np.zeros(3)
+
+@dataclass(frozen=True, eq=False)
+class Straight:
+    """A straight way (3,) of a stroke [m]."""
+
+    way: np.ndarray
+
+    @property
+    def length(self) -> float:
+        """[m]."""
+        return float(np.linalg.norm(self.way))
+
+    @property
+    def bend(self) -> float:
+        """[m] How fast its slope changes: not at all."""
+        return 0.0
+
+    def part(self, start: float, end: float) -> Straight:
+        """From one share to another."""
+        return Straight((end - start) * self.way)
+
+    def share_within(self, distance: float) -> float:
+        """The share from an end to where it is so far from that end [m]."""
+        return distance / self.length
+
+    def slopes(self, strokes: np.ndarray) -> np.ndarray:
+        """(n, 3) [m] how the point moves with the stroke at strokes (n,)."""
+        return np.tile(self.way, (len(strokes), 1))
+
+    def series(self, stroke: np.ndarray) -> np.ndarray:
+        """(ORDER + 1, n, 3) [m] the point from where it begins, at a series (ORDER + 1, n)."""
+        return stroke[:, :, None] * self.way
+
+    def majorant(self, by_stroke: np.ndarray) -> np.ndarray:
+        """(ORDER + 2, n) [m] of the point, by that of the stroke."""
+        return by_stroke * self.length
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A circle's arc.
+    """A circle's arc, with the properties of `Straight`.
 
     Attributes:
-        centre: (3,) [m]. first, second: (3,) from the centre to the start, and at right angles to it [m].
+        first, second: (3,) from the centre to the start, and at right angles to it [m].
         angle: [rad] from start to end.
     """
 
-    centre: np.ndarray
     first: np.ndarray
     second: np.ndarray
     angle: float
@@ -55,6 +89,48 @@ class Arc:
         cross = np.cross(self.first, self.second)
         return np.asarray(cross / np.linalg.norm(cross))
 
+    @property
+    def length(self) -> float:
+        """[m]."""
+        return self.angle * self.radius
+
+    @property
+    def bend(self) -> float:
+        """[m] How fast its slope changes."""
+        return self.angle**2 * self.radius
+
+    def part(self, start: float, end: float) -> Arc:
+        """From one share to another."""
+        sine, cosine = np.sin(self.angle * start), np.cos(self.angle * start)
+        return Arc(
+            cosine * self.first + sine * self.second,
+            cosine * self.second - sine * self.first,
+            (end - start) * self.angle,
+        )
+
+    def share_within(self, distance: float) -> float:
+        """The share from an end to where it is so far from that end, straight [m]."""
+        return float(2.0 * np.arcsin(min(1.0, 0.5 * distance / self.radius)) / self.angle)
+
+    def slopes(self, strokes: np.ndarray) -> np.ndarray:
+        """(n, 3) [m] how the point moves with the stroke at strokes (n,)."""
+        angles = self.angle * strokes[:, None]
+        return np.asarray(self.angle * (np.cos(angles) * self.second - np.sin(angles) * self.first))
+
+    def series(self, stroke: np.ndarray) -> np.ndarray:
+        """(ORDER + 1, n, 3) [m] the point from where it begins, at a series (ORDER + 1, n)."""
+        sine, cosine = sine_and_cosine(self.angle * stroke)
+        cosine[0] -= 1.0
+        return cosine[:, :, None] * self.first + sine[:, :, None] * self.second
+
+    def majorant(self, by_stroke: np.ndarray) -> np.ndarray:
+        """(ORDER + 2, n) [m] of the point, by that of the stroke."""
+        return self.radius * majorant_of_turns(self.angle * by_stroke)
+
+
+STILL = Straight(np.zeros(3))
+NO_TURN = np.zeros(3)
+
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
@@ -62,22 +138,19 @@ class Stretch:
 
     Attributes:
         start: (4, 4) `root_from_tool` at its beginning [m].
-        ways: (2, 3) how far each stroke moves the tool's point [m]. turns: (2, 3) rotation vectors of both [rad].
-        arc: instead of the first way. is_corner: the strokes are those of a corner zone.
+        ways: how each stroke moves the tool's point. turns: (2, 3) rotation vectors of both [rad].
+        is_corner: the strokes are those of a corner zone.
     """
 
     start: np.ndarray
-    ways: np.ndarray
+    ways: tuple[Straight | Arc, Straight | Arc]
     turns: np.ndarray
-    arc: Arc | None = None
     is_corner: bool = False
 
     @property
     def length(self) -> float:
         """[m] Of the first stroke's way."""
-        if self.arc is not None:
-            return abs(self.arc.angle) * self.arc.radius
-        return float(np.linalg.norm(self.ways[0]))
+        return self.ways[0].length
 
     @property
     def turned(self) -> float:
@@ -132,34 +205,38 @@ class Stretch:
         turn = _turned_by(self.turns[0], turns[:, :, 0]) @ self.start[:3, :3]
         if self.turns[1].any():
             turn = matrix_product(_turned_by(self.turns[1], turns[:, :, 1]), turn)
-        origin = strokes[:, :, 1, None] * self.ways[1]
-        if self.arc is None:
-            origin = origin + strokes[:, :, 0, None] * self.ways[0]
-            origin[0] += self.start[:3, 3]
-        else:
-            sine, cosine = sine_and_cosine(self.arc.angle * strokes[:, :, 0])
-            origin = (
-                origin + cosine[:, :, None] * self.arc.first + sine[:, :, None] * self.arc.second
-            )
-            origin[0] += self.arc.centre
+        first, second = self.ways
+        origin = first.series(strokes[:, :, 0]) + second.series(strokes[:, :, 1])
+        origin[0] += self.start[:3, 3]
         return turn, origin
 
     def majorants(self, strokes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(ORDER + 2, n) majorants of the rotation and of the origin [m], at series of strokes."""
         by_stroke = moved(strokes)
-        sizes = np.linalg.norm(self.turns, axis=1)
-        turn = majorant_of_turns(by_stroke @ sizes)
-        if self.arc is None:
-            return turn, by_stroke @ np.linalg.norm(self.ways, axis=1)
-        round_it = majorant_of_turns(abs(self.arc.angle) * by_stroke[:, :, 0])
-        return turn, self.arc.radius * round_it
+        turn = majorant_of_turns(by_stroke @ np.linalg.norm(self.turns, axis=1))
+        first, second = self.ways
+        return turn, first.majorant(by_stroke[:, :, 0]) + second.majorant(by_stroke[:, :, 1])
+
+    def part(self, start: float, end: float) -> Stretch:
+        """From one share to another of a line or an arc; the whole of it as it is."""
+        if (start, end) == (0.0, 1.0):
+            return self
+        first = self.poses(np.array([[start, 0.0]]))[0]
+        way, share = self.ways[0].part(start, end), end - start
+        return replace(self, start=first, ways=(way, STILL), turns=share * self.turns)
+
+
+def corner(before: Stretch, after: Stretch) -> Stretch:
+    """The nominal path of a corner zone that takes the place of the parts of two lines or arcs."""
+    ways, turns = (before.ways[0], after.ways[0]), np.array([before.turns[0], after.turns[0]])
+    return Stretch(before.start, ways, turns, is_corner=True)
 
 
 def line(start: np.ndarray, end: np.ndarray) -> Stretch:
     """The straight line from a pose to another (4, 4), its orientation about one axis at a constant rate."""
     turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
-    ways = np.array([end[:3, 3] - start[:3, 3], NO_TURN])
-    return Stretch(start, ways, np.array([turn, NO_TURN]))
+    way = Straight(end[:3, 3] - start[:3, 3])
+    return Stretch(start, (way, STILL), np.array([turn, NO_TURN]))
 
 
 def arc(start: np.ndarray, via: np.ndarray, end: np.ndarray, along: bool) -> Stretch:
@@ -173,7 +250,7 @@ def arc(start: np.ndarray, via: np.ndarray, end: np.ndarray, along: bool) -> Str
     """
     found = _circle(start[:3, 3], via, end[:3, 3])
     turn = found.normal * found.angle if along else rotation_vector(end[:3, :3] @ start[:3, :3].T)
-    return Stretch(start, np.zeros((2, 3)), np.array([turn, NO_TURN]), found)
+    return Stretch(start, (found, STILL), np.array([turn, NO_TURN]))
 
 
 WIDEST = 100.0
@@ -203,7 +280,7 @@ def _circle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> Arc:
         )
     second = np.cross(cross / np.sqrt(size), first)
     angle = float(np.arctan2((c - centre) @ second, (c - centre) @ first)) % (2.0 * np.pi)
-    return Arc(centre, first, second, angle)
+    return Arc(first, second, angle)
 
 
 def rotation_vector(rotation: np.ndarray) -> np.ndarray:

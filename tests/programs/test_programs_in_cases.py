@@ -261,24 +261,11 @@ FAULTS = {
     ),
     "a zone at the end": (
         [{"lin": {"to": {"frame": "base", "xyz": "end"}, "zone": 0.01}}],
-        "that is not between two lines",
+        "without a move after it",
     ),
-    "a zone after a joint move": (
-        [{"ptp": {"joints": START, "zone": 0.01}}, {"lin": {"to": place(np.array([1, 0, 1]))}}],
-        "that is not between two lines",
-    ),
-    "a zone after an arc": (
-        [
-            {
-                "circ": {
-                    "via": {"frame": "base", "xyz": [1.0, 0.0, 1.0]},
-                    "to": {"frame": "base", "xyz": "end"},
-                    "zone": 0.01,
-                }
-            },
-            {"lin": {"to": place(np.array([1, 0, 1]))}},
-        ],
-        "that is not between two lines",
+    "a zone before a wait": (
+        [{"ptp": {"joints": START, "zone": 0.01}}, {"wait": 1.0}],
+        "without a move after it",
     ),
     "an unknown frame": (
         [{"lin": {"to": {"frame": "tabel", "xyz": "end"}}}],

@@ -1,0 +1,126 @@
+"""How joints go in a joint move: straight, all in proportion, no faster than they may. Not for: lines of a tool
+(`tool_path`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from clearance.errors import BadProgram
+from clearance.programs.arm import Arm
+from clearance.programs.inverse import nearest_joints
+from clearance.programs.moves import SHARE_OF_WAY, JointMove
+from clearance.world.robot import Joint
+
+RUN_UP = 0.25
+"""[s] In which a joint, or a tool that turns on the spot, reaches its greatest speed, where nothing else is
+known."""
+
+USUAL_SPEED = 1.0
+"""[rad/s] or [m/s]: the greatest speed of a joint of which no file says it."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointWay:
+    """A joint move, or a part of one.
+
+    Attributes:
+        start, target: (k,) where the joints are before and after the whole move [rad or m].
+        first, last: the shares of it between which the part is.
+    """
+
+    start: np.ndarray
+    target: np.ndarray
+    first: float = 0.0
+    last: float = 1.0
+
+    @classmethod
+    def of(cls, arm: Arm, move: JointMove, start: np.ndarray) -> JointWay:
+        """A move from where the joints are; to a pose by the joints for it that are nearest to what it says.
+
+        Raises:
+            BadProgram: no joints within their ranges. UnknownJoint: none of the arm.
+        """
+        if move.pose is None:
+            return cls(start, targets_of(arm, move))
+        near, ranges = start.copy(), arm.chain.ranges.copy()
+        for name, value in move.near.items():
+            near[arm.column(name, "near")] = value
+        for name, (low, high) in move.within.items():
+            row = ranges[arm.column(name, "within")]
+            row[:] = max(low, row[0]), min(high, row[1])
+            if row[0] > row[1]:
+                told = f"joint {name!r} cannot be from {low:.4g} to {high:.4g}"
+                raise BadProgram(told, where="within", valid="a range within its limits")
+        return cls(start, nearest_joints(arm, move.pose, near, ranges))
+
+    @property
+    def whole(self) -> np.ndarray:
+        """(k,) how far the joints go in the whole move."""
+        return np.asarray(self.target - self.start)
+
+    @property
+    def share(self) -> float:
+        """How much of the move it is."""
+        return self.last - self.first
+
+    def part(self, first: float, last: float) -> JointWay:
+        """From one share of the whole move to another."""
+        return replace(self, first=first, last=last)
+
+    def joints(self, shares: np.ndarray) -> np.ndarray:
+        """(n, k) at shares (n,) of this part."""
+        found = self.start + (self.first + self.share * shares)[:, None] * self.whole
+        if self.last == 1.0:
+            found[shares == 1.0] = self.target
+        return np.asarray(found)
+
+    def share_within(self, arm: Arm, distance: float, at_end: bool) -> float:
+        """The share from one end to where the tool's point is last so far from there [m]; `SHARE_OF_WAY` at most.
+
+        Exactness: no less than that, and by less than a hundred-thousandth of the move more, if the point does
+            not come back within 1/512 of the move.
+        """
+        low, high = 0.0, SHARE_OF_WAY
+        for _ in range(2):
+            shares = np.linspace(low, high, 257)
+            points = arm.poses(self.joints(1.0 - shares if at_end else shares))[:, :3, 3]
+            corner = arm.poses(self.joints(np.array([1.0 if at_end else 0.0])))[0, :3, 3]
+            near = np.flatnonzero(np.linalg.norm(points - corner, axis=1) <= distance)
+            last = near[-1] if len(near) else 0
+            if last == len(shares) - 1:
+                break
+            low, high = shares[last], shares[last + 1]
+        return float(high)
+
+
+def targets_of(arm: Arm, move: JointMove) -> np.ndarray:
+    """(k,) the joints that a move names.
+
+    Raises:
+        BadInput: not each joint of the arm, or another.
+    """
+    names, given = [joint.name for joint in arm.joints], move.joints or {}
+    for name in given:
+        arm.column(name, "joints")
+    missing = [name for name in names if name not in given]
+    if missing:
+        told = f"no target of {', '.join(missing)}"
+        raise BadProgram(told, where="joints", valid="one for each joint of the arm")
+    return np.array([given[name] for name in names])
+
+
+def fastest(joints: Sequence[Joint]) -> np.ndarray:
+    """(k,) [rad/s] or [m/s] the greatest speeds of joints."""
+    known = [one.velocity if np.isfinite(one.velocity) else 0.0 for one in joints]
+    return np.array([one if one > 0.0 else USUAL_SPEED for one in known])
+
+
+def joint_law(joints: Sequence[Joint], way: np.ndarray, speed: float) -> tuple[float, float]:
+    """[1/s] and [1/s^2] The rate of a joint move, and its change: no joint is faster than it may be."""
+    goes = way != 0.0
+    rate = float(speed * (fastest(joints)[goes] / np.abs(way[goes])).min())
+    return rate, rate / (speed * RUN_UP)
