@@ -32,7 +32,14 @@ def clearance() -> None:
 
 
 @click.command()
-def schema() -> None:
+@click.option(
+    "--results",
+    is_flag=False,
+    flag_value="summary",
+    type=click.Choice(["summary", "findings"]),
+    help="Print that of summary.json, or of findings.json, in place of case files.",
+)
+def schema(results: str | None) -> None:
     """Prints the JSON Schema of case files, with which editors complete keys and mark faults.
 
     Keep it in a file and name that in a case file's first line:
@@ -41,8 +48,10 @@ def schema() -> None:
     import json
 
     from clearance.formats.schema.json_schema import case_schema
+    from clearance.report.results_schema import findings_schema, summary_schema
 
-    click.echo(json.dumps(case_schema(), indent=2))
+    made = {None: case_schema, "summary": summary_schema, "findings": findings_schema}[results]
+    click.echo(json.dumps(made(), indent=2))
 
 
 for command in (

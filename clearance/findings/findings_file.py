@@ -26,6 +26,9 @@ FILE_NAME = "findings.json"
 FORMAT = 2
 """Which keys there are: `scripts/docs/results.md`."""
 
+SCHEMA = f"urn:clearance:findings:{FORMAT}"
+"""The name of the JSON Schema, which `clearance schema --results findings` prints."""
+
 MOST_LISTED = 10_000
 """Most findings in a file, the worst; how many more there are is said."""
 
@@ -74,7 +77,7 @@ def finding_list_of(
 def findings_text(found: FindingList) -> str:
     """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances and moves
     nothing where there are none."""
-    told = asdict(found)
+    told = {"$schema": SCHEMA, **asdict(found)}
     for name in ("doubts", "findings"):
         rows = zip(told[name], getattr(found, name), strict=True)
         told[name] = [row | {"code": one.code} for row, one in rows]

@@ -15,11 +15,14 @@ from clearance.report.topics import EVERY
 FORMAT = 4
 """Which keys there are: `scripts/docs/results.md`."""
 
+SCHEMA = f"urn:clearance:summary:{FORMAT}"
+"""The name of the JSON Schema, which `clearance schema --results` prints."""
+
 
 def summary_of(model: ReportModel) -> dict[str, Any]:
     """Everything about a run that fits on a page, as JSON-ready values; a limit that does not
     exist is None. Keys `tolerances`, `recordings` and `body_gaps` are there where a case has them."""
-    told: dict[str, Any] = {"format": FORMAT, "name": model.record.case.name}
+    told: dict[str, Any] = {"$schema": SCHEMA, "format": FORMAT, "name": model.record.case.name}
     for topic in EVERY:
         if topic.data is not None:
             named = model.record.moves.named
