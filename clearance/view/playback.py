@@ -19,6 +19,7 @@ import numpy as np
 from clearance.errors import MissingFile
 from clearance.extras import require
 from clearance.record.replay import FILE_NAME, Replay, load_replay
+from clearance.record.wording import seconds
 from clearance.report.blocks import At, Bullets, Inline, Section
 from clearance.report.page import replay_page
 from clearance.view.server import PageServer
@@ -105,7 +106,8 @@ def moments_of(replay: Replay) -> Iterator[tuple[str, float]]:
     worst = replay.i_worst
     micrometres = math.floor(replay.clearances[worst] * 1e6)  # down: never more than was measured
     time = float(replay.times[worst])
-    yield f"worst: {micrometres / 1000:.3f} mm at {time:.3f} s", time
+    move = replay.moves[replay.move[worst]] if replay.move[worst] >= 0 else ""
+    yield f"worst: {micrometres / 1000:.3f} mm at {seconds(time, move)}", time
     for code, name in ((1, "first near miss"), (2, "first violation"), (3, "first contact")):
         if (replay.status == code).any():
             yield name, float(replay.times[np.argmax(replay.status == code)])
