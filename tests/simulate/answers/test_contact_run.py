@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -94,16 +93,6 @@ def test_what_stands_for_a_body_reaches_the_notes(shelf):
         if note.startswith("contact: panda_leftfinger: ")
     ]
     assert len(told) == 1 and "its hull stands for it" in told[0]
-
-
-def test_a_run_without_contact_does_not_look(monkeypatch):
-    import clearance.run
-
-    monkeypatch.setitem(sys.modules, "clearance.simulate.answers.contact.contacts", None)
-    case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
-    run = clearance.run.check(case)
-    assert run.record.contacts == () and run.record.deepest is None
-    assert run.steps["penetration"].null_count == run.steps.num_rows
 
 
 def test_a_touch_that_rounding_parts_in_another_frame_is_a_contact_of_depth_0():

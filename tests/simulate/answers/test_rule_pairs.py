@@ -43,21 +43,6 @@ def test_near_pairs_are_those_of_a_run_with_every_pair(name, need):
         assert (true.clearances < WITHIN).all()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["panda_shelf", "dual_arm_handover"])
-@pytest.mark.parametrize("need", ["steps", "limit"])
-def test_what_is_known_of_the_nearest_pairs_is_what_they_would_be_measured_as(name, need):
-    for rule in checked(name, need).session.rules:
-        for answer in rule.pairs.answers:
-            found, what = answer.found, answer.section.in_motion
-            steps = np.flatnonzero(found.clearance < WITHIN)
-            nearest = NearestPairs(found.pair[steps], found.clearance[steps])
-            assert len(steps) == 0 or (nearest.pairs >= 0).all()
-            told = pairs_within(what, steps, WITHIN, nearest)
-            for one, other in zip(told, pairs_within(what, steps, WITHIN), strict=True):
-                np.testing.assert_array_equal(one, other)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_only_what_is_not_known_is_measured_near_a_step(seed):
     case = cell(seed, apart=1.0)
@@ -70,11 +55,6 @@ def test_only_what_is_not_known_is_measured_near_a_step(seed):
         told = pairs_within(what, steps, within, nearest)
         for one, other in zip(told, pairs_within(what, steps, within), strict=True):
             np.testing.assert_array_equal(one, other)
-
-
-def test_nothing_is_near_where_all_is_farther_apart():
-    (found,) = near_rows("box_box", "steps", within=1e-6)
-    assert len(found.steps) == len(found.pairs) == len(found.clearances) == 0
 
 
 @pytest.mark.parametrize("need", ["steps", "pairs"])

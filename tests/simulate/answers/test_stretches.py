@@ -75,14 +75,6 @@ def test_all_that_is_below_lies_in_them_and_little_more(height, level):
     assert_around(spans_of(case)[level], times, below, 0.02 + 0.002 + 0.001)
 
 
-@pytest.mark.parametrize("height", [1.0, PAST, 0.47])
-def test_coarse_samples_give_the_stretches_of_a_hundred_times_as_many(height):
-    coarse, fine = (spans_of(finer(sweeping(TWICE, height), n)) for n in (1, 100))
-    for level in LEVELS:
-        assert len(coarse[level]) == len(fine[level])
-        assert np.abs(coarse[level] - fine[level]).max(initial=0.0) <= 0.02 + 0.001
-
-
 def test_what_is_left_between_two_steps_below_is_left():
     """The arm is in the post at both steps, and turns all the way round in between, through the wall behind it."""
     found = spans_of(sweeping([[0.0, 0.0], [2.0 * np.pi, 0.0]], 1.0))

@@ -7,13 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.shapes import box
-from clearance.record.names import sides_in
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
-from clearance.world.forest import link_poses_at
-from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
-from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, dented
@@ -83,70 +79,6 @@ def test_gluing_the_world_to_another_base_changes_no_answer(seed, turns):
     ] == [
         row for row, far in zip(other.steps.select(columns).to_pylist(), apart, strict=True) if far
     ]
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_swapping_the_names_of_two_robots_changes_only_names(seed):
-    case = case_of(seed, 2)
-    new = {"r0": "r1", "r1": "r0"}
-    swapped = replace(
-        case,
-        robots=tuple(
-            replace(robot, robot=replace(robot.robot, name=new[robot.robot.name]))
-            for robot in case.robots
-        ),
-    )
-    one, other = (cl.check(each, need="pairs") for each in (case, swapped))
-    assert one.record.clearances.tobytes() == other.record.clearances.tobytes()
-    assert one.certificate.lower_bound.tobytes() == other.certificate.lower_bound.tobytes()
-
-    def renamed(name: str) -> str:
-        robot, slash, link = name.partition("/")
-        return f"{new[robot]}/{link}" if slash else name
-
-    for table in ("steps", "pairs"):
-        rows, others = (getattr(run, table).to_pylist() for run in (one, other))
-        for row in rows:
-            for side in sides_in(list(row)):
-                row[side] = renamed(row[side])
-        assert rows == others
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_what_rides_on_a_link_stays_as_far_from_it_and_from_what_is_rigid_with_it(seed):
-    """Such pairs are left out with the reason; their bodies are as far apart at every step."""
-    random = np.random.default_rng(seed)
-    case = case_of(seed, 1)
-    (arm,) = case.robots
-    last = arm.robot.link_names[-1]
-    flange = Joint(
-        "weld", JointKind.FIXED, last, "flange", at(0.0, 0.0, 0.4), np.array([1.0, 0.0, 0.0])
-    )
-    robot = replace(
-        arm.robot,
-        link_names=(*arm.robot.link_names, "flange"),
-        joints=(*arm.robot.joints, flange),
-        bodies=(*arm.robot.bodies, Body("flange", box((0.1, 0.1, 0.05)))),
-    )
-    camera = cl.Obstacle(
-        Body("camera", box((0.05, 0.05, 0.1))),
-        mount=Mount(last, at(0.5, 0.1, 0.0, turned=rotations(random, 1)[0])),
-    )
-    case = replace(case, robots=(replace(arm, robot=robot),), obstacles=(*case.obstacles, camera))
-    run = cl.check(case, certify=False)
-    left_out = {(row.link, row.obstacle): row.reason for row in run.record.unmeasured}
-    assert left_out["flange", "camera"] == "moves with it"
-    motions = [kinematic_motion(each) for each in case.robots]
-    poses = link_poses_at(case, motions, slice(None))
-    bodies = {
-        body.name_in(case): body for pair in measured_pairs(case)[0] for body in (pair.a, pair.b)
-    }
-    of_flange, of_camera = (bodies[name].poses_in(case, poses) for name in ("flange", "camera"))
-    apart = [
-        cl.distance(bodies["flange"].shape_in(case), camera.body.shape, pose_a=a, pose_b=b).distance
-        for a, b in zip(of_flange, of_camera, strict=True)
-    ]
-    assert np.ptp(apart) < 1e-14 and min(apart) > 0.0
 
 
 @pytest.mark.parametrize("seed", range(2))

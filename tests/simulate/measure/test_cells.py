@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.record.rows import resumable as resumable_rows
+from clearance.errors import BadInput, NothingToMeasure
 from clearance.simulate.measure.sections import section_plan
-from clearance.world.case import Limits
+from clearance.world.case import Clock, Limits
 from clearance.world.rules import Rule
 from clearance.world.timing import Window
+from tests import cells
 from tests.cells import cell, pose_at
 from tests.examples import first_fast
 
@@ -135,38 +136,48 @@ def test_other_needs_know_the_same_worst(seed, need):
         assert found.worst_sample.clearance == pytest.approx(rule.worst_sample.clearance, abs=1e-9)
 
 
+def answered(case, **asked):
+    return cl.answer(cl.Question(case, certify=False, **asked)).record
+
+
+def variants(case):
+    rule = Rule(("left/*", "door"), Window(1.0, 4.0), name="at the door", fail=0.02)
+    padded = tuple(replace(o, padding=0.01) if o.name == "post" else o for o in case.obstacles)
+    return {
+        "phases": case,
+        "rules": replace(case, limits=Limits(0.01, 0.05, rules=(rule,))),
+        "padding": replace(case, obstacles=padded),
+    }
+
+
+@pytest.mark.parametrize("kind", ["phases", "rules", "padding"])
 @pytest.mark.parametrize("seed", [0])
-def test_threads_change_no_byte(seed):
-    case = ruled(seed)
-    one, two = (cl.check(case, resources=cl.Resources(jobs=jobs)) for jobs in (1, 2))
-    assert one.steps.equals(two.steps)
-    assert one.certificate.lower_bound.tobytes() == two.certificate.lower_bound.tobytes()
+def test_it_says_what_the_exact_method_says_where_it_is_right(seed, kind):
+    case = variants(cells.cell(seed))[kind]
+    exact, paper = answered(case), answered(case, method="paper")
+    apart = exact.steps["clearance"].to_numpy() > 0.02
+    assert apart.sum() > 10
+    for column in ("clearance", *exact.sides[:2]):
+        found, wanted = (record.steps[column].to_numpy()[apart] for record in (paper, exact))
+        same = (
+            found == pytest.approx(wanted, abs=1e-12) if column == "clearance" else found == wanted
+        )
+        assert np.all(same)
+    assert [rule.name for rule in paper.rules] == [rule.name for rule in exact.rules]
 
 
-class Broken(Exception):
-    """What breaks a run off."""
+def test_a_step_of_which_it_says_nothing_is_named_as_the_run_counts_it():
+    case = cells.cell(0)
+    with pytest.raises(
+        NothingToMeasure, match=r"method 'paper' says nothing of step \d+: its rules"
+    ) as caught:
+        answered(case, method="paper", paper_tolerance=0.056)
+    step = int(str(caught.value).split("step ")[1].split(":")[0])
+    assert answered(case).steps["clearance"].to_numpy()[step] > 0.056
+    assert "a tolerance above 0.056 m may do" in str(caught.value)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("after", [17])
-def test_a_run_that_was_broken_off_goes_on_to_the_same_bytes(tmp_path, after, monkeypatch):
-    monkeypatch.setattr(resumable_rows, "SAVE_AFTER", 0.0)
-    case, left = ruled(2), [after]
-    whole = cl.check(case)
-
-    def progress(done, of):
-        left[0] -= 1
-        if left[0] < 0:
-            raise Broken
-
-    place, told = tmp_path / "rows", []
-    with pytest.raises(Broken), resumable_rows.open_resumable_rows(place, told.append) as rows:
-        cl.check(case, resources=cl.Resources(1, progress, rows))
-    with resumable_rows.open_resumable_rows(place, told.append) as rows:
-        again = cl.check(case, resources=cl.Resources(1, None, rows))
-        assert again.steps.equals(whole.steps)
-        for name in ("lower_bound", "upper_bound", "share", "pair"):
-            assert np.array_equal(
-                getattr(again.certificate, name), getattr(whole.certificate, name)
-            )
-    assert after < 5 or any("resuming" in line for line in told)
+def test_clocks_that_are_not_tied_are_refused():
+    case = replace(cells.cell(0), clock=Clock(np.inf), carries=())
+    with pytest.raises(BadInput, match="method 'paper' asks about one time"):
+        cl.Question(case, method="paper")
