@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 
 import pytest
 
@@ -35,31 +34,6 @@ def test_the_verdict_names_the_deepest_contact(folder, capsys):
     assert line in told
 
 
-def test_the_files_have_depth_and_volume(folder):
-    out = folder / "out"
-    assert run(["check", str(folder / "case.yaml"), "--out", str(out), "--quiet"]) == 1
-    deepest = json.loads((out / "summary.json").read_text())["contact"]["deepest"]
-    assert deepest["penetration"] == pytest.approx(0.05, abs=1e-15)
-    assert deepest["volume"] == pytest.approx(0.05 * 0.04, rel=1e-12)
-    assert deepest["exact"] and deepest["volume_exact"]
-    with (out / "steps.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert [row["penetration"] == "" for row in rows] == [
-        True,
-        True,
-        False,
-        True,
-    ]  # the deepest moment only
-    assert [float(row["clearance"]) for row in rows[1:3]] == [0.0, 0.0]
-    assert len((out / "contacts.csv").read_text().splitlines()) == 3
-
-
-def test_without_contact_there_is_no_such_line(folder, capsys):
-    (folder / "path.csv").write_text("time,rail\n0,0.5\n1,0.6\n")
-    assert run(["check", str(folder / "case.yaml")]) == 0
-    assert "deepest" not in capsys.readouterr().out
-
-
 def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
     case = str(folder / "case.yaml")
     assert run(["check", case, "--contact", "none"]) == 1
@@ -78,13 +52,6 @@ def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
                 *empty,
                 True,
             ]
-
-
-def test_the_files_are_the_same_bytes_again(folder):
-    for out in ("one", "two"):
-        assert run(["check", str(folder / "case.yaml"), "--out", str(folder / out), "--quiet"]) == 1
-    for name in ("contacts.csv", "steps.csv", "steps.parquet"):
-        assert (folder / "one" / name).read_bytes() == (folder / "two" / name).read_bytes()
 
 
 def test_the_headline_says_how_deep(folder, capsys):

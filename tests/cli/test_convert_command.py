@@ -92,13 +92,6 @@ def test_names_that_a_table_would_read_otherwise_are_refused(name):
         assert written(trajectory, "b.yaml").content
 
 
-def test_what_was_taken_how_is_told(tmp_path, capsys):
-    (tmp_path / "a.csv").write_text("time [ms];a [deg]\n0;90,0\n1000;0\n")
-    assert convert(tmp_path / "a.csv", tmp_path / "b.csv") == 0
-    assert "note: a.csv: read in degrees: 'a'; in milliseconds: 'time'" in capsys.readouterr().out
-    assert (tmp_path / "b.csv").read_text() == f"time,a\n0.0,{np.pi / 2!r}\n1.0,0.0\n"
-
-
 def test_one_of_several_is_chosen(tmp_path):
     (tmp_path / "a.yaml").write_text(ROS2 + dumped(MESSAGE).replace("shoulder", "elbow") + "\n")
     assert convert(tmp_path / "a.yaml", tmp_path / "b.csv", "--which", 2) == 0

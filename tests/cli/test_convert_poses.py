@@ -102,15 +102,6 @@ def test_times_that_messages_keep_otherwise_are_told(capsys):
     assert not Path("d.yaml").exists()
 
 
-def test_what_was_taken_how_is_told(capsys):
-    Path("a.csv").write_text("time [ms];x_mm;y;z;qx;qy;qz;qw\n0;4000;0;0;0;0;0,6;0,8\n")
-    assert convert("a.csv", "b.csv") == 0
-    assert (
-        "note: a.csv: read in millimetres: 'x'; in milliseconds: 'time'" in capsys.readouterr().out
-    )
-    assert Path("b.csv").read_text().splitlines()[1] == "0.0,4.0,0.0,0.0,0.0,0.0,0.6,0.8"
-
-
 NUMBERS = st.floats(-1e3, 1e3)
 TIMES = st.lists(st.integers(1, 10**13), max_size=4, unique=True)
 QUATERNIONS = st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)

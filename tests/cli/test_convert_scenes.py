@@ -135,24 +135,6 @@ def test_comments_are_told(capsys):
     assert "note: ours.yaml: left out: its comments" in capsys.readouterr().out
 
 
-@pytest.mark.slow
-def test_padding_that_is_left_out_is_a_warning_of_each_check(capsys):
-    """Nothing else that is left out makes a clearance larger: more is measured then."""
-    Path("held.yaml").write_text(MESSAGE.replace("padding: 0.01", "padding: 0.0"))
-    assert convert("held.yaml", "made/scene.yaml") == 0
-    theirs, ours = results("held.yaml"), results("made/scene.yaml")
-    pairs = [{(one.link, one.obstacle) for one in run.pair_minima} for run in (theirs, ours)]
-    assert pairs[0] < pairs[1] and ours.record.clearances.min() <= theirs.record.clearances.min()
-    Path("held.yaml").write_text(MESSAGE)
-    assert convert("held.yaml", "made/scene.yaml", "--force") == 0
-    results("made/scene.yaml")
-    capsys.readouterr()
-    assert run(["check", "case.yaml"]) in (0, 1)
-    assert "padding of links that held.yaml gives is left out" in " ".join(
-        capsys.readouterr().out.split()
-    )
-
-
 def test_warnings_and_the_frame_of_a_file_stay_with_the_scene(capsys):
     seen = link("<visual name='v'/>", name="seen")
     Path("w.sdf").write_text(sdf(world(model(link(collision()), seen))))

@@ -43,13 +43,6 @@ def test_a_shift_keeps_within_its_room(slot, capsys):
     assert code == 0 and "moved 20.00 mm: x 0, y -20.00, z 0" in text
 
 
-def test_how_far_the_tool_is_moved_is_told(slot, capsys):
-    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep-tool", "1.0s=21mm,0.1deg")
-    assert (
-        code == 0 and "tool      tool at 1.000 s is moved 20.0004 mm of 21 and turned 0 deg" in text
-    )
-
-
 def test_a_turn_is_told_and_written(slot, tmp_path, capsys):
     path, out = slot.parent / "turned.yaml", tmp_path / "out"
     path.write_text(slot.read_text().replace("[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
@@ -59,17 +52,6 @@ def test_a_turn_is_told_and_written(slot, tmp_path, capsys):
     assert code == 0 and " deg about z through its origin (1 deg counts as 8.73 mm)" in text
     assert "turn about z" in (out / "gain.html").read_text()
     assert run(["check", str(out / "case.yaml")]) == 0
-
-
-def test_nothing_to_change_is_said(tmp_path, capsys):
-    path = write_cell(tmp_path, SLOT.replace("fail: 0.04", "fail: 0.01"))
-    code, text, _ = said(capsys, path, "--kind", "waypoints")
-    assert code == 0 and "nothing had to be changed" in text
-
-
-def test_a_joint_is_told_with_the_sign_of_its_offset(slot, capsys):
-    code, text, _ = said(capsys, slot, "--kind", "waypoints")
-    assert code == 0 and "joint y by up to -20.00 mm at " in text
 
 
 @pytest.mark.slow
@@ -83,24 +65,6 @@ def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     assert "can make" not in text
 
 
-@pytest.mark.slow
-def test_all_kinds_stand_in_a_table_and_in_folders(slot, tmp_path, capsys):
-    code, text, _ = said(capsys, slot, "--kind", "all", "--out", tmp_path / "out")
-    assert code == 0 and "timing     -     -         does not apply" in text
-    for kind in ("waypoints", "base", "obstacle"):
-        assert cl.check(tmp_path / "out" / kind / "case.yaml").passed
-
-
-def test_a_delay_is_told(tmp_path, capsys):
-    path = write_cell(tmp_path, CROSSING)
-    code, text, _ = said(capsys, path, "--kind", "timing", "--robot", "other")
-    assert code == 0 and "robot other begins 0.13" in text
-    code, text, _ = said(
-        capsys, path, "--kind", "timing", "--robot", "other", "--most-delay", "0.01"
-    )
-    assert code == 1 and "no delay up to 0.01 s" in text
-
-
 def test_a_slow_down_is_told(tmp_path, capsys):
     path = write_cell(tmp_path, CROSSING)
     options = ("--kind", "timing", "--robot", "other", "--slow-down", "--out", tmp_path / "out")
@@ -110,25 +74,12 @@ def test_a_slow_down_is_told(tmp_path, capsys):
     assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
 
 
-def test_a_path_that_is_kept_whole_is_said_at_once(slot, capsys):
-    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep=-5:60")
-    assert code == 1 and "that moment is to be kept" in text
-    slot.write_text(slot.read_text().replace("fail: 0.04", "fail: 0.01"))
-    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep=-5:60")
-    assert code == 0 and "nothing had to be changed" in text
-
-
 def test_a_folder_that_holds_an_input_is_refused_before_any_search(slot, capsys):
     before = slot.read_bytes()
     options = ("--kind", "base", "--out", slot.parent, "--force")
     code, text, err = said(capsys, slot, *options)
     assert code == 2 and text == "" and "would overwrite" in err and len(err.splitlines()) == 1
     assert slot.read_bytes() == before and not (slot.parent / "gain.json").exists()
-
-
-def test_a_cell_without_obstacles_has_none_to_move(tmp_path, capsys):
-    code, _, err = said(capsys, write_cell(tmp_path, CROSSING), "--kind", "obstacle")
-    assert code == 2 and "the case has no obstacle" in err
 
 
 def test_the_paths_of_two_robots_are_written_each(tmp_path, capsys):
@@ -165,13 +116,6 @@ def test_bad_input_is_one_line(slot, tmp_path, capsys, options, told):
     code, out, err = said(capsys, slot, *options, "--out", tmp_path / "out")
     assert code == 2 and out == "" and told in err and len(err.splitlines()) == 1
     assert not (tmp_path / "out").exists()
-
-
-def test_a_path_beyond_its_limits_is_refused(slot, capsys):
-    path = slot.parent / "path.csv"
-    path.write_text("time,x,y\n0,-1,0.03\n1,2.5,0.03\n")
-    code, _, err = said(capsys, slot, "--kind", "waypoints")
-    assert code == 2 and "joint 'x' is 0.5 m beyond its upper limit" in err
 
 
 @pytest.mark.slow

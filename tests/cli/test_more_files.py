@@ -111,36 +111,6 @@ def test_what_cannot_be_written_is_refused_before_anything_is_measured(
     assert files(folder) == before
 
 
-def test_a_link_to_an_input_is_not_written_over(folder, capsys):
-    Path("link.csv").symlink_to("path.csv")
-    assert run(["check", "case.yaml", "--trajectory", "link.csv"]) == 2
-    assert "which this run reads" in capsys.readouterr().err
-    assert Path("path.csv").read_text() == PATH
-
-
-def test_times_that_a_message_cannot_hold_are_refused_or_noted(folder, capsys, monkeypatch):
-    Path("path.csv").write_text("time,rail\n0,0\n1e-10,0.1\n1,0.2\n")
-    assert run(["check", "case.yaml", "--trajectory", "back.yaml"]) == 2
-    assert "less than a nanosecond" in capsys.readouterr().err and not Path("back.yaml").exists()
-    Path("path.csv").write_text("time,rail\n0,0\n0.3333333333333,0.1\n1,0.2\n")
-    assert run(["check", "case.yaml", "--trajectory", "back.yaml"]) == 0
-    assert "note        back.yaml: 1 of 3 times are rounded" in capsys.readouterr().out
-
-
-@pytest.mark.slow
-def test_a_simulated_motion_is_written_as_it_was(folder):
-    pytest.importorskip("pybullet")
-    assert (
-        run(["check", "case.yaml", "--motion", "simulated", "--trajectory", "back.yaml", "--quiet"])
-        == 0
-    )
-    from clearance.formats.motion.trajectory_file import parse_trajectory
-
-    simulated = check(load_case("case.yaml"), motion="simulated").record.motions[0]
-    back = parse_trajectory(Path("back.yaml").read_bytes(), "back.yaml")
-    assert (back.positions == simulated.positions).all()
-
-
 def test_a_missing_library_is_named_before_anything_is_measured(folder, capsys, monkeypatch):
     monkeypatch.setattr("clearance.extras.is_installed", lambda library: library != "matplotlib")
     assert run(["check", "case.yaml", "--png", "worst.png"]) == 2

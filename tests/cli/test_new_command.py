@@ -14,7 +14,7 @@ from clearance.cli import run
 from clearance.formats.files.input_files import path_from
 from clearance.formats.text.yaml_text import flow
 from clearance.plain_yaml import parse_yaml
-from tests.formats.making import CASE, CUBE, PATH, cube_stl
+from tests.formats.making import CASE, PATH, cube_stl
 from tests.formats.making_case import TWO_JOINTS
 from tests.formats.making_messages import ROS2
 from tests.formats.making_moveit import FIRST, MESSAGE
@@ -150,14 +150,6 @@ def test_how_a_file_was_read_stays_in_the_case(capsys):
     assert f"note      {read}" in told and f"note      {frame}" in told
     assert f"# {read}" in Path("out/case.yaml").read_text()
     assert f"# {frame}" in Path("out/scene.yaml").read_text()
-
-
-def test_meshes_that_are_written_out_in_a_scene_become_files():
-    assert new("--trajectory", "cell/path.csv", "--scene", "cell/cell.scene") == 0
-    mesh = Path("out/cell.scene.mesh0.off")
-    assert mesh.read_text().startswith("OFF") and mesh.name in Path("out/scene.yaml").read_text()
-    (cube,) = [one for one in load_case("out/case.yaml").obstacles if mesh.name in one.body.origin]
-    assert cube.body.shape.vertices.max() == CUBE.max()
 
 
 @pytest.mark.slow

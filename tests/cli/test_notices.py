@@ -1,8 +1,16 @@
 """Commands without a verdict write what is suspect to the error output."""
 
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
 import pytest
 
+import clearance as cl
 from clearance.cli import run
+from clearance.sketch import Sketch
+from scripts.makers.point_sketches import irreducible, shaken, sketched
 from tests.formats.making import CASE, write_case
 
 
@@ -35,3 +43,56 @@ def test_a_sweep_says_what_is_suspect(asked):
 def test_but_not_what_the_case_accepts_nor_when_it_is_to_be_quiet(asked):
     assert "CHECK UNITS" not in asked(CASE + "accept: [units]\n")
     assert "CHECK UNITS" not in asked(CASE, "--quiet")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    points, edges = irreducible(12, 3)
+    sketched(points, shaken(points, 0.2, 3), edges).save(tmp_path / "cluster.yaml")
+    square = Sketch()
+    corners = [square.point(*place) for place in [(0, 0), (1, 0), (1, 1), (0, 1)]]
+    for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
+        square.segment(a, b)
+    square.save(tmp_path / "square.yaml")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_fit_stops_and_names_what_does_not_hold(folder, capsys):
+    asked = ["profile", "fit", "cluster.yaml", "square.yaml", "--out", "new.yaml"]
+    assert run([*asked, "--most-seconds", "0"]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("error: cluster.yaml: not solved within 0 s: distance")
+    assert "a longer time limit may help" in told and told.count("\n") == 1
+    assert not (folder / "new.yaml").exists()
+    assert run([*asked, "--most-seconds", "-1"]) == 2
+
+
+SCENE = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "told"),
+    [
+        (2.5, "with a tolerance of 2500 mm for its first rejection rule"),
+        (None, "with no tolerance for its first rejection rule"),
+    ],
+)
+def test_the_tolerance_is_in_the_summary_and_the_report(tmp_path, capsys, tolerance, told):
+    own = [] if tolerance is None else ["--paper-tolerance-mm", str(1000.0 * tolerance)]
+    asked = ["check", str(SCENE), "--method", "paper", "--json", "--out", str(tmp_path / "out")]
+    assert run([*asked, *own]) == 0
+    assert json.loads(capsys.readouterr().out)["paper_tolerance"] == tolerance
+    assert told in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_what_is_farther_than_the_tolerance_is_left_out() -> None:
+    case = cl.load_case(SCENE)
+    all_in, some = (
+        cl.answer(cl.Question(case, method="paper", paper_tolerance=t)).record.tally
+        for t in (100.0, 0.4)
+    )
+    assert all_in["cut_by_rule_1"] == 0 < some["cut_by_rule_1"]
+    assert some["measured"] < all_in["measured"]
+    with pytest.raises(cl.BadInput, match=r"a tolerance above 0\.01 m may do"):
+        cl.answer(cl.Question(case, method="paper", paper_tolerance=0.01))

@@ -74,21 +74,6 @@ def test_a_pair_of_links_can_be_allowed_in_either_order(folder, capsys):
         assert code == 0 and json.loads(out)["worst"]["obstacle"] == "far"
 
 
-def test_links_that_touch_at_every_step_are_named_with_the_line_to_add(folder, capsys):
-    """A hand that is drawn into the base: in contact always, and never excused in silence."""
-    spoke = '<collision><origin xyz="-0.45 0 0"/><geometry><box size="0.3 0.3 0.1"/></geometry></collision>'
-    (folder / "folder.urdf").write_text(
-        URDF.replace('<link name="hand">', f'<link name="hand">{spoke}')
-    )
-    (folder / "path.csv").write_text("time,shoulder,elbow\n0,0,0\n1,1,0.1\n2,2,0.2\n")
-    code, out, _ = check(folder, capsys)
-    told = json.loads(out)
-    assert code == 1 and told["verdict"] == "contact"
-    (hint,) = [note for note in told["notes"] if "at every step" in note]
-    assert hint.endswith('add to the case: allow: [["hand", "base"]]')
-    assert check(folder, capsys, allow="allow: [[hand, base]]")[0] == 0
-
-
 @pytest.mark.parametrize(
     ("robot", "told"),
     [

@@ -42,41 +42,12 @@ def test_a_profile_of_the_links_of_one_robot_and_what_it_carries(cell, tmp_path,
     assert bodies == ["left/boom", "left/tool", "part", "lid"]
 
 
-def test_a_profile_of_an_obstacle_that_moves(cell, tmp_path):
-    options = ["--plane", "xz", "--tolerance", "10", "--links", "", "--obstacles", "door,crate"]
-    out = tmp_path / "door.yaml"
-    assert run(["profile", "sweep", str(cell), *options, "--out", str(out)]) == 0
-    assert out.exists()
-
-
 def test_an_unknown_link_is_one_line_with_the_nearest(cell, tmp_path, capsys):
     arguments = ["profile", "sweep", str(cell), "--links", "left/tol", "--out", "x.yaml"]
     assert run(arguments) == 2
     error = capsys.readouterr().err
     assert "unknown link 'left/tol'; did you mean 'left/tool'?" in error
     assert len([line for line in error.splitlines() if "unknown" in line]) == 1
-
-
-@pytest.mark.slow
-def test_a_case_file_of_two_robots(tmp_path, capsys):
-    case, out = write_cell(tmp_path), tmp_path / "left.yaml"
-    arguments = [
-        "profile",
-        "sweep",
-        str(case),
-        "--links",
-        "left/*",
-        "--per-link",
-        "--out",
-        str(out),
-    ]
-    assert run(arguments) == 0
-    told = capsys.readouterr().out
-    bodies = [line.split(":")[0].strip() for line in told.splitlines() if line.startswith("  ")]
-    assert "workpiece" in bodies and all(b.startswith("left/") for b in bodies if b != "workpiece")
-    if boolean.available():
-        assert run(["workspace", str(case), "--json"]) == 0
-        assert json.loads(capsys.readouterr().out)["robots"] == ["left", "right"]
 
 
 @pytest.mark.parametrize(
@@ -102,20 +73,3 @@ def test_a_limit_of_the_command_line_holds_for_rules_that_give_none(
     rules = json.loads(capsys.readouterr().out)["rules"]
     told = {one["name"]: (1000 * one["fail"], 1000 * one["warn"]) for one in rules}
     assert {name: told[name] for name in levels} == levels
-
-
-@pytest.mark.parametrize(
-    ("need", "options"),
-    [
-        ("steps", ()),
-        ("pairs", ("--samples-only",)),
-        ("limit", ()),
-        ("minimum", ("--samples-only",)),
-    ],
-)
-def test_a_cell_of_several_rules_that_is_violated_is_told(tmp_path, capsys, need, options):
-    arguments = ["check", str(write_cell(tmp_path)), "--fail-mm", "1800", "--accept", "units"]
-    assert run([*arguments, "--need", need, *options]) == 1
-    told = capsys.readouterr().out
-    assert told.startswith("VIOLATED")
-    assert ("below fail" in told) == (need != "minimum")

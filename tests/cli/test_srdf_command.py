@@ -99,16 +99,6 @@ def test_a_proposal_leaves_what_can_meet_to_be_measured(robot, tmp_path, capsys)
     assert load_srdf(tmp_path / "made.srdf", load_urdf(urdf)).reason("base", "upper") is None
 
 
-def test_the_same_robot_gives_the_same_bytes(robot, capsys):
-    urdf, srdf = robot(upper=0.4)
-    told = []
-    for _ in range(2):
-        run(["srdf", "make", urdf])
-        run(["srdf", "audit", urdf, srdf])
-        told.append(capsys.readouterr().out)
-    assert told[0] == told[1]
-
-
 @pytest.mark.slow
 def test_a_robot_of_a_package_is_named_as_in_a_case_file(tmp_path):
     brought = "pybullet_data:franka_panda/panda.urdf"

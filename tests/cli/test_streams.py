@@ -47,8 +47,6 @@ FAILING = {
     "clearance check $'caf\\xe9.yaml'": "not UTF-8",
     f"clearance check case.yaml --out {LONG}": "name too long",
     f"clearance check case.yaml --quiet --junit {JUST_LEGAL}": "name too long",
-    f"clearance workspace case.yaml --out {LONG}": "name too long",
-    f"clearance profile sweep case.yaml --out {LONG}.yaml": "name too long",
     f"clearance view {LONG}": "name too long",
 }
 

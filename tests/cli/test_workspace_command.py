@@ -34,7 +34,6 @@ def folder(tmp_path):
         "along": {"x": 0, "turn": 0, "wall": 3},
         "across": {"x": 0.3, "turn": 1.5707963267948966, "wall": 3},
         "away": {"x": 2, "turn": 0, "wall": 3},
-        "other": {"x": 0.3, "turn": 0, "wall": 4},
     }
     for name, fields in rows.items():
         (tmp_path / f"{name}.yaml").write_text(CASE.format(name=name, **fields))
@@ -64,15 +63,6 @@ def test_it_tells_and_writes_the_region(folder, capsys):
     assert len(red) == 6 and len(colours) > 12, "three sides of the region face us, in two halves"
 
 
-def test_the_same_cases_give_the_same_files(folder):
-    for name in ("one", "two"):
-        run(["workspace", *paths(folder, "along", "across"), "--out", str(folder / name)])
-    names = ("workspace.stl", "workspace.glb", "workspace.svg", "workspace.json")
-    assert all(
-        (folder / "one" / n).read_bytes() == (folder / "two" / n).read_bytes() for n in names
-    )
-
-
 def test_nothing_shared_leaves_no_older_mesh(folder, capsys):
     out = folder / "out"
     run(["workspace", *paths(folder, "along", "across"), "--out", str(out)])
@@ -92,8 +82,6 @@ def test_a_limit_decides_the_exit_code(folder, limit, code):
     ("names", "told"),
     [
         (["along"], "1 robot is given; cases with two or more robots in all are needed"),
-        (["along", "along"], "stand on the same spot; give each its own robot.base"),
-        (["along", "other"], "obstacle 'wall' stands elsewhere in 'other' than in 'along'"),
         (["along", "nothing"], "nothing.yaml"),
     ],
 )
