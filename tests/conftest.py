@@ -7,10 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
+from clearance import progress
 from clearance.compile import library
 from clearance.compile.decorators import KERNELS
 from clearance.errors import Unavailable
 from tests import examples
+from tests.counted_end import TimelessEnd
 from tests.guards import guarded, refused
 
 MARKS = ("cold", "browser", "peer", "slow", "shared")
@@ -20,7 +22,8 @@ examples.register()
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Builds the kernels that have changed, before any test asks for one."""
+    """Builds the kernels that have changed, before any test asks for one; no line comes by the clock."""
+    progress.Event = TimelessEnd
     if KERNELS == "built":
         try:
             library.opened()

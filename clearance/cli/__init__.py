@@ -14,7 +14,7 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from enum import IntEnum
 from typing import NoReturn
 
@@ -32,6 +32,10 @@ class ExitCode(IntEnum):
     FAULT = 70  # EX_SOFTWARE: Python's own 1 would read as a violated limit
     INTERRUPTED = 130
     PIPE_CLOSED = 141
+
+
+QUIET = frozenset({"--quiet", "-q", "--json"})
+"""Options with which nobody hears how far a command is."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -71,11 +75,17 @@ def _dispatch(arguments: list[str]) -> int:
 
     from clearance.cli.commands import clearance
     from clearance.errors import ClearanceError, Incomplete
+    from clearance.progress import never_silent
 
     try:
         _require_text(arguments)
         with clearance.make_context("clearance", arguments) as context:
-            code = clearance.invoke(context)
+            with (
+                nullcontext()
+                if QUIET & {*arguments}
+                else never_silent(lambda: f"{arguments[0]} goes on")
+            ):
+                code = clearance.invoke(context)
         sys.stdout.flush()
         return code or ExitCode.CLEAR
     except click.exceptions.Exit as leave:

@@ -1,12 +1,11 @@
 """Runs a batch for the command line: engine, progress, answer, exit code. Not for: its options (`batch`).
 
-Progress is one line that is drawn again in a terminal; on a pipe a line every `EVERY` seconds.
+Progress is one line that is drawn again in a terminal; on a pipe a line now and then.
 """
 
 from __future__ import annotations
 
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -27,6 +26,7 @@ from clearance.batch.workers import local_workers
 from clearance.cli import ExitCode
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import shown
+from clearance.progress import doing
 from clearance.record.wording import count, depth_mm, mm
 from clearance.simulate.measure.parts import usable_cores
 from clearance.world.waiver import Waiver
@@ -37,9 +37,6 @@ if TYPE_CHECKING:
 
 MOST_TOLD = 50
 """Failures that are told as they come; the answer lists the worst, and the page has all."""
-
-EVERY = 10.0
-"""[s] Between two lines on a pipe."""
 
 FEW = 32
 """Cases that one process has measured before others are ready to help."""
@@ -168,8 +165,9 @@ def shown_progress(quiet: bool, name: Callable[[int], str]) -> Iterator[Watch]:
         yield SilentWatch()
         return
     if not sys.stderr.isatty():
-        with _every(EVERY, PipeWatch(name)) as watch:
-            yield watch
+        lines = PipeWatch(name)
+        with doing(lambda: lines.line):
+            yield lines
         return
     from rich.console import Console
     from rich.progress import (
@@ -187,7 +185,8 @@ def shown_progress(quiet: bool, name: Callable[[int], str]) -> Iterator[Watch]:
         TimeRemainingColumn(),
         TextColumn("{task.fields[worst]}"),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    bars = Progress(*columns, console=Console(stderr=True), transient=True)
+    with bars as bar, doing(lambda: ""):
         yield TerminalWatch(bar, name)
 
 
@@ -242,24 +241,6 @@ class PipeWatch:
         parts = (left, f"{self._n_failing:,} failed", str(self._worst))
         told = ", ".join(part for part in parts if part)
         return f"{self._done:,} of {self._n:,} cases measured, {told}"
-
-
-@contextmanager
-def _every(seconds: float, watch: PipeWatch) -> Iterator[PipeWatch]:
-    """Prints how far a batch is so often, until it is done."""
-    ended = threading.Event()
-
-    def work() -> None:
-        while not ended.wait(seconds):
-            print(watch.line, file=sys.stderr, flush=True)
-
-    thread = threading.Thread(target=work, daemon=True)
-    thread.start()
-    try:
-        yield watch
-    finally:
-        ended.set()
-        thread.join()
 
 
 class TerminalWatch:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +11,7 @@ import click
 from clearance.cli import ExitCode
 from clearance.cli.notices import say_notices
 from clearance.cli.options import OutputPath, asked_options, said, spelled_by
+from clearance.cli.progress import shown_work
 from clearance.errors import shown
 from clearance.gains.request import KINDS, Request
 from clearance.options import made, require_needs
@@ -126,13 +125,6 @@ def _save(found: Gain, out: Path | None, *, force: bool) -> None:
         click.echo(f"{'written':10}{out}: case.yaml, gain.html, gain.json")
 
 
-@contextmanager
-def _shown_search(kind: str) -> Iterator[None]:
-    """Says on a terminal that a search runs, while it does."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    from rich.console import Console
-
-    with Console(stderr=True).status(f"searching for the least change: {kind}"):
-        yield
+def _shown_search(kind: str) -> AbstractContextManager[None]:
+    """Says that a search runs, while it does."""
+    return shown_work(False, f"searching for the least change: {kind}")

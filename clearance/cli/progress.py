@@ -1,4 +1,4 @@
-"""Progress bars on stderr while the work runs; silent where stderr is not a terminal."""
+"""Progress on stderr while the work runs: bars in a terminal, elsewhere a line now and then."""
 
 from __future__ import annotations
 
@@ -6,30 +6,61 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from clearance.progress import Progress
+from clearance.progress import Progress, doing
+
+
+class _Passes:
+    """Which of some passes goes on: each counts from its start again, and that distinguishes them."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self._names = names
+        self.i, self.done, self.total = 0, 0, 0
+
+    def take(self, done: int, total: int) -> None:
+        """Counts."""
+        if done <= self.done:
+            self.i = min(self.i + 1, len(self._names) - 1)
+        self.done, self.total = done, total
+
+    @property
+    def line(self) -> str:
+        """How far it is."""
+        counted = f": {self.done:,} of {self.total:,}" if self.total else ""
+        return f"{self._names[self.i]}{counted}"
 
 
 @contextmanager
 def shown_progress(silent: bool, passes: Sequence[str]) -> Iterator[Progress | None]:
-    """A callback that draws one bar for each of `passes` in turn; None where silent.
-
-    Each pass counts from its start again: that distinguishes them.
-    """
-    if silent or not sys.stderr.isatty():
+    """A callback that shows how far each of `passes` is, one after the other; None where silent."""
+    if silent:
         yield None
+        return
+    reached = _Passes(passes)
+    if not sys.stderr.isatty():
+        with doing(lambda: reached.line):
+            yield reached.take
         return
     from rich.console import Console
     from rich.progress import Progress as Bars
 
-    with Bars(console=Console(stderr=True), transient=True) as bars:
+    with Bars(console=Console(stderr=True), transient=True) as bars, doing(lambda: ""):
         tasks = [bars.add_task(name, total=None) for name in passes]
-        i_bar, reached = 0, 0
 
         def progress(done: int, total: int) -> None:
-            nonlocal i_bar, reached
-            if done <= reached:
-                i_bar = min(i_bar + 1, len(tasks) - 1)
-            reached = done
-            bars.update(tasks[i_bar], completed=done, total=total)
+            reached.take(done, total)
+            bars.update(tasks[reached.i], completed=done, total=total)
 
         yield progress
+
+
+@contextmanager
+def shown_work(silent: bool, name: str) -> Iterator[None]:
+    """Says that some work goes on of which nobody knows how long it is."""
+    if silent or not sys.stderr.isatty():
+        with doing(lambda: name):
+            yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(name), doing(lambda: ""):
+        yield

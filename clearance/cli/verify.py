@@ -120,13 +120,15 @@ def verify(
     and interval, or the file and its line; 2 bad input: the receipt is damaged, or an input has
     changed.
     """
+    from clearance.cli.progress import shown_work
     from clearance.errors import shown
     from clearance.extras import require
 
     require("report", "verify")
     from clearance.receipt.verifying import verify as verified
 
-    found = verified(folder, case_file, tolerance, waivers)
+    with shown_work(quiet, "proving the bound again, and comparing the report with a fresh run"):
+        found = verified(folder, case_file, tolerance, waivers)
     if not quiet:
         click.echo(found.headline)
         for path, digest in found.inputs:

@@ -21,9 +21,10 @@ def view(folder: Path, case: str | None) -> None:
         _write_case(folder, case)
         return
     from clearance.case.packed import require_entry, unpacked
+    from clearance.progress import doing
     from clearance.view import show
 
-    with unpacked(folder) as packed:
+    with unpacked(folder) as packed, doing(lambda: ""):
         show(folder if packed is None else require_entry(packed, "report"))
 
 

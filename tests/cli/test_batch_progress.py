@@ -1,12 +1,9 @@
 """How far a batch is, on a pipe: a line now and then, which names the worst, of contacts the deepest."""
 
-import io
-
-import pytest
-
 from clearance.batch.measuring import Fault, ItemResult
-from clearance.cli import batch_run
 from clearance.cli.batch_run import PipeWatch, shown_progress
+from clearance.progress import never_silent
+from tests.counted_end import CountedEnd
 
 NAMES = ["a", "b", "c", "d"]
 
@@ -28,21 +25,12 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
     assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
 
 
-def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch):
-    told = io.StringIO()
-    monkeypatch.setattr("sys.stderr", told)
-    monkeypatch.setattr(batch_run, "EVERY", 0.001)
-    with shown_progress(False, NAMES.__getitem__) as watch:
+def test_on_a_pipe_lines_come_until_it_is_done(capsys):
+    end = CountedEnd(2)
+    with never_silent(lambda: "batch", end), shown_progress(False, NAMES.__getitem__) as watch:
         watch.begin(NAMES, 0)
-        while told.getvalue().count("0 of 4 cases measured\n") < 2:
-            pass
-    assert set(told.getvalue().splitlines()) <= {"0 of 0 cases measured", "0 of 4 cases measured"}
-
-
-@pytest.mark.parametrize("every", [0.001, 10.0])
-def test_quiet_is_silent_and_a_short_batch_too(every, monkeypatch, capsys):
-    monkeypatch.setattr(batch_run, "EVERY", every)
-    with shown_progress(every < 1, NAMES.__getitem__) as watch:
-        watch.begin(NAMES, 0)
-        watch.note([result(0, "clear", 0, 0.4)], [])
-    assert capsys.readouterr().err == ""
+        end.pass_all()
+    assert capsys.readouterr().err.splitlines() == [
+        "0 of 4 cases measured, 10 s so far",
+        "0 of 4 cases measured, 20 s so far",
+    ]

@@ -16,6 +16,7 @@ import numpy as np
 from clearance.errors import BadInput, BadShape, NotFinite, SuspectInput, at
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.kernels.motion.tracked_scene import Scene
+from clearance.progress import never_silent
 from clearance.record.measurement import SWEEP_COUNTERS
 from clearance.record.names import pair_names
 from clearance.simulate.measure.inside import DoubtfulPairs
@@ -110,6 +111,7 @@ class Checker:
         UserWarning: no time is given, and the case is otherwise at other times of its run.
     """
 
+    @never_silent(lambda: "a Checker prepares the bodies of its case")
     def __init__(
         self, case: Case, *, time: float | None = None, accept: Sequence[str] = ()
     ) -> None:
@@ -239,7 +241,7 @@ def _measured(case: Case, time: float | None) -> tuple[Case, list[Pair]]:
     if left_out:
         told = "; ".join(left_out)
         warnings.warn(
-            f"this Checker knows no time: {told}; give time=, [s] of the run", stacklevel=3
+            f"this Checker knows no time: {told}; give time=, [s] of the run", stacklevel=4
         )
     return case, measured_pairs(case)[0]
 

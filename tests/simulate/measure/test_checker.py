@@ -102,6 +102,7 @@ def test_what_changes_in_the_run_is_left_out_only_with_a_warning():
     with pytest.warns(UserWarning, match="give time=") as told:
         cl.Checker(case, accept=["units", "limits"])
     (one,) = told
+    assert one.filename == __file__
     for part in ("part 'part' is carried", "obstacle 'door' moves", "allow[0]"):
         assert part in str(one.message)
     with warnings.catch_warnings():
