@@ -49,27 +49,27 @@ COMMANDS = {
 @pytest.mark.parametrize("name", COMMANDS)
 def test_commands_are_within_it(name, monkeypatch, capsys):
     """Nothing is done: whoever reads the case sees the lines go on, unless it is quiet."""
-    from clearance.cli import run
+    from clearance.cli import ExitCode, run
 
     def read(path):
         if "--quiet" not in asked:
             end.pass_all()
-        raise cl.ClearanceError("enough")
+        raise KeyboardInterrupt
 
     monkeypatch.setattr("clearance.case.case_file.load_case", read)
     end = CountedEnd(2)
     monkeypatch.setattr("clearance.progress.Event", lambda: end)
     asked = COMMANDS[name]
-    assert run(asked) == 2
+    assert run(asked) == ExitCode.INTERRUPTED
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].endswith(", 10 s so far") and lines[1:] == [
         lines[0].replace("10", "20"),
-        "error: enough",
+        "interrupted",
     ]
     if name == "check":
         asked = [*asked, "--quiet"]
-        assert run(asked) == 2
-        assert capsys.readouterr().err == "error: enough\n"
+        assert run(asked) == ExitCode.INTERRUPTED
+        assert capsys.readouterr().err == "interrupted\n"
 
 
 def test_a_checker_is_within_it(monkeypatch, capsys):
