@@ -213,6 +213,7 @@ FORMATS = (
     Format("robot program", Kind.PROGRAM, (".yaml", ".yml"), "program.program_yaml:read_yaml_program",
            sniff=sniff.is_program, what="a robot program", hint=_PROGRAM),
     _program("URScript", (".script", ".urscript"), "urscript:read_urscript"),
+    _program("RAPID", (".mod", ".prg", ".sys", ".modx"), "rapid:read_rapid"),
     Format("case file", Kind.CASE, (".yaml", ANY), sniff=sniff.is_case, what="a case file",
            hint="`clearance check {name}` checks it; what is asked for is one of the files that it names"),
 )  # fmt: skip

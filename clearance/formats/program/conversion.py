@@ -87,6 +87,7 @@ class _Conversion:
 
     Attributes:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
+        others: where external axes are that no joint follows.
     """
 
     read: ControllerProgram
@@ -94,6 +95,7 @@ class _Conversion:
     robot: Robot
     notes: list[str] = field(default_factory=list)
     compared: tuple[float, float] = (-1.0, 0.0)
+    others: dict[str, float] = field(default_factory=dict)
 
     @cached_property
     def link(self) -> str:
@@ -192,6 +194,7 @@ class _Conversion:
         """
         place = place_of(one)
         with at(place):
+            self._require_still(one)
             if isinstance(one, ControllerWait):
                 made: dict[str, Any] = {"wait": one.seconds}
             elif one.kind == "ptp":
@@ -199,6 +202,22 @@ class _Conversion:
             else:
                 made = {one.kind: self._path_move(one)}
         return validated(schema.Move, made, place)
+
+    def _require_still(self, one: ControllerMove | ControllerWait) -> None:
+        """Nothing, if external axes that no joint follows stay where they are.
+
+        Raises:
+            BadProgram: one moves.
+        """
+        for axis, value in one.to.external.items() if isinstance(one, ControllerMove) else ():
+            if (
+                axis not in self.axes.external.values()
+                and self.others.setdefault(axis, value) != value
+            ):
+                raise BadProgram(
+                    f"external axis {axis} moves, and no joint follows it",
+                    valid=f"program: {{axes: {{a joint: {{axis: {axis}}}}}}}",
+                )
 
     def _joint_move(self, one: ControllerMove) -> dict[str, Any]:
         made: dict[str, Any] = {"speed": self._share(one), "zone": one.zone}

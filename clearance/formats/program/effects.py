@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from clearance.formats.program.expressions import names_in
+from clearance.errors import BadProgram
+from clearance.formats.program.expressions import Call, names_in
 from clearance.formats.program.statements import (
     STOP,
     Assign,
@@ -70,3 +71,21 @@ class Effects:
 def called_in(one: Statement) -> list[str]:
     """The functions and instructions that a statement itself names, in order."""
     return sorted({name for part in expressions_of(one) for name in names_in(part)})
+
+
+def unknown_word(call: Call) -> BadProgram:
+    """The error for an instruction or a function that may do anything."""
+    return BadProgram(
+        f"{call.name!r} is no known instruction, and may move the robot",
+        where=str(call.line),
+        valid=f"a file beside that has it, or skip: [{call.name}] if it moves nothing",
+    )
+
+
+def unreadable_word(one: Unreadable) -> BadProgram:
+    """The error for a statement that may do anything."""
+    return BadProgram(
+        f"{one.word!r} is not understood, and may decide where the robot goes",
+        where=str(one.line),
+        valid=f"a program without it, or skip: [{one.word}] if it does not",
+    )

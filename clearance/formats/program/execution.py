@@ -7,6 +7,7 @@ refused with its line; what moves nothing may be left out. Not for: what instruc
 from __future__ import annotations
 
 import copy
+import operator
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -14,16 +15,18 @@ from typing import Any, Protocol
 
 from clearance.errors import BadProgram, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait
-from clearance.formats.program.effects import Effects
+from clearance.formats.program.effects import Effects, unknown_word, unreadable_word
 from clearance.formats.program.expressions import (
     Call,
     Constant,
     Expression,
     Name,
+    Operation,
     Part,
     Unknown,
     names_in,
     number,
+    numeric,
     value_of,
 )
 from clearance.formats.program.statements import (
@@ -69,7 +72,7 @@ class Language(Protocol):
     def result_of(self, call: Call, run: Execution) -> Any:
         """The value of a function of the language; `Unknown` where only the controller knows it."""
 
-    def value_of(self, name: str) -> Any:
+    def value_of(self, name: str, run: Execution) -> Any:
         """The value of a name that the language itself knows; None where it knows none."""
 
     def items(self, values: list[Any], kind: str) -> Any:
@@ -168,7 +171,7 @@ class Execution:
                 return one
             case Unreadable():
                 if one.word not in self.skip:
-                    raise _unreadable(one)
+                    raise unreadable_word(one)
                 self.note("left out as asked", f"{one.word} ({one.line})")
         return None
 
@@ -183,12 +186,12 @@ class Execution:
         for place in (self.frames[-1], self.variables):
             if name.name in place:
                 return place[name.name]
-        own = self.language.value_of(name.name)
+        own = self.language.value_of(name.name, self)
         if own is not None:
             return own
-        known_names = (*self.frames[-1], *self.variables)
-        hint = f" ({nearest_name(name.name, known_names)})" if known_names else ""
-        return Unknown(f"{name.name!r} is in no file that is given{hint}")
+        hint = nearest_name(name.name, {*self.frames[-1], *self.variables})
+        also = f" ({hint})" if hint.startswith("did") else ""
+        return Unknown(f"{name.name!r} is in no file that is given{also}")
 
     def result_of(self, call: Call) -> Any:
         """The value of a function: one of the program, or of the language.
@@ -202,7 +205,7 @@ class Execution:
         if call.name in self.routines:
             return self._called(self.routines[call.name], call)[0]
         if self.language.moves(call.name) is None:
-            raise _unknown(call)
+            raise unknown_word(call)
         return self.language.result_of(call, self)
 
     def items(self, values: list[Any], kind: str) -> Any:
@@ -238,6 +241,15 @@ class Execution:
         own = self.frames[-1]
         return own if is_own or name in own or name not in self.variables else self.variables
 
+    def change(self, target: Expression, step: Expression, line: Line) -> None:
+        """Adds to a variable."""
+        self._assign(Assign(line, target, Operation(numeric(operator.add), (target, step), line)))
+
+    def forget_variables(self, given: Iterable[Expression], line: Line) -> None:
+        """Makes variables unknown that an instruction gives a value."""
+        names = (assigned(one) for one in given)
+        self._forget((name.name, line) for name in names if name is not None)
+
     def _forget(self, changed: Iterable[tuple[str, Line]]) -> None:
         """Makes variables unknown that lines may have changed."""
         for name, line in changed:
@@ -251,7 +263,7 @@ class Execution:
         elif call.name in self.routines:
             return self._called(self.routines[call.name], call)[1]
         elif self.language.moves(call.name) is None:
-            raise _unknown(call)
+            raise unknown_word(call)
         else:
             self.language.instruct(call, self)
         return None
@@ -380,19 +392,3 @@ class Execution:
     def _state(self) -> Any:
         """What decides how the program goes on."""
         return copy.deepcopy((self.variables, self.frames, self.language.state))
-
-
-def _unknown(call: Call) -> BadProgram:
-    return BadProgram(
-        f"{call.name!r} is no known instruction, and may move the robot",
-        where=str(call.line),
-        valid=f"a file beside that has it, or skip: [{call.name}] if it moves nothing",
-    )
-
-
-def _unreadable(one: Unreadable) -> BadProgram:
-    return BadProgram(
-        f"{one.word!r} is not understood, and may decide where the robot goes",
-        where=str(one.line),
-        valid=f"a program without it, or skip: [{one.word}] if it does not",
-    )

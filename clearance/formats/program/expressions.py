@@ -179,7 +179,8 @@ class Grammar:
         binary, unary: operators, how firmly each binds, and what it does.
         constants: words for values. index: the brackets of an index. before_items: words before a bracket of
             values. optional: what is before the name of an argument (then `:=`); empty where `=` behind it is.
-        folds: whether capital letters mean the same as small ones.
+        folds: whether capital letters mean the same as small ones. spelling: how names are written then, by their
+            small letters; others are in small letters.
     """
 
     binary: Mapping[str, tuple[int, Callable[..., Any]]]
@@ -189,6 +190,11 @@ class Grammar:
     optional: str = ""
     before_items: tuple[str, ...] = ()
     folds: bool = False
+    spelling: Mapping[str, str] = field(default_factory=dict)
+
+    def folded(self, name: str) -> str:
+        """A name as it is compared."""
+        return self.spelling.get(name.lower(), name.lower()) if self.folds else name
 
 
 class ExpressionReader:
@@ -223,7 +229,9 @@ class ExpressionReader:
         cursor, mark = self.cursor, self._grammar.optional
         while not cursor.is_at(*ends):
             if mark and cursor.accept(mark):
-                name = self.folded(cursor.expect_kind("name", "the name of an argument").text)
+                name = self._grammar.folded(
+                    cursor.expect_kind("name", "the name of an argument").text
+                )
                 named[name] = self.expression() if cursor.accept(":=") else Constant(True)
             elif not mark and cursor.next.kind == "name" and cursor.after(1).text == "=":
                 name = cursor.take().text
@@ -234,10 +242,6 @@ class ExpressionReader:
             if not cursor.accept(",") and not cursor.is_at(*ends, *([mark] if mark else [])):
                 cursor.refuse(", or ".join(repr(one) for one in (",", *ends)))
         return tuple(args), named
-
-    def folded(self, name: str) -> str:
-        """A name as it is compared."""
-        return name.lower() if self._grammar.folds else name
 
     @property
     def _word(self) -> str:
@@ -266,16 +270,20 @@ class ExpressionReader:
         word = cursor.expect_kind("name", "a value")
         if word.text in self._grammar.before_items and cursor.accept("["):
             return self._items(word.text)
-        if self.folded(word.text) in self._grammar.constants:
-            return Constant(self._grammar.constants[self.folded(word.text)])
-        return self.called(word) if cursor.is_at("(") else Name(self.folded(word.text), word.line)
+        if self._grammar.folded(word.text) in self._grammar.constants:
+            return Constant(self._grammar.constants[self._grammar.folded(word.text)])
+        return (
+            self.called(word)
+            if cursor.is_at("(")
+            else Name(self._grammar.folded(word.text), word.line)
+        )
 
     def called(self, word: Token) -> Call:
         """A function's call, whose name is taken and whose bracket follows."""
         self.cursor.expect("(")
         args, named = self.arguments(")")
         self.cursor.expect(")")
-        return Call(self.folded(word.text), args, named, word.line)
+        return Call(self._grammar.folded(word.text), args, named, word.line)
 
     def _items(self, kind: str) -> Items:
         args, _ = self.arguments("]")
@@ -288,7 +296,7 @@ class ExpressionReader:
             line = self.cursor.next.line
             if self.cursor.accept("."):
                 by = self.cursor.expect_kind("name", "the name of a field").text
-                found = Part(found, self.folded(by), line)
+                found = Part(found, self._grammar.folded(by), line)
             elif self.cursor.accept(opens):
                 found = Part(found, self.expression(), line)
                 while self.cursor.accept(","):

@@ -145,7 +145,7 @@ class _UrScript:
         still = name in _STILL or name in _VALUES or name.startswith(_STILL_BEFORE)
         return False if still or name in ("sleep", "pose_trans", "get_inverse_kin") else None
 
-    def value_of(self, name: str) -> Any:
+    def value_of(self, name: str, _: Execution) -> Any:
         """None: all names but `True` and `False` are variables."""
         return {"pi": math.pi}.get(name)
 

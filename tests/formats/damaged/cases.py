@@ -116,3 +116,18 @@ URSCRIPT = b"""def weld():
   if home[0] < 0: sleep(0.5) else: movej([0, 0, 0, 0, 0, 0]) end
 end
 """
+
+RAPID = b"""MODULE Weld
+  PERS tooldata gun:=[TRUE,[[0,0,100],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
+  CONST jointtarget home:=[[-30,5,20,5,60,10],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  CONST robtarget p10:=[[400,100,300],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  PROC main()
+    MoveAbsJ home\\NoEOffs,v200,fine,gun;
+    FOR i FROM 1 TO 2 DO
+      MoveL Offs(p10,10*i,0,0),v100,z5,gun\\WObj:=wobj0;
+    ENDFOR
+    IF home.robax.rax_1<0 THEN WaitTime 0.5; ENDIF
+    MoveC RelTool(p10,50,50,0),p10,v100\\V:=50,fine,gun;
+  ENDPROC
+ENDMODULE
+"""

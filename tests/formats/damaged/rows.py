@@ -149,6 +149,10 @@ def _motions() -> dict[str, Reader]:
         "program": Reader(
             "weld.yaml", cases.PROGRAM, reading.program, yaml_damaged, Kind.PROGRAM, yml
         ),
+        "RAPID": Reader(
+            *("weld.mod", cases.RAPID, reading.controller, lines_damaged, Kind.PROGRAM),
+            (".prg", ".sys", ".modx"),
+        ),
         "URScript": Reader(
             *("weld.script", cases.URSCRIPT, reading.controller, lines_damaged, Kind.PROGRAM),
             (".urscript",),

@@ -1,0 +1,103 @@
+"""Programs in RAPID: from files to moves. Not for: what instructions do (`rapid_instructions`).
+
+Source: ABB, Technical reference manual, RAPID instructions, functions and data types.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from clearance.errors import BadProgram, MissingKey, at, nearest_name
+from clearance.formats.program.controller_program import (
+    ControllerMove,
+    ControllerProgram,
+    ControllerWait,
+    PoseTarget,
+    ProgramRequest,
+)
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.rapid_data import (
+    tool_record,
+    work_object_record,
+)
+from clearance.formats.program.rapid_instructions import Rapid
+from clearance.formats.program.rapid_text import Modules, grammar
+from clearance.formats.program.rapid_words import (
+    WORDS,
+)
+from clearance.formats.program.tokens import text_of
+
+
+def read_rapid(asked: ProgramRequest) -> ControllerProgram:
+    """The moves of a procedure of a program: `main`, if no other is asked for.
+
+    Raises:
+        BadInput: with the file and the line.
+    """
+    rules, modules = grammar(WORDS), Modules()
+    with at(asked.shown):
+        modules.read(text_of(asked.data, asked.shown), rules)
+        for file, data in asked.beside.items():
+            modules.read(text_of(data, file), rules, file)
+        given = asked.asked
+        known_data = {
+            **{name.lower(): tool_record(one.matrix()) for name, one in given.tools.items()},
+            **{
+                name.lower(): work_object_record(one.matrix()) for name, one in given.frames.items()
+            },
+        }
+        language = Rapid(modules, known_data)
+        skip = frozenset(rules.folded(one) for one in given.skip)
+        run = Execution(language, modules.routines, skip)
+        language.declare(run)
+        run.run(modules.routines[_entry(modules, given.entry)].body)
+        moves = _with_zones(run.moves, language.zones)
+        return ControllerProgram(tuple(moves), (*run.notes, *language.assumed))
+
+
+def _entry(modules: Modules, asked: str | None) -> str:
+    """The procedure that runs.
+
+    Raises:
+        BadInput: there is none of the name; MissingKey: no `main`, and several others.
+    """
+    names = [
+        name for name, one in modules.routines.items() if not one.parameters and not one.is_thread
+    ]
+    if asked is not None:
+        if asked.lower() not in names:
+            valid = nearest_name(asked, names)
+            raise BadProgram(f"there is no procedure {asked!r}", where="entry", valid=valid)
+        return asked.lower()
+    if "main" in names or len(names) == 1:
+        return "main" if "main" in names else names[0]
+    told = (
+        f"there is no procedure main, but {', '.join(names)}" if names else "there is no procedure"
+    )
+    raise MissingKey(told, where="entry", valid="the procedure that runs")
+
+
+def _with_zones(
+    moves: list[ControllerMove | ControllerWait], zones: dict[int, tuple[float, float]]
+) -> list[ControllerMove | ControllerWait]:
+    """Moves with the radius of their zone: that of the tool's point; where the tool turns before or after the
+    larger one of its orientation.
+    """
+    found = list(moves)
+    for i, (point, turn) in zones.items():
+        one, around = moves[i], [*moves[max(0, i - 1) : i], *moves[i : i + 2]]
+        turns = [
+            move.to.pose[:3, :3]
+            if isinstance(move, ControllerMove) and isinstance(move.to, PoseTarget)
+            else None
+            for move in around
+        ]
+        first = turns[0]
+        same = first is not None and all(
+            one is not None and np.abs(one - first).max() < 1e-9 for one in turns
+        )
+        assert isinstance(one, ControllerMove)
+        found[i] = replace(one, zone=point if same and len(turns) == 3 else max(point, turn))
+    return found

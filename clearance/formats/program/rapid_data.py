@@ -1,0 +1,236 @@
+"""Data of RAPID: records as lists, standard speeds and zones, poses, and functions of them; in mm and degrees.
+
+Sources: ABB, Technical reference manual, RAPID instructions, functions and data types: `robtarget`, `orient` (q1
+is the scalar), `confdata`, `speeddata`, `zonedata` (tables), `Offs`, `RelTool`, `OrientZYX`, `PoseMult`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadProgram
+from clearance.formats.program.expressions import Unknown
+from clearance.geometry.pose import inverse, pose_from_quaternion, pose_from_rpy
+from clearance.geometry.quaternions import quaternions_of
+from clearance.tolerance import ROUNDED_ROTATION
+
+FIELDS: Mapping[str, int] = {
+    name: i
+    for names in (
+        "x y z",
+        "q1 q2 q3 q4",
+        "trans rot robconf extax",
+        "cf1 cf4 cf6 cfx",
+        "robax",
+        "rax_1 rax_2 rax_3 rax_4 rax_5 rax_6",
+        "eax_a eax_b eax_c eax_d eax_e eax_f",
+        "robhold tframe tload",
+        "mass cog aom ix iy iz",
+        "robhold ufprog ufmec uframe oframe",
+        "v_tcp v_ori v_leax v_reax",
+        "finep pzone_tcp pzone_ori pzone_eax zone_ori zone_leax zone_reax",
+    )
+    for i, name in enumerate(names.split())
+}
+"""Where a field is in its record; a name is in one place in all records that have it."""
+
+NO_AXIS = 9e9
+"""An external axis that is not there."""
+
+_SPEEDS = (
+    *(5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800),
+    *(1000, 1500, 2000, 2500, 3000, 4000, 5000, 6000, 7000),
+)
+_ZONES = {
+    0: (0.3, 0.3, 0.3, 0.03, 0.3, 0.03),
+    1: (1, 1, 1, 0.1, 1, 0.1),
+    5: (5, 8, 8, 0.8, 8, 0.8),
+    10: (10, 15, 15, 1.5, 15, 1.5),
+    15: (15, 23, 23, 2.3, 23, 2.3),
+    20: (20, 30, 30, 3.0, 30, 3.0),
+    30: (30, 45, 45, 4.5, 45, 4.5),
+    40: (40, 60, 60, 6.0, 60, 6.0),
+    50: (50, 75, 75, 7.5, 75, 7.5),
+    60: (60, 90, 90, 9.0, 90, 9.0),
+    80: (80, 120, 120, 12, 120, 12),
+    100: (100, 150, 150, 15, 150, 15),
+    150: (150, 225, 225, 23, 225, 23),
+    200: (200, 300, 300, 30, 300, 30),
+}
+_HERE = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]
+_NO_LOAD = [0.001, [0.0, 0.0, 0.001], [1.0, 0.0, 0.0, 0.0], 0.0, 0.0, 0.0]
+
+STANDARD: Mapping[str, Any] = {
+    **{f"v{speed}": [float(speed), 500.0, 5000.0, 1000.0] for speed in _SPEEDS},
+    "vmax": [7000.0, 500.0, 5000.0, 1000.0],
+    **{f"z{size}": [False, *map(float, zone)] for size, zone in _ZONES.items()},
+    "fine": [True, *(0.0,) * 6],
+    "tool0": [True, _HERE, [0.0, *_NO_LOAD[1:]]],
+    "wobj0": [False, True, "", _HERE, _HERE],
+    "load0": _NO_LOAD,
+    "pi": math.pi,
+}
+"""Data that every controller has."""
+
+
+def pose_of(frame: Any) -> np.ndarray:
+    """(4, 4) of a record [[x, y, z] in mm, [q1, q2, q3, q4]], lengths in m.
+
+    Raises:
+        BadProgram: an orientation that is none. TypeError, ValueError: other things.
+    """
+    (x, y, z), (q1, q2, q3, q4) = frame[0], frame[1]
+    length = math.hypot(q1, q2, q3, q4)
+    if not abs(length - 1.0) <= ROUNDED_ROTATION:
+        raise BadProgram(
+            f"the orientation {[q1, q2, q3, q4]} has length {length:.6g}",
+            valid="length 1, q1 the scalar",
+        )
+    unit = [q2 / length, q3 / length, q4 / length, q1 / length]
+    return pose_from_quaternion([1e-3 * x, 1e-3 * y, 1e-3 * z], unit)
+
+
+def frame_of(pose: np.ndarray) -> list[list[float]]:
+    """The record of a (4, 4) pose [m]."""
+    x, y, z, w = quaternions_of(pose[None, :3, :3])[0].tolist()
+    return [(1e3 * pose[:3, 3]).tolist(), [w, x, y, z]]
+
+
+def tool_record(pose: np.ndarray) -> list[Any]:
+    """`tooldata` of a tool on the flange, by its (4, 4) pose [m]."""
+    return [True, frame_of(pose), _NO_LOAD]
+
+
+def work_object_record(pose: np.ndarray) -> list[Any]:
+    """`wobjdata` of a frame on the base, by its (4, 4) pose [m]."""
+    return [False, True, "", frame_of(pose), _HERE]
+
+
+_ROUNDING = math.radians(0.1)
+"""[rad] By which an axis may be beyond its quarter turn, since targets are rounded."""
+
+
+def external_of(values: list[float]) -> dict[str, float]:
+    """The external axes of a target that are there, as they are written."""
+    return {f"E{i}": value for i, value in enumerate(values, 1) if abs(value) < NO_AXIS}
+
+
+def ranges_of(flags: list[float]) -> dict[int, tuple[float, float]]:
+    """Where axes are by the flags of a configuration: quarter turns of 1, 4 and 6, the sign of 5."""
+    quarter = math.pi / 2.0
+    found = {
+        axis: (flag * quarter - _ROUNDING, (flag + 1.0) * quarter + _ROUNDING)
+        for axis, flag in zip((1, 4, 6), flags, strict=False)
+    }
+    if 0.0 <= flags[3] <= 7.0:
+        found[5] = (-math.pi, _ROUNDING) if flags[3] % 2.0 else (-_ROUNDING, math.pi)
+    return found
+
+
+def record(value: Any, n: int, is_flagged: bool) -> list[Any]:
+    """The n fields of a record, whose first is a truth if it is flagged.
+
+    Raises:
+        TypeError: it is another.
+    """
+    if not isinstance(value, list) or len(value) != n or isinstance(value[0], bool) != is_flagged:
+        raise TypeError
+    return value
+
+
+def flange_from_tool(value: list[Any]) -> np.ndarray:
+    """(4, 4) `flange_from_tool` [m].
+
+    Raises:
+        BadProgram: a tool that stands.
+    """
+    holds, frame, _ = record(value, 3, is_flagged=True)
+    if not holds:
+        raise BadProgram(
+            "the tool stands, and the robot holds the work", valid="a tool that the robot holds"
+        )
+    return pose_of(frame)
+
+
+def base_from_work(value: list[Any]) -> np.ndarray:
+    """(4, 4) `base_from_work` [m]: user frame times object frame.
+
+    Raises:
+        BadProgram: one that the robot holds, or that moves.
+    """
+    holds, is_fixed, unit, user, frame = record(value, 5, is_flagged=True)
+    if holds or not is_fixed or unit:
+        what = "the robot holds" if holds else f"mechanical unit {unit!r} moves"
+        raise BadProgram(
+            f"{what} the work object", valid="a work object that stands, with ufprog TRUE"
+        )
+    return np.asarray(pose_of(user) @ pose_of(frame))
+
+
+def _offs(target: list[Any], *way: float) -> list[Any]:
+    return [[a + b for a, b in zip(target[0], way, strict=True)], *target[1:]]
+
+
+def rel_tool(
+    target: list[Any], way: tuple[float, float, float], rx: float, ry: float, rz: float
+) -> list[Any]:
+    """`RelTool`: moved along the tool's axes [mm], then turned about its x, the new y and the new z [degrees]."""
+    pose = pose_of(target)
+    pose[:3, 3] += 1e-3 * pose[:3, :3] @ np.array(way)
+    for angle, axis in ((rx, 0), (ry, 1), (rz, 2)):
+        turn = [0.0, 0.0, 0.0]
+        turn[axis] = math.radians(angle)
+        pose[:3, :3] = pose[:3, :3] @ pose_from_rpy([0.0, 0.0, 0.0], turn)[:3, :3]
+    return [*frame_of(pose), *target[2:]]
+
+
+def array_of(first: Any, sizes: list[float]) -> Any:
+    """An array of a datum of a routine: its value, or a first value for each item."""
+    if isinstance(first, list) or not sizes:
+        return first
+    if not 1 <= sizes[0] <= 1000:
+        raise ValueError(sizes[0])
+    item = Unknown("an item of an array has no value") if first is None else first
+    return [array_of(item, sizes[1:]) for _ in range(int(sizes[0]))]
+
+
+def _rounded(value: float, digits: float = 0.0) -> float:
+    return math.floor(abs(value) * 10.0**digits + 0.5) / 10.0**digits * math.copysign(1.0, value)
+
+
+def _turned(z: float, y: float, x: float) -> list[float]:
+    """`OrientZYX` [degrees]."""
+    turn = [math.radians(one) for one in (x, y, z)]
+    return frame_of(pose_from_rpy([0.0, 0.0, 0.0], turn))[1]
+
+
+VALUES: Mapping[str, Callable[..., Any]] = {
+    "Offs": _offs,
+    "PoseMult": lambda a, b: frame_of(pose_of(a) @ pose_of(b)),
+    "PoseInv": lambda a: frame_of(inverse(pose_of(a))),
+    "PoseVect": lambda a, way: frame_of(pose_of(a) @ pose_of([way, _HERE[1]]))[0],
+    "OrientZYX": _turned,
+    "NOrient": lambda q: [one / math.hypot(*q) for one in q],
+    "Distance": lambda a, b: math.dist(a, b),
+    "VectMagn": lambda a: math.hypot(*a),
+    "DotProd": lambda a, b: float(np.dot(a, b)),
+    "Dim": lambda array, level: float(len(array)) if level == 1 else float(len(array[0])),
+    "Abs": abs,
+    "Sqrt": math.sqrt,
+    "Pow": math.pow,
+    "Exp": math.exp,
+    "Round": _rounded,
+    "Trunc": lambda a: float(math.trunc(a)),
+    "Sin": lambda a: math.sin(math.radians(a)),
+    "Cos": lambda a: math.cos(math.radians(a)),
+    "Tan": lambda a: math.tan(math.radians(a)),
+    "ASin": lambda a: math.degrees(math.asin(a)),
+    "ACos": lambda a: math.degrees(math.acos(a)),
+    "ATan": lambda a: math.degrees(math.atan(a)),
+    "ATan2": lambda y, x: math.degrees(math.atan2(y, x)),
+}
+"""Functions whose value follows from their arguments."""

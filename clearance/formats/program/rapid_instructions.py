@@ -1,0 +1,350 @@
+"""What instructions of RAPID do. Not for: its text (`rapid_text`), its data (`rapid_data`) and its words.
+
+Source: ABB, Technical reference manual, RAPID instructions, functions and data types.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadProgram, ClearanceError, at
+from clearance.formats.program.controller_program import (
+    AxisTarget,
+    ControllerMove,
+    ControllerWait,
+    PoseTarget,
+    Target,
+)
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import (
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Operation,
+    Part,
+    Unknown,
+    known,
+    number,
+)
+from clearance.formats.program.rapid_data import (
+    FIELDS,
+    NO_AXIS,
+    STANDARD,
+    VALUES,
+    array_of,
+    base_from_work,
+    external_of,
+    flange_from_tool,
+    pose_of,
+    ranges_of,
+    record,
+    rel_tool,
+)
+from clearance.formats.program.rapid_text import Declaration, Modules
+from clearance.formats.program.rapid_words import (
+    CHANGES,
+    MOVES,
+    OTHER_MOVES,
+    RESULTS,
+    WAITS,
+    WORDS,
+    WRITES,
+    MoveRule,
+)
+
+
+@dataclass(eq=False)
+class Rapid:
+    """What RAPID's instructions do.
+
+    Attributes:
+        known_data: tools and work objects that the case says. checks: whether joint moves keep to configurations.
+        zones: by the index of a move, the radii of its zone for point and orientation [m].
+    """
+
+    modules: Modules
+    known_data: dict[str, Any]
+    checks: bool = True
+    zones: dict[int, tuple[float, float]] = field(default_factory=dict)
+    _persistent: bool = False
+    _lines_keep: bool = False
+
+    @property
+    def state(self) -> Any:
+        """Whether configurations are kept."""
+        return self.checks
+
+    @property
+    def assumed(self) -> list[str]:
+        """A line each on what was taken for granted."""
+        found = []
+        if any(one.kind == "PERS" for one in self.modules.declared.values()):
+            found.append("PERS data have the values that are in the file")
+        return found
+
+    def declare(self, run: Execution) -> None:
+        """Gives all data of modules their first values."""
+        for name, one in self.modules.declared.items():
+            if name not in run.variables:
+                run.value_of(Name(name, one.line))
+
+    def moves(self, name: str) -> bool | None:
+        """Whether an instruction can move the robot; None for one that is not known."""
+        if name in MOVES or name in OTHER_MOVES:
+            return True
+        return False if name.lower() in WORDS or name == "%array" else None
+
+    def value_of(self, name: str, run: Execution) -> Any:
+        """The value of a datum of a module, of the case, or of the controller."""
+        one = self.modules.declared.get(name)
+        if name in self.known_data:
+            return self.known_data[name]
+        if one is None:
+            return STANDARD.get(name)
+        run.variables[name] = Unknown(f"{name!r} is declared by itself at {one.line}")
+        run.variables[name] = self._first_value(one, run)
+        return run.variables[name]
+
+    def _first_value(self, one: Declaration, run: Execution) -> Any:
+        if one.value is not None:
+            return run.evaluated(one.value)
+        usual = {"num": 0.0, "dnum": 0.0, "bool": False, "string": ""}.get(one.type_name)
+        if one.sizes:
+            sizes = [number(run.evaluated(size), one.line, "a size") for size in one.sizes]
+            return array_of(usual, sizes)
+        return Unknown(f"{one.name!r} has no value at {one.line}") if usual is None else usual
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        """A record or an array."""
+        return values
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """A field of a record, or an item of an array."""
+        return value[self._place(value, by)]
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        """Changes a field or an item."""
+        value[self._place(value, by)] = new
+
+    def _place(self, value: Any, by: Any) -> int:
+        if not isinstance(value, list):
+            raise TypeError
+        if isinstance(by, str):
+            own = [fields.index(by) for fields in self.modules.records.values() if by in fields]
+            if by == "extax" and len(value) == 2:
+                return 1
+            return own[0] if own else FIELDS[by]
+        if by != int(by) or by < 1:
+            raise IndexError(by)
+        return int(by) - 1
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """A move, a wait, a setting; all else moves nothing.
+
+        Raises:
+            BadProgram: a move of another kind, or a wait for a signal.
+        """
+        name = call.name
+        if name in MOVES:
+            self._move(call, MOVES[name], run)
+        elif name == "WaitTime":
+            seconds = (
+                number(run.evaluated(call.args[0]), call.line, "the time") if call.args else 0.0
+            )
+            if seconds > 0.0:
+                run.add(ControllerWait(call.line.number, seconds, call.line.file))
+        elif name in WAITS:
+            raise BadProgram(
+                f"{name} waits for what only the controller knows",
+                where=str(call.line),
+                valid=f"skip: [{name}] to leave such waits out",
+            )
+        elif name == "CONNECT":
+            self._connect(call, run)
+        elif name in ("SingArea", "CirPathMode") and {*call.named} <= {"off", "pathframe"}:
+            run.pass_over(name, call.line)
+        elif name in OTHER_MOVES:
+            raise BadProgram(
+                f"{name} changes where the robot goes, in a way that is not read",
+                where=str(call.line),
+                valid="a program without it",
+            )
+        else:
+            self._set(call, run)
+
+    def _set(self, call: Call, run: Execution) -> None:
+        """What an instruction that moves nothing changes."""
+        run.pass_over(call.name, call.line)
+        if call.name == "ConfJ":
+            self.checks = "off" not in call.named
+        elif call.name in (*CHANGES, "Add", "Clear"):
+            target, *more = call.args
+            if call.name == "Clear":
+                more = [Operation(operator.neg, (target,), call.line)]
+            run.change(target, Constant(CHANGES[call.name]) if not more else more[0], call.line)
+        elif call.name in WRITES:
+            run.forget_variables([*call.args, *call.named.values()], call.line)
+        else:
+            run.forget_variables(
+                [one for key, one in call.named.items() if key in RESULTS], call.line
+            )
+
+    def _connect(self, call: Call, run: Execution) -> None:
+        trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
+        if trap not in run.routines or not run.effects.is_still(run.routines[trap]):
+            raise BadProgram(
+                f"trap {trap!r} moves the robot, or may", where=str(call.line), valid="none"
+            )
+        run.note("traps that move nothing", f"{trap} ({call.line})")
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        """The value of a function."""
+        if call.name == "Present":
+            (one,) = call.args
+            return isinstance(one, Name) and one.name in run.frames[-1]
+        args = [run.evaluated(one) for one in call.args]
+        named = {name: run.evaluated(one) for name, one in call.named.items()}
+        if call.name in ("ATan2", "Round") and "dec" in named:
+            args.append(named["dec"])
+        for one in (*args, *named.values()):
+            if isinstance(one, Unknown):
+                return one
+        try:
+            if call.name == "%array":
+                return array_of(args[0], args[1:])
+            if call.name == "RelTool":
+                target, *way = args
+                turns = (named.get("rx", 0.0), named.get("ry", 0.0), named.get("rz", 0.0))
+                return rel_tool(target, (way[0], way[1], way[2]), *turns)
+            if call.name in VALUES:
+                return VALUES[call.name](*args)
+        except ClearanceError:
+            raise
+        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError):
+            given = ", ".join(f"{one!r:.40}" for one in args)
+            raise BadProgram(
+                f"{call.name} has no value for {given}", where=str(call.line)
+            ) from None
+        return Unknown(f"{call.name} at {call.line}")
+
+    # moves
+
+    def _move(self, call: Call, rule: MoveRule, run: Execution) -> None:
+        _require_plain(call, rule)
+        line = call.line
+        asked = {
+            "target": call.args[rule.to],
+            "speed": call.args[rule.speed],
+            "zone": call.args[rule.zone],
+            "tool": call.args[rule.tool],
+            "work object": call.named.get("wobj", Name("wobj0", line)),
+            "point on the arc": call.args[0],
+        }
+        given = {
+            what: known(run.evaluated(one), line, f"the {what}") for what, one in asked.items()
+        }
+        with _expecting_data(call):
+            placed = base_from_work(given["work object"])
+            speed, turn_speed = _speed(given["speed"], call, run)
+            via = None
+            if rule.to == 1:
+                via = self._target(call, given["point on the arc"], call.args[0], placed)
+            to = self._target(call, given["target"], call.args[rule.to], placed)
+            point, turn = _zone(given["zone"], call, run)
+            if not speed > 0.0:
+                raise BadProgram(f"the speed is {speed:g} m/s", valid="more than 0")
+            move = ControllerMove(
+                line.number, rule.kind, to, flange_from_tool(given["tool"]), via, file=line.file
+            )
+        if rule.kind != "ptp":
+            move = replace(move, speed=speed, turn_speed=turn_speed)
+        if point > 0.0:
+            self.zones[len(run.moves)] = (point, turn)
+        run.add(move)
+
+    def _target(self, call: Call, value: Any, one: Expression, placed: np.ndarray) -> Target:
+        name = _shown(one)
+        if call.name == "MoveAbsJ":
+            axes, external = value
+            return AxisTarget(
+                tuple(math.radians(one) for one in axes if abs(one) < NO_AXIS),
+                external_of(external),
+                name,
+            )
+        trans, rot, flags, external = value
+        pose = placed @ pose_of([trans, rot])
+        if MOVES[call.name].kind != "ptp" or not self.checks:
+            return PoseTarget(pose, external_of(external), name=name)
+        unchecked = "whether the wrist is before axis 1 and the lower arm (cfx)"
+        return PoseTarget(
+            pose, external_of(external), ranges_of(flags), unchecked=unchecked, name=name
+        )
+
+
+def _require_plain(call: Call, rule: MoveRule) -> None:
+    """Nothing, if a move has all its arguments, and none that changes its way.
+
+    Raises:
+        BadProgram: with the line.
+    """
+    for name in ("corr", "track", "weave", "sync"):
+        if name in call.named:
+            told = f"\\{name} changes the way"
+            raise BadProgram(told, where=str(call.line), valid="no such argument")
+    if len(call.args) <= rule.tool:
+        told = f"{call.name} has {len(call.args)} of its arguments"
+        raise BadProgram(told, where=str(call.line), valid="target, speed, zone and tool")
+
+
+@contextmanager
+def _expecting_data(call: Call) -> Iterator[None]:
+    """Says of data of another kind that they are, and where."""
+    with at(str(call.line)):
+        try:
+            yield
+        except ClearanceError:
+            raise
+        except (LookupError, TypeError, ValueError):
+            raise BadProgram(
+                f"{call.name} is given data of another kind",
+                valid="a target, speeddata, zonedata, tooldata",
+            ) from None
+
+
+def _shown(one: Expression) -> str:
+    """The name of a target: that of the datum that it is made of."""
+    while isinstance(one, Part | Call):
+        if isinstance(one, Call) and not one.args:
+            return ""
+        one = one.of if isinstance(one, Part) else one.args[0]
+    return one.name if isinstance(one, Name) else ""
+
+
+def _speed(value: list[float], call: Call, run: Execution) -> tuple[float, float]:
+    """[m/s] and [rad/s] of the tool."""
+    tcp, turn, *_ = record(value, 4, is_flagged=False)
+    if "v" in call.named:
+        tcp = number(run.evaluated(call.named["v"]), call.line, "V")
+    if "t" in call.named:
+        run.note("times of moves (T) are not followed, but speeds", f"{call.line}")
+    return 1e-3 * tcp, math.radians(turn)
+
+
+def _zone(value: list[Any], call: Call, run: Execution) -> tuple[float, float]:
+    """[m] The radii of a zone for the tool's point and for its orientation; 0 where the tool stops."""
+    stops, point, turn, *_ = record(value, 7, is_flagged=True)
+    if stops:
+        return 0.0, 0.0
+    if "z" in call.named:
+        point = number(run.evaluated(call.named["z"]), call.line, "Z")
+    if point < 0.0 or turn < 0.0:
+        raise BadProgram(f"a zone of {point:g} mm", valid="0 or more")
+    return 1e-3 * point, 1e-3 * turn

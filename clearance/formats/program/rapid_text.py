@@ -1,0 +1,388 @@
+"""RAPID as statements. Not for: what its instructions do (`rapid`), nor its data (`rapid_data`).
+
+Source: ABB, Technical reference manual, RAPID kernel.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from clearance.errors import DuplicateName
+from clearance.formats.program.expressions import (
+    COMPARED,
+    Call,
+    Constant,
+    Expression,
+    ExpressionReader,
+    Grammar,
+    Name,
+    Operation,
+    numeric,
+)
+from clearance.formats.program.statements import (
+    RETURN,
+    STOP,
+    Assign,
+    Do,
+    For,
+    If,
+    Leave,
+    Routine,
+    Statement,
+    Unreadable,
+    While,
+)
+from clearance.formats.program.tokens import END, Cursor, Line, Token, tokens_of
+
+WORDS = re.compile(
+    r"""(?P<skip>\s+|![^\n]*|%%%.*?%%%)
+    |(?P<number>0[xX][0-9a-fA-F]+|0[bB][01]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)
+    |(?P<name>[A-Za-z_][A-Za-z_0-9]*)
+    |(?P<string>"(?:[^"\n]|"")*")
+    |(?P<operator>:=|<>|<=|>=|[-+*/<>=(){}\[\],.;:\\|?%])""",
+    re.VERBOSE | re.DOTALL,
+)
+
+
+def _sum(a: object, b: object) -> object:
+    """Numbers, texts and positions are added."""
+    if isinstance(a, list) and isinstance(b, list):
+        return [numeric(operator.add)(x, y) for x, y in zip(a, b, strict=True)]
+    if isinstance(a, str) and isinstance(b, str):
+        return a + b
+    return numeric(operator.add)(a, b)
+
+
+def _difference(a: object, b: object) -> object:
+    if isinstance(a, list) and isinstance(b, list):
+        return [numeric(operator.sub)(x, y) for x, y in zip(a, b, strict=True)]
+    return numeric(operator.sub)(a, b)
+
+
+def _product(a: object, b: object) -> object:
+    """Numbers, and a position by a number, are multiplied.
+
+    Raises:
+        TypeError: other things are.
+    """
+    for one, by in ((a, b), (b, a)):
+        if isinstance(one, list) and len(one) == 3 and not isinstance(by, list):
+            return [numeric(operator.mul)(x, by) for x in one]
+    return numeric(operator.mul)(a, b)
+
+
+def grammar(spelling: dict[str, str]) -> Grammar:
+    """How RAPID writes expressions.
+
+    Args:
+        spelling: how known names are written, by their small letters.
+    """
+    return Grammar(
+        binary={
+            "OR": (1, lambda a, b: bool(a) or bool(b)),
+            "XOR": (1, lambda a, b: bool(a) != bool(b)),
+            "AND": (2, lambda a, b: bool(a) and bool(b)),
+            "=": (4, operator.eq),
+            "<>": (4, operator.ne),
+            **{word: (4, act) for word, act in COMPARED.items()},
+            "+": (5, _sum),
+            "-": (5, _difference),
+            "*": (6, _product),
+            "/": (6, numeric(operator.truediv)),
+            "DIV": (6, numeric(lambda a, b: float(int(a / b)))),
+            "MOD": (6, numeric(lambda a, b: a - b * int(a / b))),
+        },
+        unary={
+            "NOT": (3, operator.not_),
+            "-": (7, lambda a: _product(-1.0, a)),
+            "+": (7, lambda a: a),
+        },
+        constants={"true": True, "false": False},
+        index="{}",
+        optional="\\",
+        folds=True,
+        spelling=spelling,
+    )
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A datum with its first value; `sizes` are those of an array."""
+
+    line: Line
+    kind: str
+    type_name: str
+    name: str
+    value: Expression | None
+    sizes: tuple[Expression, ...] = ()
+
+
+@dataclass(eq=False)
+class Modules:
+    """The modules of a program.
+
+    Attributes:
+        routines, declared, records: by name; the last are the names of fields. traps: names of routines that
+            interrupts run.
+    """
+
+    routines: dict[str, Routine] = field(default_factory=dict)
+    declared: dict[str, Declaration] = field(default_factory=dict)
+    records: dict[str, list[str]] = field(default_factory=dict)
+
+    def read(self, text: str, rules: Grammar, file: str = "") -> None:
+        """Adds the modules of a file.
+
+        Raises:
+            BadSyntax: with the line. DuplicateName: two of a name.
+        """
+        cursor = Cursor(tokens_of(text, WORDS, file), folds=True)
+        reader = _Reader(cursor, rules, self)
+        if cursor.next.kind == END:
+            cursor.refuse("'MODULE'")
+        while cursor.next.kind != END:
+            reader.module()
+
+
+_DATA = ("CONST", "PERS", "VAR")
+_SCOPES = ("LOCAL", "TASK", "GLOBAL")
+_ROUTINES = {"PROC": "ENDPROC", "FUNC": "ENDFUNC", "TRAP": "ENDTRAP"}
+_HANDLERS = ("ERROR", "UNDO", "BACKWARD")
+_BLOCKS_END = (
+    *_ROUTINES.values(),
+    *_HANDLERS,
+    *("ENDIF", "ELSE", "ELSEIF", "ENDFOR", "ENDWHILE", "ENDTEST", "CASE", "DEFAULT", "ENDMODULE"),
+)
+
+
+class _Reader:
+    """Reads modules, one after another."""
+
+    def __init__(self, cursor: Cursor, rules: Grammar, into: Modules) -> None:
+        self._cursor, self._rules, self._into = cursor, rules, into
+        self._expressions, self._depth = ExpressionReader(cursor, rules), 0
+
+    def module(self) -> None:
+        """A module."""
+        cursor = self._cursor
+        cursor.expect("MODULE")
+        cursor.expect_kind("name", "the name of the module")
+        if cursor.accept("("):
+            while not cursor.accept(")"):
+                cursor.expect_kind("name", "an attribute")
+                cursor.accept(",")
+        while not cursor.accept("ENDMODULE"):
+            cursor.accept(*_SCOPES)
+            cursor.accept(*_SCOPES)
+            if cursor.is_at(*_DATA):
+                self._keep(self._declaration())
+            elif cursor.is_at(*_ROUTINES):
+                self._routine()
+            elif cursor.accept("RECORD"):
+                self._record()
+            elif cursor.accept("ALIAS"):
+                cursor.take(), cursor.take()
+                cursor.expect(";")
+            else:
+                cursor.refuse("data, a routine, or 'ENDMODULE'")
+
+    def _keep(self, one: Declaration) -> None:
+        if one.name in self._into.declared:
+            raise DuplicateName(f"{one.name!r} is declared twice", where=str(one.line))
+        self._into.declared[one.name] = one
+
+    def _name(self, what: str) -> str:
+        return self._rules.folded(self._cursor.expect_kind("name", what).text)
+
+    def _declaration(self) -> Declaration:
+        cursor = self._cursor
+        kind = cursor.take()
+        type_name = self._name("a type")
+        name = self._name("a name")
+        sizes = list[Expression]()
+        if cursor.accept("{"):
+            while not cursor.accept("}"):
+                sizes.append(self._expressions.expression())
+                cursor.accept(",")
+        value = self._expressions.expression() if cursor.accept(":=") else None
+        cursor.expect(";")
+        return Declaration(kind.line, kind.text.upper(), type_name, name, value, tuple(sizes))
+
+    def _record(self) -> None:
+        name = self._name("the name of the record")
+        fields = list[str]()
+        while not self._cursor.accept("ENDRECORD"):
+            self._name("a type")
+            fields.append(self._name("a name"))
+            self._cursor.expect(";")
+        self._into.records[name] = fields
+
+    def _routine(self) -> None:
+        cursor = self._cursor
+        word = cursor.take()
+        if word.text.upper() == "FUNC":
+            self._name("a type")
+        line, name = cursor.next.line, self._name("a name")
+        parameters, returned = self._parameters() if cursor.accept("(") else ([], set[str]())
+        body = self._block()
+        while cursor.accept(*_HANDLERS):
+            if cursor.accept("("):
+                self._expressions.arguments(")")
+                cursor.expect(")")
+            self._block()
+        cursor.expect(_ROUTINES[word.text.upper()])
+        if name in self._into.routines:
+            raise DuplicateName(f"{name!r} is there twice", where=str(line))
+        self._into.routines[name] = Routine(
+            name, line, tuple(parameters), body, word.text.upper() == "TRAP", frozenset(returned)
+        )
+
+    def _parameters(self) -> tuple[list[str], set[str]]:
+        """Names of parameters, and of those that are the caller's own."""
+        cursor, names, returned = self._cursor, list[str](), set[str]()
+        while not cursor.accept(")"):
+            cursor.accept("\\")
+            own = cursor.accept("INOUT", "VAR", "PERS", "REF")
+            first = self._name("a type")
+            name = self._name("a name") if cursor.next.kind == "name" else first
+            if cursor.accept("{"):
+                while not cursor.accept("}"):
+                    cursor.take() if cursor.next.kind != END else cursor.refuse("'}'")
+            names.append(name)
+            if own:
+                returned.add(name)
+            if not cursor.accept(",", "|") and not cursor.is_at(")", "\\"):
+                cursor.refuse("',' or ')'")
+        return names, returned
+
+    def _block(self) -> tuple[Statement, ...]:
+        """Statements up to what ends a block, which is not taken."""
+        self._depth += 1
+        if self._depth > 60:
+            self._cursor.refuse("at most 60 blocks within one another")
+        found = list[Statement]()
+        while not self._cursor.is_at(*_BLOCKS_END):
+            if self._cursor.next.kind == END:
+                self._cursor.refuse("the end of the block")
+            one = self._statement()
+            if one is not None:
+                found.append(one)
+        self._depth -= 1
+        return tuple(found)
+
+    def _statement(self) -> Statement | None:
+        cursor, word = self._cursor, self._cursor.next
+        compound: dict[str, Callable[[Line], Statement]] = {
+            "IF": self._if,
+            "FOR": self._for,
+            "WHILE": self._while,
+            "TEST": self._test,
+        }
+        if cursor.is_at(*compound):
+            return compound[cursor.take().text.upper()](word.line)
+        if cursor.is_at(*_DATA):
+            return self._own(self._declaration())
+        found = self._simple(word)
+        cursor.expect(";")
+        return found
+
+    def _own(self, one: Declaration) -> Statement:
+        """A datum of a routine, as it is entered."""
+        first = one.value or Constant({"num": 0.0, "bool": False, "string": ""}.get(one.type_name))
+        given = Call("%array", (first, *one.sizes), {}, one.line) if one.sizes else first
+        return Assign(one.line, Name(one.name, one.line), given, is_own=True)
+
+    def _simple(self, word: Token) -> Statement | None:
+        """A statement before `;`, which is not taken."""
+        cursor = self._cursor
+        if cursor.accept(";"):
+            return None
+        if cursor.accept("RETURN"):
+            value = None if cursor.is_at(";") else self._expressions.expression()
+            return Leave(word.line, "RETURN", RETURN, value)
+        if cursor.accept("EXIT", "EXITCYCLE"):
+            return Leave(word.line, word.text, STOP)
+        if cursor.is_at("GOTO", "RAISE", "RETRY", "TRYNEXT", "%"):
+            return self._unreadable(word)
+        if cursor.after(1).text == ":":  # a label
+            cursor.take(), cursor.take()
+            return self._simple(cursor.next) if not cursor.is_at(";") else None
+        if cursor.accept("CONNECT"):
+            self._expressions.expression()
+            cursor.expect("WITH")
+            trap = Constant(self._name("the name of a trap"))
+            return Do(word.line, Call("CONNECT", (trap,), {}, word.line))
+        return self._call_or_value(word)
+
+    def _unreadable(self, word: Token) -> Unreadable:
+        while not self._cursor.is_at(";"):
+            if self._cursor.take().kind == END:
+                self._cursor.refuse("';'")
+        return Unreadable(word.line, word.text)
+
+    def _call_or_value(self, word: Token) -> Statement:
+        cursor = self._cursor
+        following = cursor.after(1).text
+        if following in (":=", ".", "{"):
+            target = self._expressions.expression(7)
+            cursor.expect(":=")
+            return Assign(word.line, target, self._expressions.expression())
+        name = self._name("a statement")
+        args, named = self._expressions.arguments(";")
+        return Do(word.line, Call(name, args, named, word.line))
+
+    def _if(self, line: Line) -> Statement:
+        cursor, branches = self._cursor, list[tuple[Expression | None, tuple[Statement, ...]]]()
+        condition = self._expressions.expression()
+        if not cursor.accept("THEN"):
+            one = self._statement()
+            return If(line, "if", ((condition, (one,) if one is not None else ()),))
+        branches.append((condition, self._block()))
+        while cursor.accept("ELSEIF"):
+            condition = self._expressions.expression()
+            cursor.expect("THEN")
+            branches.append((condition, self._block()))
+        if cursor.accept("ELSE"):
+            branches.append((None, self._block()))
+        cursor.expect("ENDIF")
+        return If(line, "if", tuple(branches))
+
+    def _for(self, line: Line) -> Statement:
+        cursor, own = self._cursor, self._expressions
+        name = Name(self._name("a name"), line)
+        cursor.expect("FROM")
+        first = own.expression()
+        cursor.expect("TO")
+        last = own.expression()
+        step = own.expression() if cursor.accept("STEP") else None
+        cursor.expect("DO")
+        body = self._block()
+        cursor.expect("ENDFOR")
+        return For(line, "for", name, first, last, step, body, turns_back=True)
+
+    def _while(self, line: Line) -> Statement:
+        condition = self._expressions.expression()
+        self._cursor.expect("DO")
+        body = self._block()
+        self._cursor.expect("ENDWHILE")
+        return While(line, "while", condition, body)
+
+    def _test(self, line: Line) -> Statement:
+        cursor, branches = self._cursor, list[tuple[Expression | None, tuple[Statement, ...]]]()
+        value = self._expressions.expression()
+        while cursor.accept("CASE"):
+            given, _ = self._expressions.arguments(":")
+            cursor.expect(":")
+            condition: Expression = Constant(False)
+            for one in given:
+                same = Operation(operator.eq, (value, one), line)
+                condition = Operation(lambda a, b: bool(a) or bool(b), (condition, same), line)
+            branches.append((condition, self._block()))
+        if cursor.accept("DEFAULT"):
+            cursor.expect(":")
+            branches.append((None, self._block()))
+        cursor.expect("ENDTEST")
+        return If(line, "test", tuple(branches))

@@ -1,0 +1,103 @@
+"""The words of RAPID that are known, by what they do. Not for: doing it (`rapid`).
+
+Source: ABB, Technical reference manual, RAPID instructions, functions and data types.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from clearance.formats.program.rapid_data import VALUES
+
+
+class MoveRule(NamedTuple):
+    """The kind of a move, and where among its arguments are target, speed, zone and tool."""
+
+    kind: Literal["ptp", "lin", "circ"]
+    to: int
+    speed: int
+    zone: int
+    tool: int
+
+
+_LINE, _ARC = MoveRule("lin", 0, 1, 2, 3), MoveRule("circ", 1, 2, 3, 4)
+_JOINTS = _LINE._replace(kind="ptp")
+_WELD, _WELD_ARC = _LINE._replace(zone=4, tool=5), _ARC._replace(zone=5, tool=6)
+_AFTER_TRIGGER, _ARC_AFTER_TRIGGER = _LINE._replace(zone=3, tool=4), _ARC._replace(zone=4, tool=5)
+MOVES = {
+    **dict.fromkeys(("MoveAbsJ", "MoveJ", "MoveJDO", "MoveJAO", "MoveJGO", "MoveJSync"), _JOINTS),
+    **dict.fromkeys(("MoveL", "MoveLDO", "MoveLAO", "MoveLGO", "MoveLSync"), _LINE),
+    **dict.fromkeys(("MoveC", "MoveCDO", "MoveCAO", "MoveCGO", "MoveCSync"), _ARC),
+    "TriggJ": _AFTER_TRIGGER._replace(kind="ptp"),
+    "TriggL": _AFTER_TRIGGER,
+    "TriggC": _ARC_AFTER_TRIGGER,
+    **dict.fromkeys(("ArcLStart", "ArcL", "ArcLEnd"), _WELD),
+    **dict.fromkeys(("ArcCStart", "ArcC", "ArcCEnd"), _WELD_ARC),
+}
+"""Moves that are read."""
+
+OTHER_MOVES = frozenset(
+    "MoveExtJ SearchL SearchC SearchExtJ SpotL SpotJ PaintL PaintC PDispOn PDispSet EOffsOn EOffsSet CorrCon "
+    "CorrWrite IndAMove IndRMove IndDMove IndCMove EGMRunJoint EGMRunPose EGMMoveL EGMMoveC SoftAct "
+    "StepBwdPath StartMove RestoPath WaitWObj ActUnit ContactL DispL DispC LaserL PathRecMoveBwd "
+    "PathRecMoveFwd MToolTCPCalib CONNECT SingArea CirPathMode WorldAccLim".split()
+)
+"""Instructions that move the robot otherwise, or change where moves go."""
+
+WAITS = frozenset(
+    "WaitDI WaitDO WaitGI WaitGO WaitAI WaitAO WaitUntil WaitSyncTask WaitTestAndSet WaitRob".split()
+)
+"""Waits for signals or other programs."""
+
+CHANGES = {"Incr": 1.0, "Decr": -1.0}
+"""Instructions that add to a variable, and how much."""
+
+STILL = frozenset(
+    "WaitTime Stop Break TPWrite TPErase TPShow UIShow UIMsgBox Set Reset SetDO SetGO SetAO PulseDO InvertDO "
+    "ClkStart ClkStop ClkReset AccSet VelSet ConfJ ConfL GripLoad IDelete ISignalDI ISignalDO ITimer IWatch "
+    "ISleep IEnable IDisable IError IPers Incr Decr Add Clear TriggIO TriggEquip TriggInt TriggRampAO "
+    "TriggCheckIO Open Close Write ErrWrite ErrLog BookErrNo PathAccLim MotionSup DeactUnit SyncMoveOn "
+    "SyncMoveOff EOffsOff PDispOff IOEnable IODisable Load UnLoad StartLoad SocketCreate SocketConnect "
+    "SocketSend SocketClose SocketListen SocketBind SocketAccept StopMove StorePath "
+    "ClearPath SetSysData SoftDeact TuneServo TuneReset SpyStart SpyStop WriteStrBin WriteBin Rewind "
+    "ClearIOBuff LoadId SystemStopAction TextTabInstall RMQEmptyQueue ArcRefresh "
+    "SetAllDataVal".split()
+)
+"""Instructions that move nothing."""
+
+WRITES = frozenset(
+    "TPReadNum TPReadFK TPReadDnum SocketReceive ReadAnyBin ReadRawBytes UnpackRawBytes GetDataVal GetSysData "
+    "GetJointData GetTrapData BitSet BitClear ReadErrData SetDataVal TryInt".split()
+)
+"""Instructions that move nothing and give variables a value that only the controller knows."""
+
+UNKNOWN_VALUES = frozenset(
+    "TestDI DOutput GOutput AOutput DInput GInput AInput ClkRead CTime CDate GetTime NumToStr ValToStr "
+    "StrToVal StrPart StrMatch StrFind StrLen StrMap StrMemb StrOrder StrDigCmp ByteToStr StrToByte DecToHex "
+    "HexToDec CRobT CJointT CPos CTool CWObj CSpeedOverride CalcRobT CalcJointT CalcRotAxFrameZ OpMode "
+    "RunMode RobOS TaskRunMec TaskRunRob MotionPlannerNo IsStopMoveAct IsSysId IsPers IsVar ReadNum ReadStr "
+    "ReadStrBin ReadBin ReadMotor UIMessageBox UINumEntry UINumTune UIAlphaEntry UIListView UIDnumEntry "
+    "TestAndSet GetNextSym GetTaskName GetMecUnitName EulerZYX BitAnd BitOr BitXOr BitNeg BitCheck BitLSh "
+    "BitRSh DefFrame DefDFrame DefAccFrame ORobT SocketGetStatus GetSignalOrigin MaxRobSpeed NumToDnum "
+    "DnumToNum Rand FileSize".split()
+)
+"""Functions whose value only the controller knows."""
+
+WORDS = {
+    word.lower(): word
+    for words in (
+        MOVES,
+        OTHER_MOVES,
+        WAITS,
+        STILL,
+        WRITES,
+        UNKNOWN_VALUES,
+        VALUES,
+        ("RelTool", "Present"),
+    )
+    for word in words
+}
+"""All of them as they are written, by their small letters."""
+
+RESULTS = frozenset("timeflag errornumber readlength string str".split())
+"""Arguments in which instructions leave a value."""

@@ -1,0 +1,209 @@
+"""RAPID: the moves that a procedure makes, by hand; a line for what the file does not decide."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.formats.program.controller_program import AxisTarget
+from tests.formats.program.reading import read
+
+NONE = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
+CELL = f"""%%%
+  VERSION:1
+  LANGUAGE:ENGLISH
+%%%
+MODULE MainModule(NOSTEPIN)
+  PERS tooldata gun:=[TRUE,[[0,0,100],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
+  TASK PERS wobjdata table:=[FALSE,TRUE,"",[[350,0,100],[1,0,0,0]],[[50,20,0],[0.707107,0,0,0.707107]]];
+  CONST jointtarget home:=[[0,10,-20,0,90,0],{NONE}];
+  CONST robtarget p10:=[[100,0,0],[0,1,0,0],[0,0,-1,1],{NONE}];
+  CONST robtarget p20:=[p10.trans,[1,0,0,0],[0,0,0,0],{NONE}];
+  VAR num n:=2;
+  PROC main()
+    VAR num heights{{2}}:=[30,20];
+    MoveAbsJ home\\NoEOffs, v200, fine, gun;
+    FOR i FROM 1 TO n DO
+      place heights{{i}};
+    ENDFOR
+    IF DI1=1 TPWrite "ready";
+    WaitTime 0.5;
+    MoveC Offs(p10,50,50,0), offs(p10,100,0,0), v100\\V:=50, z10, gun\\WObj:=table;
+    movel RelTool(p10,0,0,-100\\Rz:=90), v100, fine, gun\\WObj:=table;
+    ! an end
+  ENDPROC
+  PROC place(num dz)
+    MoveJ Offs(p10,0,0,dz), v1000, z50, gun\\WObj:=table;
+    MoveL p10, v100, fine, gun\\WObj:=table;
+    SetDO do1, 1;
+  ERROR
+    RETRY;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def place(target):
+    return (1e3 * target.pose[:3, 3]).tolist()
+
+
+def moves_of(body, data="", **asked):
+    """The moves of a procedure of these statements, from line 3 on, after data."""
+    text = f"MODULE M {data}\nPROC main()\n{body}\nENDPROC ENDMODULE"
+    return read("a.mod", text, **asked).moves
+
+
+def test_calls_and_loops_become_moves_with_their_lines():
+    found = read("a.mod", CELL)
+    assert [one.line for one in found.moves] == [14, 25, 26, 25, 26, 19, 20, 21]
+    home, over, on, over_low, _, wait, arc, last = found.moves
+    axes = [math.radians(one) for one in (0, 10, -20, 0, 90, 0)]
+    assert isinstance(home.to, AxisTarget) and list(home.to.axes) == axes and home.to.external == {}
+    # the table is turned by a quarter: its x is the base's y
+    assert place(on.to) == pytest.approx([400, 120, 100]) and on.kind == "lin" and on.speed == 0.1
+    assert np.allclose(on.to.pose[:3, :3], [[0, 1, 0], [1, 0, 0], [0, 0, -1]], atol=1e-6)
+    assert place(over.to) == pytest.approx([400, 120, 130]) and over.kind == "ptp"
+    assert place(over_low.to) == pytest.approx([400, 120, 120]) and over.to.name == "p10"
+    assert place(arc.via) == pytest.approx([350, 170, 100])
+    assert place(arc.to) == pytest.approx([400, 220, 100]) and arc.speed == 0.05
+    assert arc.turn_speed == pytest.approx(math.radians(500))
+    assert place(last.to) == pytest.approx([400, 120, 200]) and wait.seconds == 0.5
+    # a quarter about the tool's z, which looks down
+    assert np.allclose(last.to.pose[:3, :3], np.diag([1, -1, -1]), atol=1e-6)
+    assert home.tool[2, 3] == 0.1
+    told = "\n".join(found.notes)
+    assert "SetDO (line 27)" in told and "without moves: line 18" in told and "PERS data" in told
+
+
+def test_a_zone_is_that_of_the_point_unless_the_tool_turns():
+    _, over, _, over_low, _, _, arc, _ = read("a.mod", CELL).moves
+    assert over.zone == 0.075  # how the tool stands before is not known
+    assert over_low.zone == 0.05 and arc.zone == 0.015  # the tool turns after the arc
+    sizes = [
+        one.zone
+        for one in moves_of(
+            "\n".join(
+                f"MoveL [[{i},0,0],[1,0,0,0],[0,0,0,0],{NONE}],v5,{zone},tool0;"
+                for i, zone in enumerate(
+                    ("fine", "z0", "z1", "z200", "fine", "[FALSE,7,70,0,0,0,0]\\Z:=8", "fine")
+                )
+            )
+        )
+    ]
+    assert sizes == [0.0, 0.0003, 0.001, 0.2, 0.0, 0.008, 0.0]
+
+
+def test_flags_of_a_configuration_are_ranges_of_axes():
+    target = f"[[0,0,0],[1,0,0,0],[1,-2,0,1],{NONE}]"
+    one, two = moves_of(
+        f"MoveJ {target},v5,fine,tool0;\nConfJ\\Off;\nMoveJ {target},v5,fine,tool0;"
+    )
+    degrees = {
+        axis: tuple(round(math.degrees(end)) for end in ends)
+        for axis, ends in one.to.ranges.items()
+    }
+    assert degrees == {1: (90, 180), 4: (-180, -90), 6: (0, 90), 5: (-180, 0)}
+    assert two.to.ranges == {} and "cfx" in one.to.unchecked
+
+
+def test_data_of_other_modules_and_of_the_case_are_found():
+    beside = {
+        "data.sys": f"MODULE D(SYSMODULE)\nCONST robtarget p:=[[1,2,3],q,[0,0,0,0],{NONE}];\n"
+        "CONST orient q:=[1,0,0,0];\nPROC go()\nMoveL p,v100,fine,pen\\WObj:=desk;\nENDPROC\nENDMODULE".encode()
+    }
+    (move,) = read(
+        "a.mod",
+        "MODULE M PROC main() go; ENDPROC ENDMODULE",
+        beside,
+        tools={"Pen": {"xyz": [0.0, 0.0, 0.2]}},
+        frames={"desk": {"xyz": [0.5, 0.0, 0.0]}},
+    ).moves
+    assert (move.file, move.line) == ("data.sys", 5)
+    assert place(move.to) == pytest.approx([501, 2, 3]) and move.tool[2, 3] == 0.2
+
+
+def test_statements_that_the_file_decides():
+    line = f"MoveL [[x,0,0],[1,0,0,0],[0,0,0,0],{NONE}],v100,fine,tool0;"
+    body = f"""VAR num x:=3; VAR bool up; up:=TRUE;
+    WHILE x > 1 DO x:=x-1; {line} ENDWHILE
+    TEST x CASE 1,2: x:=10; DEFAULT: x:=20; ENDTEST
+    IF NOT up THEN RETURN; ELSEIF x=10 THEN Incr x; ENDIF {line}
+    FOR i FROM 3 TO 2 DO Add x, i; ENDFOR {line}
+    double x; {line}
+    IF x>30 THEN EXIT; ENDIF {line}
+    ENDPROC PROC double(INOUT num a) a:=a*2;"""
+    xs = [round(place(one.to)[0]) for one in moves_of(body)]
+    assert xs == [2, 1, 11, 16, 32]
+
+
+def test_encodings_are_read():
+    move = f"MoveAbsJ [[0,0,0,0,0,0],{NONE}],v5,fine,tool0; ! für"
+    text = f"MODULE M\nPROC main()\n! Stück\n{move}\nENDPROC\nENDMODULE"
+    for data in (text.encode("latin-1"), b"\xef\xbb\xbf" + text.encode()):
+        assert [one.line for one in read("a.PRG", data.replace(b"\n", b"\r\n")).moves] == [4]
+
+
+P = f"[[0,0,0],[1,0,0,0],[0,0,0,0],{NONE}]"
+FAULTS = {
+    f"MoveL {P},v100,fine,tool0": "line 4: 'ENDPROC' is given; ',', or ';' is needed",
+    f"MoveL {P},v100,fine;": "line 3: MoveL has 3 of its arguments",
+    f"MoveL {P},v100,fine,torch;": "line 3: the tool is not known: 'torch' is in no file",
+    f"MoveL {P},v100,fine,tool0\\WObj:=desk;": "line 3: the work object is not known: 'desk'",
+    "MoveL p10,v100,fine,tool0;": "line 3: the target is not known: 'p10'",
+    f"MoveL {P},v100,fine,tool0\\Corr;": "line 3: \\corr changes the way",
+    "MoveL [[0,0,0],[0.5,0,0,0],[0,0,0,0],[0,0,0,0,0,0]],v100,fine,tool0;": "0.0] has length 0.5; length 1, q1",
+    f"MoveL {P},fine,v100,tool0;": "line 3: MoveL is given data of another kind",
+    f"MoveJ {P},[0,500,0,0],fine,tool0;": "line 3: the speed is 0 m/s; more than 0",
+    "IF di1=1 THEN\nMoveL p,v100,fine,tool0;\nENDIF": "line 3: if decides on MoveL at line 4",
+    "IF di1=1 RETURN;": "line 3: if decides on RETURN at line 3",
+    "WHILE di1=0 DO ENDWHILE": "line 3: while waits for what is not known",
+    "WaitDI di1, 1;": "line 3: WaitDI waits for what only the controller knows; skip: [WaitDI]",
+    "GOTO again;": "line 3: 'GOTO' is not understood",
+    '%"proc"%;': "line 3: '%' is not understood",
+    "g_GripIn;": "line 3: 'g_gripin' is no known instruction",
+    "SearchL di1,p,p,v10,tool0;": "line 3: SearchL changes where the robot goes",
+    "SingArea\\Wrist;": "line 3: SingArea changes where the robot goes",
+    "PDispOn p, tool0;": "line 3: PDispOn changes where the robot goes",
+    "FOR i FROM 1 TO n DO ENDFOR": "line 3: the range of 'i' is not known: 'n' is in no file",
+    "FOR i FROM 1 TO 5 STEP 0 DO ENDFOR": "line 3: a step of 0",
+    "ENDPROC PROC main()": "line 3: 'main' is there twice",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("body", FAULTS)
+def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
+    with pytest.raises(cl.ClearanceError, match=r"^a\.mod: ") as caught:
+        moves_of(body)
+    assert FAULTS[body] in str(caught.value)
+
+
+STANDS = {
+    "tooldata t:=[FALSE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]": ("t", "wobj0", "the tool stands"),
+    'wobjdata w:=[TRUE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]]': ("tool0", "w", "the robot holds"),
+    'wobjdata w:=[FALSE,FALSE,"S",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]]': ("tool0", "w", "unit 'S' moves"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("data", STANDS)
+def test_tools_that_stand_and_work_that_moves_are_refused(data):
+    tool, work, told = STANDS[data]
+    with pytest.raises(cl.ClearanceError, match=f"line 3: .*{told}"):
+        moves_of(f"MoveL {P},v100,fine,{tool}\\WObj:={work};", f"PERS {data};")
+
+
+def test_what_moves_nothing_is_left_out_by_name():
+    body = f"WaitDI di1,1;\nGRIP_IN;\nWHILE di1=0 DO ENDWHILE\nMoveL {P},v100,fine,tool0;"
+    assert len(moves_of(body, skip=["WAITDI", "Grip_In", "while"])) == 1
+    with pytest.raises(cl.ClearanceError, match="skip: MoveL moves the robot"):
+        moves_of(body, skip=["movel"])
+
+
+def test_the_procedure_that_runs_is_chosen():
+    text = f"MODULE M PROC a() MoveL {P},v5,fine,tool0; ENDPROC PROC b() ENDPROC ENDMODULE"
+    assert len(read("a.mod", text, entry="A").moves) == 1
+    for entry, told in ((None, "no procedure main, but a, b"), ("c", "no procedure 'c'")):
+        with pytest.raises(cl.ClearanceError, match=told):
+            read("a.mod", text, entry=entry)
