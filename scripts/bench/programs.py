@@ -19,6 +19,7 @@ import numpy as np
 import yaml
 from harness import Row, least_time
 from program_arms import LONG, ArmFile, OwnArm, arm_files
+from program_corners import zones
 from program_paths import TOOL, Motion, random_motions
 
 import clearance as cl
@@ -139,77 +140,6 @@ def pinocchio_poses(file: ArmFile, made: Trajectory) -> np.ndarray | None:
         pinocchio.framesForwardKinematics(model, data, q)
         found.append(data.oMf[frame].homogeneous.copy())
     return np.array(found)
-
-
-def zones(asked) -> Iterator[Row]:
-    """Of each arm, a corner zone near three boxes: the least clearance proven, and that of admissible paths."""
-    for name, file in arm_files(asked.arms).items():
-        draw = np.random.default_rng(1)
-        motions = (motion for kind, motion in random_motions(file, 30, seed=1) if kind == "zone")
-        case = proven = None
-        for motion in motions:
-            case = among_boxes(file, motion, draw)
-            proven = proven_in_zone(case)
-            if proven > 0.005:
-                break
-        found = cl.Checker(case).distances(admissible(motion, asked.paths, draw)).distances
-        nominal = motion.trajectory.corners[0]
-        times = np.linspace(nominal.start, nominal.end, 200)
-        straight = cl.Checker(case).distances(positions_along(motion.trajectory, times)).distances
-        yield {
-            "arm": name, "paths": asked.paths, "nearer": int((found < proven).sum()),
-            "nominal_mm": 1e3 * straight.min(), "found_mm": 1e3 * found.min(), "proven_mm": 1e3 * proven,
-        }  # fmt: skip
-
-
-def among_boxes(file: ArmFile, motion: Motion, draw: np.random.Generator) -> cl.Case:
-    """The motion among three boxes about the corner, 0.12 m from it."""
-    corner = motion.legs[1].start[1].astype(float)
-    boxes = []
-    for i in range(3):
-        away = draw.normal(size=3)
-        pose = np.eye(4)
-        pose[:3, 3] = corner + 0.15 * away / np.linalg.norm(away)
-        boxes.append(cl.Obstacle(cl.Body(f"box {i}", cl.box([0.06, 0.06, 0.06])), pose))
-    placed = cl.PlacedRobot(cl.load_urdf(file.path), trajectory=motion.trajectory)
-    return cl.Case("zone", (placed,), tuple(boxes))
-
-
-def proven_in_zone(case: cl.Case) -> float:
-    """[m] The least clearance that is proven while the corner zone is passed."""
-    (corner,) = case.robots[0].trajectory.corners
-    record = cl.check(case, contact="none", accept=["limits", "units"]).record
-    times = record.motions[0].times
-    within = (times >= corner.start - 1e-12) & (times < corner.end - 1e-12)
-    return float(
-        record.certificate.lower_bound[within[: len(record.certificate.lower_bound)]].min()
-    )
-
-
-POINTS = 8
-"""Places at which a random path is looked at."""
-
-
-def admissible(motion: Motion, n_paths: int, draw: np.random.Generator) -> np.ndarray:
-    """(n, k) the joints at places on random paths through the triangle, rotations anywhere between."""
-    leg, made = motion.legs[1], motion.trajectory
-    (corner,) = made.corners
-    b, a, turn_b, turn_a = (
-        one.ravel()
-        for one in np.concatenate([_two(n_paths, draw), draw.random((2, n_paths, POINTS))])
-    )
-    wanted = leg.poses_at(*(one.astype(LONG) for one in (a, b, turn_a, turn_b)), (len(a), 1))
-    u = 0.5 * (a + b)
-    near = positions_along(made, corner.start + u * (corner.end - corner.start))
-    return motion.own.solved(wanted, near[:, None])[:, 0].astype(float)
-
-
-def _two(n_paths: int, draw: np.random.Generator) -> np.ndarray:
-    """(2, n, POINTS) strokes b <= a; a quarter of all on the edges of the triangle, where paths go farthest."""
-    b, a = np.sort(draw.random((2, n_paths, POINTS)), axis=0)
-    a[: n_paths // 8] = 1.0
-    b[n_paths // 8 : n_paths // 4] = 0.0
-    return np.array([b, a])
 
 
 def speed(asked) -> Iterator[Row]:
