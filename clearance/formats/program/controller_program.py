@@ -58,7 +58,7 @@ class ControllerMove:
     Attributes:
         line: where it stands, from 1. kind: of the way. to: its end. tool: (4, 4) `flange_from_tool` [m].
         via: a point of the arc, for `circ`.
-        orientation: on an arc, as in `schema.program.ArcMove`.
+        orientation: as in `schema.program.ArcMove`; on a line it stays where it is constant.
         speed: of the tool's point [m/s]; acceleration [m/s^2]; turn_speed [rad/s]; None for the default.
         share: for `ptp`, of the joints' greatest speeds. axis_speed: for `ptp`, of the axis that leads [rad/s].
         zone: radius of the corner at the end [m]; 0 stops there. file: where it stands, if beside the program's.
@@ -94,11 +94,13 @@ class ControllerProgram:
 
     Attributes:
         moves: in the order in which they are made: loops and calls are resolved. notes: a line each on what was
-            assumed or passed over.
+            assumed or passed over. base: why a robot's root link may not be the controller's base; empty where it
+            is.
     """
 
     moves: tuple[ControllerMove | ControllerWait, ...]
     notes: tuple[str, ...] = ()
+    base: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,6 +39,9 @@ ROS-Industrial."""
 FARTHEST_OFF, MOST_TURNED = 0.01, 0.035
 """[m] and [rad] Where a file gives a pose and its axes: robots differ from their nominal sizes by less."""
 
+STANDS = 0.01
+"""[degrees or mm] An external axis that moves by less stands: teaching leaves so much."""
+
 CONTROLLER = "controller"
 """The frame of the moves: the controller's base."""
 
@@ -143,8 +146,15 @@ class _Conversion:
         link = BASE_LINK if BASE_LINK in self.robot.link_names else root
         if chain_between(self.robot, root, link).masters:
             link = root
+        if self.read.base and link != BASE_LINK and self._has_poses:
+            valid = "where it is, as base: {on: base, xyz: [0, 0, …]}, seen from the robot's root"
+            raise MissingKey(self.read.base, where="base", valid=valid)
         self.notes.append(f"poses are seen from link {link!r}, taken for the controller's base")
         return chain_between(self.robot, root, link).end
+
+    @property
+    def _has_poses(self) -> bool:
+        return any(isinstance(one.to, PoseTarget) for one in self._moves)
 
     def tool(self) -> dict[str, Any]:
         """The tool on the flange.
@@ -210,10 +220,8 @@ class _Conversion:
             BadProgram: one moves.
         """
         for axis, value in one.to.external.items() if isinstance(one, ControllerMove) else ():
-            if (
-                axis not in self.axes.external.values()
-                and self.others.setdefault(axis, value) != value
-            ):
+            off = value - self.others.setdefault(axis, value)
+            if axis not in self.axes.external.values() and abs(off) > STANDS:
                 raise BadProgram(
                     f"external axis {axis} moves, and no joint follows it",
                     valid=f"program: {{axes: {{a joint: {{axis: {axis}}}}}}}",
@@ -260,13 +268,14 @@ class _Conversion:
             "zone": one.zone,
         }
         made = {key: value for key, value in given.items() if value is not None}
-        made["to"] = self._target(one, one.to)
+        to = self._target(one, one.to)
         if one.kind == "lin":
-            return made
+            left_out = "quat_xyzw" if one.orientation == "constant" else ""
+            return {**made, "to": {key: to[key] for key in to if key != left_out}}
         assert one.via is not None
         via = self._target(one, one.via)
         point = {"frame": via["frame"], "xyz": via["xyz"]}
-        return {**made, "via": point, "orientation": one.orientation}
+        return {**made, "to": to, "via": point, "orientation": one.orientation}
 
     def _target(self, one: ControllerMove, to: Target) -> dict[str, Any]:
         """A pose of the tool; where axes are given, theirs."""

@@ -107,6 +107,33 @@ def test_a_speed_of_axes_is_a_share_of_the_slowest_joints():
     assert move.ptp.speed == 0.5
 
 
+def test_an_external_axis_that_moves_needs_a_joint():
+    target = PoseTarget(at(0.5, 0.0, 0.3), {"E1": 0.0})
+    one = ControllerMove(7, "lin", target, np.eye(4))
+    moved = replace(one, to=replace(target, external={"E1": 20.0}), line=8)
+    taught = replace(one, to=replace(target, external={"E1": 0.001}))
+    assert made(HOME, one, taught).program.moves[1].lin.hold == {}
+    with pytest.raises(
+        cl.ClearanceError, match="line 8: external axis E1 moves, and no joint"
+    ):
+        made(HOME, one, moved)
+
+
+def test_a_line_may_keep_the_tool_as_it_is():
+    line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
+    assert made(HOME, line).program.moves[1].lin.to.turns
+    assert not made(HOME, replace(line, orientation="constant")).program.moves[1].lin.to.turns
+
+
+def test_a_controller_whose_base_is_not_the_root_asks_for_it():
+    robot = cl.load_urdf(FILES["heron6"])
+    asked = validated(ProgramFile, {"file": "a.ls", "link": "tool_tip"}, "program")
+    line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
+    assert converted(ControllerProgram((HOME,), base="at axis 2"), asked, robot, {}).program.moves
+    with pytest.raises(cl.ClearanceError, match="base: at axis 2; where it is, as base: "):
+        converted(ControllerProgram((HOME, line), base="at axis 2"), asked, robot, {})
+
+
 POSE = replace(HOME, to=PoseTarget(at(0.5, 0.0, 0.3)))
 
 
