@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
+from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
 from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.conversion import ConvertedProgram, converted
@@ -81,13 +81,19 @@ def _read(
     if row is None:
         valid = f"one of {', '.join(suffixes_read(Kind.PROGRAM))}"
         raise BadProgram(f"{shown!r} has no suffix of a robot program", valid=valid)
-    others = [resolved(one, folder) for one in asked.beside]
+    others = [*_along(path, row), *(resolved(one, folder) for one in asked.beside)]
     beside = {files.shown(one): files.read(one) for one in others}
     read = function_at(row.read)(ProgramRequest(data, shown, asked, beside))
     if isinstance(read, schema.Program):
         return shown, _of_schema(read)
     with at(shown):
         return shown, converted(read, asked, robot, start)
+
+
+def _along(path: Path, row: Format) -> list[Path]:
+    """The files of a program's own name that are read along, where they are there."""
+    own = [path.with_suffix(suffix) for suffix in row.along]
+    return [one for one in own if one.is_file()]
 
 
 def _of_schema(program: schema.Program) -> ConvertedProgram:

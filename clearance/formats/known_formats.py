@@ -69,6 +69,7 @@ class Format:
         left_to: another kind, whose reader says best what is wrong with such a file.
         what: such a file, in messages. hint: what to do with one where something else is wanted; `{name}` is its
             name.
+        along: suffixes of files of the same stem that are read along, where they are there.
     """
 
     name: str
@@ -82,6 +83,7 @@ class Format:
     left_to: Kind | None = None
     what: str = ""
     hint: str = ""
+    along: tuple[str, ...] = ()
 
     def shows_in(self, start: FileStart) -> bool:
         """True where the start of a file, or its suffix, says that it is of this format."""
@@ -106,6 +108,7 @@ _MESH = (
     "name it in a case file: scene: {{obstacles: [{{name: …, mesh: {{file: {name}, scale: 1}}}}]}}"
 )
 _CLOUD = "name it in a case file: scene: {{obstacles: [{{name: …, points: {{file: {name}, radius: …}}}}]}}"
+_PROGRAM = "name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"
 _MOTION = "name it in a case file: trajectory: {name}, beside robot and scene"
 _MESSAGE = (
     "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "
@@ -156,11 +159,10 @@ def _stamped(language: str, suffixes: tuple[str, ...]) -> Format:
     return Format(name, Kind.POSES, suffixes, read, write, _unseen, _POSE_KEYS)
 
 
-def _program(name: str, suffixes: tuple[str, ...], read: str) -> Format:
+def _program(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Format:
     """A program in the language of a controller."""
-    return Format(
-        name, Kind.PROGRAM, suffixes, f"program.{read}", what=f"a program in {name}", hint=_PROGRAM
-    )
+    what = f"a program in {name}"
+    return Format(name, Kind.PROGRAM, suffixes, f"program.{read}", what=what, hint=_PROGRAM, **more)
 
 
 FORMATS = (
@@ -214,6 +216,8 @@ FORMATS = (
            sniff=sniff.is_program, what="a robot program", hint=_PROGRAM),
     _program("URScript", (".script", ".urscript"), "urscript:read_urscript"),
     _program("RAPID", (".mod", ".prg", ".sys", ".modx"), "rapid:read_rapid"),
+    _program("KRL", (".src",), "krl:read_krl", along=(".dat", ".DAT")),
+    _program("FANUC TP", (".ls",), "fanuc:read_fanuc"),
     Format("case file", Kind.CASE, (".yaml", ANY), sniff=sniff.is_case, what="a case file",
            hint="`clearance check {name}` checks it; what is asked for is one of the files that it names"),
 )  # fmt: skip

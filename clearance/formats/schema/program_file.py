@@ -49,7 +49,8 @@ class ProgramFile(StrictModel):
     """A program's file. All else is for languages of controllers: `entry` is the procedure that runs, `beside` are
     further files, `skip` are instructions to leave out, `link` is the flange, `base` is where the controller's
     base stands, `axes` says how joints follow axes. `tools` (on the flange) and `frames` (on the base) are those
-    that the file names and does not hold. `step` is the most that the tool moves between samples [m].
+    that the file names and does not hold. `zones` are radii [m] of corners for which it has a word and no length
+    (`C_PTP`, `CNT50`). `step` is the most that the tool moves between samples [m].
     """
 
     file: Name
@@ -61,4 +62,5 @@ class ProgramFile(StrictModel):
     axes: dict[Name, Axis] = {}
     tools: dict[Name, Pose] = {}
     frames: dict[Name, Pose] = {}
+    zones: dict[Name, Annotated[float, Field(gt=0)]] = {}
     step: Annotated[float, Field(gt=0)] = 0.002

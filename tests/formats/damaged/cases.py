@@ -131,3 +131,65 @@ RAPID = b"""MODULE Weld
   ENDPROC
 ENDMODULE
 """
+
+KRL = b"""&ACCESS RVP
+DEF weld( )
+BAS (#TOOL,0)
+BAS (#BASE,1)
+BAS (#VEL_PTP,50)
+$VEL.CP=0.25
+$APO.CDIS=5.0
+PTP XHOME
+FOR I=1 TO 2
+  LIN XP1:{X 10.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0} C_DIS
+  stitch(I*10.0)
+ENDFOR
+WAIT SEC 0.5
+SWITCH I
+CASE 1,2
+  CIRC {X 110.0,Y 10.0,Z 50.0},{X 120.0,Y 0.0,Z 50.0,A 90.0,B 0.0,C 180.0}
+ENDSWITCH
+END
+DEF stitch(at:IN)
+  REAL at
+  LIN_REL {Z at} #TOOL
+END
+DECL E6AXIS XHOME={A1 0.0,A2 10.0,A3 20.0,A4 0.0,A5 60.0,A6 0.0}
+DECL E6POS XP1={X 100.0,Y 0.0,Z 50.0,A 90.0,B 0.0,C 180.0,S 2,T 10}
+BASE_DATA[1]={X 400.0,Y 0.0,Z 300.0,A 0.0,B 0.0,C 0.0}
+"""
+
+FANUC = b"""/PROG  WELD
+/ATTR
+/MN
+   1:  UFRAME_NUM=0 ;
+   2:  UTOOL_NUM=0 ;
+   3:J P[1:HOME] 50% FINE    ;
+   4:  FOR R[1]=1 TO 2 ;
+   5:L P[2] 250mm/sec CR5    ;
+   6:  ENDFOR ;
+   7:C P[2]
+    :  P[3] 100mm/sec FINE    ;
+   8:  WAIT    .50(sec) ;
+   9:  IF R[1]>1,DO[1]=ON ;
+/POS
+P[1]{
+   GP1:
+	UF : 0, UT : 0,	
+	J1=    10.000 deg,	J2=    20.000 deg,	J3=    -5.000 deg,
+	J4=     0.000 deg,	J5=    45.000 deg,	J6=    30.000 deg
+};
+P[2]{
+   GP1:
+	UF : 0, UT : 0,		CONFIG : 'N U T, 0, 0, 0',
+	X =   500.000  mm,	Y =     0.000  mm,	Z =   300.000  mm,
+	W =   180.000 deg,	P =     0.000 deg,	R =    90.000 deg
+};
+P[3]{
+   GP1:
+	UF : 0, UT : 0,		CONFIG : 'N U T, 0, 0, 0',
+	X =   550.000  mm,	Y =    50.000  mm,	Z =   300.000  mm,
+	W =   180.000 deg,	P =     0.000 deg,	R =    90.000 deg
+};
+/END
+"""

@@ -115,9 +115,10 @@ def controller(data: bytes, folder: Path, name: str) -> object:
     from clearance.formats.known_formats import Kind, format_of, function_at
     from clearance.formats.program.controller_program import ProgramRequest
     from clearance.formats.program.conversion import converted
+    from clearance.formats.schema.program import Frame
     from clearance.formats.schema.program_file import ProgramFile
 
-    asked = ProgramFile(file=name, link="tool_tip")
+    asked = ProgramFile(file=name, link="tool_tip", base=Frame(on="base"))
     row = format_of(Kind.PROGRAM, name, data)
     read = function_at(row.read)(ProgramRequest(data, name, asked))
     return converted(read, asked, programmed().robot, {})

@@ -157,6 +157,8 @@ def _motions() -> dict[str, Reader]:
             *("weld.script", cases.URSCRIPT, reading.controller, lines_damaged, Kind.PROGRAM),
             (".urscript",),
         ),
+        "KRL": Reader("weld.src", cases.KRL, reading.controller, lines_damaged, Kind.PROGRAM),
+        "FANUC": Reader("weld.ls", cases.FANUC, reading.controller, lines_damaged, Kind.PROGRAM),
         "pose table": Reader("door.csv", texts.POSES, poses, table_damaged, tables),
         "poses stamped": Reader("door.yaml", texts.STAMPED, poses, yaml_damaged, tables, yml),
         "poses JSON": Reader("door.json", cases.POSES_JSON, poses, json_damaged, tables),

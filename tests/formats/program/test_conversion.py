@@ -113,9 +113,7 @@ def test_an_external_axis_that_moves_needs_a_joint():
     moved = replace(one, to=replace(target, external={"E1": 20.0}), line=8)
     taught = replace(one, to=replace(target, external={"E1": 0.001}))
     assert made(HOME, one, taught).program.moves[1].lin.hold == {}
-    with pytest.raises(
-        cl.ClearanceError, match="line 8: external axis E1 moves, and no joint"
-    ):
+    with pytest.raises(cl.ClearanceError, match="line 8: external axis E1 moves, and no joint"):
         made(HOME, one, moved)
 
 

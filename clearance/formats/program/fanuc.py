@@ -1,0 +1,265 @@
+"""Programs of FANUC's controllers, as listings of the teach pendant (`.ls`). Millimetres and degrees.
+
+Sources: FANUC, R-30iB Operator's manual (motion instructions, W P R about fixed axes, user and tool frames);
+ROS-Industrial, fanuc (the world at the height of axis 2 as link `base`, the faceplate as `tool0`, J3 against the
+horizontal: issues 186 and fanuc_experimental 17).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadProgram, MissingKey, at
+from clearance.formats.program.controller_program import (
+    AxisTarget,
+    ControllerMove,
+    ControllerProgram,
+    ControllerWait,
+    PoseTarget,
+    ProgramRequest,
+    Target,
+)
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import Call, Constant, Name, Unknown, number
+from clearance.formats.program.fanuc_positions import Position
+from clearance.formats.program.fanuc_text import MOVES, QUIET, WAIT, Motion, listing_of
+from clearance.formats.program.statements import For, Routine, within
+from clearance.formats.program.tokens import Line
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.geometry.pose import pose_from_rpy
+
+MM = 1e-3
+
+_POSE, _JOINTS = ("X", "Y", "Z", "W", "P", "R"), ("J1", "J2", "J3", "J4", "J5", "J6")
+
+_METRES = {"mm/sec": MM, "cm/min": 0.01 / 60.0, "inch/min": 0.0254 / 60.0}
+"""[m/s] One of each unit."""
+
+_IDLE = re.compile(r"ACC\d+|PTH|BREAK|PSPD\d+|RT_LD\d+|AP_LD\d+|EV\d+%?|INDEV\d+%?")
+"""Options of a motion that change nothing of its way, or only how near to its corner it is rounded."""
+
+_ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
+
+BASE = "FANUC's world is at the height of axis 2 on most robots, and the robot has no link 'base' there"
+
+
+def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
+    """The moves of a listing.
+
+    Raises:
+        BadInput: with the file and the line.
+    """
+    with at(asked.shown):
+        main = listing_of(asked.data, asked.shown)
+        others = [listing_of(data, shown, shown) for shown, data in asked.beside.items()]
+        routines = {
+            one.name: Routine(one.name, Line(1), _ARGUMENTS, one.body) for one in (*others, main)
+        }
+        language = _Fanuc(asked.asked)
+        run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
+        statements = (one for listing in (*others, main) for one in within(listing.body))
+        counters = {one.name.name for one in statements if isinstance(one, For)}
+        run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
+        run.run(main.body)
+        return ControllerProgram(tuple(run.moves), (*run.notes, *language.notes()), base=BASE)
+
+
+@dataclass(eq=False)
+class _Fanuc:
+    """What the instructions of a listing do.
+
+    Attributes:
+        asked: what the case says. unsaid: lines whose speed is none that the file gives. has_joints: positions of
+            axes are used.
+    """
+
+    asked: ProgramFile
+    unsaid: dict[str, None] = field(default_factory=dict)
+    has_joints: bool = False
+
+    def notes(self) -> list[str]:
+        """What is assumed."""
+        found = []
+        if self.has_joints:
+            found.append("J3 is taken to be against the horizontal: axis 3 is J3 + J2")
+        if self.unsaid:
+            lines = ", ".join([*self.unsaid][:6])
+            found.append(f"speeds that the file does not give as such are assumed ({lines})")
+        return found
+
+    @property
+    def state(self) -> Any:
+        return None
+
+    def moves(self, name: str) -> bool | None:
+        """Whether an instruction moves the robot; None for one that is not known."""
+        return True if name in MOVES else False if name in QUIET or name == WAIT else None
+
+    def value_of(self, name: str, run: Execution) -> Any:
+        """None, or what is known of an input, which only the controller has."""
+        return (
+            None
+            if name.startswith(("R[", "U", "AR["))
+            else Unknown(f"only the controller knows {name}")
+        )
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        return Unknown(f"{call.name}() at {call.line}")
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        return values
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        raise TypeError
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        raise TypeError
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """A motion or a wait; all else moves nothing.
+
+        Raises:
+            BadProgram: a motion that is not read.
+        """
+        with at(str(call.line)):
+            if call.name in MOVES:
+                run.add(self._move(call, run))
+            elif call.name == WAIT:
+                seconds = number(run.evaluated(call.args[0]), call.line, "the time")
+                if seconds > 0.0:
+                    run.add(ControllerWait(call.line.number, seconds, call.line.file))
+            else:
+                run.pass_over(call.name, call.line)
+
+    def _move(self, call: Call, run: Execution) -> ControllerMove:
+        (constant, speed), kind = call.args, MOVES[call.name]
+        assert isinstance(constant, Constant)
+        motion: Motion = constant.value
+        if motion.calls:
+            run.note(
+                "what motions call on their way (TB, TA, DB), which is not looked at",
+                str(call.line),
+            )
+        unread = [word for word in motion.options if not _IDLE.fullmatch(word)]
+        if unread:
+            told = f"{unread[0]} is not read, and may move the target or the way"
+            raise BadProgram(told, valid="a motion without it")
+        if not kind or len(motion.points) != (2 if kind == "circ" else 1):
+            told = f"{call.name} with {len(motion.points)} points is not read"
+            raise BadProgram(told, valid="J and L with one, C with two")
+        ends = [self._target(name, one, kind, run, call.line) for name, one in motion.points]
+        to, tool = ends[-1]
+        return ControllerMove(
+            line=call.line.number,
+            kind=kind,  # type: ignore[arg-type]
+            to=to,
+            tool=tool,
+            via=ends[0][0] if kind == "circ" else None,
+            zone=self._zone(motion.end),
+            file=call.line.file,
+            **self._speed(kind, motion.unit, run.evaluated(speed), call.line),
+        )
+
+    def _target(
+        self, name: str, one: Position | None, kind: str, run: Execution, line: Line
+    ) -> tuple[Target, np.ndarray]:
+        """Where a motion goes, and the tool that is on the flange.
+
+        Raises:
+            BadProgram: no position, or one of other frames than those in force.
+        """
+        if one is None:
+            told = (
+                "a position register" if name.startswith("PR") else "no position of it under /POS"
+            )
+            raise BadProgram(f"{name}: {told}", valid="P[…] with a position in the file")
+        untaught = [key for key, value in one.values.items() if value is None]
+        is_joints = "J1" in one.values
+        missing = [key for key in (_JOINTS if is_joints else _POSE) if key not in one.values]
+        if untaught or missing:
+            raise BadProgram(
+                f"{name} has no {', '.join(untaught or missing)}", valid="a taught position"
+            )
+        tool = self._frame(name, "UTOOL", one.tool, line, run, not is_joints)
+        values = {key: float(value) for key, value in one.values.items() if value is not None}
+        if is_joints:
+            self.has_joints = True
+            axes = [math.radians(values[key]) for key in _JOINTS]
+            axes[2] += axes[1]
+            return AxisTarget(tuple(axes), one.external, name), tool
+        x, y, z, *turns = (values[key] for key in _POSE)
+        pose = pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
+        frame = self._frame(name, "UFRAME", one.frame, line, run, True)
+        unchecked = one.configuration if kind == "ptp" else ""
+        return PoseTarget(frame @ pose, one.external, unchecked=unchecked, name=name), tool
+
+    def _frame(
+        self, name: str, kind: str, taught: int | None, line: Line, run: Execution, needed: bool
+    ) -> np.ndarray:
+        """(4, 4) [m] A frame or a tool by its number, which the program sets or the point has; 0 is none.
+
+        Raises:
+            BadProgram: they differ, as no controller accepts. MissingKey: the case does not say it.
+        """
+        chosen = run.value_of(Name(f"{kind}_NUM", line))
+        current = None if isinstance(chosen, Unknown) else int(chosen)
+        index = taught if current is None else current
+        if taught is not None and index != taught and needed:
+            told = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current}"
+            raise BadProgram(told, valid=f"{kind}_NUM={taught} before it")
+        if index == 0:
+            return np.eye(4)
+        key, word = f"{kind}[{index}]", "frames" if kind == "UFRAME" else "tools"
+        given: Mapping[str, Any] = getattr(self.asked, word)
+        is_changed = not isinstance(run.variables.get(key), type(None))
+        if index is not None and key in given and not is_changed:
+            return np.asarray(given[key].matrix())
+        if not needed:
+            return np.eye(4)
+        told = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
+        raise MissingKey(
+            f"{name}: {told}",
+            valid=f'program: {{{word}: {{"{key}": {{xyz: […], rpy: […]}}}}}} in m and rad',
+        )
+
+    def _zone(self, end: str) -> float:
+        """[m] The radius of the corner at a motion's end.
+
+        Raises:
+            MissingKey: its length is not in the file.
+        """
+        if end == "FINE":
+            return 0.0
+        if (length := re.fullmatch(r"CR(\d+\.?\d*)", end)) is not None:
+            return float(length[1]) * MM
+        for key in (end, "CNT"):
+            if key in self.asked.zones and end.startswith("CNT"):
+                return self.asked.zones[key]
+        raise MissingKey(
+            f"{end} is no length",
+            valid=f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or of all as CNT",
+        )
+
+    def _speed(self, kind: str, unit: str, value: Any, line: Line) -> dict[str, Any]:
+        """The speed of a motion, by the field of a `ControllerMove`.
+
+        Raises:
+            BadProgram: it is 0 or less.
+        """
+        is_known = isinstance(value, int | float) and not isinstance(value, bool)
+        if is_known and value <= 0.0:
+            raise BadProgram(f"a speed of {value:g} {unit}", valid="more than 0")
+        if is_known and unit == "%" and kind == "ptp":
+            return {"share": min(1.0, value / 100.0)}
+        if is_known and unit in _METRES and kind != "ptp":
+            return {"speed": value * _METRES[unit]}
+        if is_known and unit == "deg/sec" and kind != "ptp":
+            return {"turn_speed": math.radians(value)}
+        self.unsaid[str(line)] = None
+        return {}

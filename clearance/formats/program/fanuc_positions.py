@@ -1,0 +1,68 @@
+"""Points of FANUC's listings, as they stand under `/POS`. Not for: frames that they are seen from (`fanuc`)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from clearance.errors import BadProgram
+
+_POSITION = re.compile(r"P\[\s*(\d+)\s*(?::[^\]]*)?\]\s*\{(.*?)\}\s*;", re.DOTALL)
+_VALUE = re.compile(r"\b([A-Z]\d?)\s*=\s*(\*+|[-+]?[0-9]*\.?[0-9]+)\s*(mm|deg)?")
+
+
+@dataclass(frozen=True)
+class Position:
+    """A point of a listing.
+
+    Attributes:
+        frame, tool: the numbers that it was taught with; None for those in force.
+        values: of the first group by name, in mm and degrees; None where it is not taught. external: of external
+            axes and other groups.
+        configuration: as the file has it.
+    """
+
+    frame: int | None
+    tool: int | None
+    values: Mapping[str, float | None]
+    external: Mapping[str, float]
+    configuration: str = ""
+
+
+def positions_of(text: str) -> dict[int, Position]:
+    """The points that stand under /POS.
+
+    Raises:
+        BadProgram: something that is none.
+    """
+    rest = _POSITION.sub("", text).strip()
+    if rest:
+        raise BadProgram(
+            f"{' '.join(rest.split())!r:.60} under /POS is no position", valid="P[1]{ … };"
+        )
+    return {int(one[1]): _position(one[2]) for one in _POSITION.finditer(text)}
+
+
+def _position(text: str) -> Position:
+    groups = re.split(r"\bGP(\d)\s*:", text)
+    by_group = dict(zip(groups[1::2], groups[2::2], strict=True)) or {"1": text}
+    own = by_group.pop("1", "")
+    values = {one[1]: None if "*" in one[2] else float(one[2]) for one in _VALUE.finditer(own)}
+    external = {name: values.pop(name) or 0.0 for name in [*values] if name.startswith("E")}
+    for group, part in by_group.items():
+        found = {
+            f"GP{group}{one[1]}": float(one[2])
+            for one in _VALUE.finditer(part)
+            if "*" not in one[2]
+        }
+        external |= found
+    frame, tool = (re.search(rf"\b{key}\s*:\s*(\d+)", own) for key in ("UF", "UT"))
+    configuration = re.search(r"CONFIG\s*:\s*'([^']*)'", own)
+    return Position(
+        None if frame is None else int(frame[1]),
+        None if tool is None else int(tool[1]),
+        values,
+        external,
+        "" if configuration is None else f"CONFIG {configuration[1]}",
+    )

@@ -1,0 +1,381 @@
+"""Listings of FANUC's teach pendant programs (`.ls`): from text to statements and positions.
+
+Not for: what instructions do (`fanuc`).
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from clearance.errors import BadProgram, BadSyntax
+from clearance.formats.program.expressions import (
+    COMPARED,
+    Call,
+    Constant,
+    Expression,
+    ExpressionReader,
+    Grammar,
+    Name,
+    Unknown,
+    numeric,
+)
+from clearance.formats.program.fanuc_positions import Position, positions_of
+from clearance.formats.program.statements import (
+    RETURN,
+    STOP,
+    Assign,
+    Do,
+    For,
+    If,
+    Leave,
+    Statement,
+    Unreadable,
+    While,
+)
+from clearance.formats.program.tokens import Cursor, Line, text_of, tokens_of
+
+_WORD = re.compile(
+    r"""(?P<skip>[ \t]+)
+    |(?P<number>[0-9]+\.?[0-9]*|\.[0-9]+)
+    |(?P<string>'[^']*')
+    |(?P<name>[A-Z$_][A-Z0-9_$.]*(?:\[(?:[^\[\]]|\[[^\]]*\])*\])?)
+    |(?P<mark><>|<=|>=|[-+*/=<>!(),])""",
+    re.VERBOSE | re.IGNORECASE,
+)
+
+
+def named(text: str) -> str:
+    """The name of a register without its remark: `R[1]` for `R[1:count]`."""
+    return re.sub(r":[^\]]*", "", re.sub(r"\s+", "", text)).upper()
+
+
+class _Registers(Grammar):
+    """A grammar in which registers are names (`R[1]`)."""
+
+    def folded(self, name: str) -> str:
+        return named(name)
+
+
+_GRAMMAR = _Registers(
+    binary={
+        "OR": (1, lambda a, b: bool(a) or bool(b)),
+        "AND": (2, lambda a, b: bool(a) and bool(b)),
+        "=": (3, operator.eq),
+        "<>": (3, operator.ne),
+        **{word: (3, act) for word, act in COMPARED.items()},
+        "+": (4, numeric(operator.add)),
+        "-": (4, numeric(operator.sub)),
+        "*": (5, numeric(operator.mul)),
+        "/": (5, numeric(operator.truediv)),
+        "DIV": (5, numeric(lambda a, b: float(math.trunc(a / b)))),
+        "MOD": (5, numeric(math.fmod)),
+    },
+    unary={"!": (6, operator.not_), "-": (6, operator.neg)},
+    constants={"ON": True, "OFF": False, "TRUE": True, "FALSE": False},
+    index="\0\0",
+    folds=True,
+)
+
+MOVES = {"J": "ptp", "L": "lin", "C": "circ", "A": "", "S": ""}
+"""The motions, and the way of each that is read."""
+
+WAIT = "WAIT sec"
+
+QUIET = frozenset(
+    (
+        *("DO", "RO", "GO", "AO", "SO", "UO", "F", "M", "TIMER", "SR", "PR", "PAYLOAD", "MESSAGE"),
+        *("UALM", "SKIP", "OFFSET", "TOOL_OFFSET", "ARC", "COL", "LOCK", "UNLOCK", "TC_ONLINE"),
+        *("OVERRIDE", "JOINT_MAX_SPEED", "LINEAR_MAX_SPEED"),
+    )
+)
+"""Instructions that move nothing. Conditions of offsets and skips count only in motions that name them."""
+
+_POINT = r"(PR?)\s*\[\s*([^\]:]*)(?::[^\]]*)?\]"
+_MOTION = re.compile(rf"([JLCAS])\s+{_POINT}(?:\s*{_POINT})?\s*(.*)", re.IGNORECASE | re.DOTALL)
+_SPEED = re.compile(
+    r"\s*([0-9]+\.?[0-9]*|\.[0-9]+|A?R\s*\[[^\]]*\]|\w+)\s*(mm/sec|cm/min|inch/min|deg/sec|msec|sec|%)?\s*(.*)",
+    re.IGNORECASE | re.DOTALL,
+)
+_END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGNORECASE)
+_ASSIGNED = re.compile(
+    r"((?:R|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)", re.IGNORECASE | re.DOTALL
+)
+_TIMED = re.compile(r"\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,.*", re.IGNORECASE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion instruction.
+
+    Attributes:
+        points: where it goes, an arc by way of the first: a name, and the position if the file has one.
+        unit: of its speed. end: how it ends (FINE, CNT50, CR10). options: words behind that. calls: it calls
+            something at a time or a place on its way (TB, TA, DB).
+    """
+
+    points: tuple[tuple[str, Position | None], ...]
+    unit: str
+    end: str
+    options: tuple[str, ...]
+    calls: bool = False
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A program: its name in capitals, where it stands, and its statements."""
+
+    name: str
+    body: tuple[Statement, ...]
+
+
+def listing_of(data: bytes, shown: str, file: str = "") -> Listing:
+    """The statements of a file.
+
+    Args:
+        file: as of a `Line`.
+
+    Raises:
+        BadProgram: a part that is not there; BadSyntax: an instruction without its end: with the line.
+    """
+    text = text_of(data, shown)
+    head = re.search(r"^/PROG\s+(\S+)", text, re.MULTILINE)
+    start, points, end = (
+        re.search(rf"^/{part}\b.*$", text, re.MULTILINE) for part in ("MN", "POS", "END")
+    )
+    if head is None or start is None or end is None:
+        missing = "/PROG" if head is None else "/MN" if start is None else "/END"
+        raise BadProgram(
+            f"no {missing} is in it",
+            where=file,
+            valid="a whole listing: this one is none, or cut off",
+        )
+    body_end = end.start() if points is None else points.start()
+    positions = {} if points is None else positions_of(text[points.end() : end.start()])
+    rows = text[start.end() : body_end].split("\n")
+    first = text.count("\n", 0, start.end()) + 1
+    return Listing(head[1].upper(), _Reader([*_instructions(rows, first, file)], positions).all())
+
+
+def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line, str]]:
+    """The text of each instruction without its number, and its line; remarks are left out."""
+    text, line = "", Line(first, file)
+    for number, row in enumerate(rows, first):
+        kept = re.sub(r"^\s*\d*\s*:", "", row).strip()
+        if not kept:
+            continue
+        if not text:
+            line = Line(number, file)
+        text = f"{text} {kept}".strip()
+        if kept.endswith(";"):
+            text = text[:-1].strip()
+            if text and not text.startswith(("!", "//", "--")):
+                yield line, text
+            text = ""
+    if text:
+        raise BadSyntax(f"{text!r:.60} has no end", where=str(line), valid="';', in a whole file")
+
+
+@dataclass(eq=False)
+class _Reader:
+    """Reads the instructions of a listing."""
+
+    instructions: list[tuple[Line, str]]
+    positions: Mapping[int, Position]
+    at: int = field(default=0)
+
+    def all(self) -> tuple[Statement, ...]:
+        """All statements.
+
+        Raises:
+            BadSyntax: the end of a block that is none.
+        """
+        found = self._body()
+        if self.at < len(self.instructions):
+            line, text = self.instructions[self.at]
+            raise BadSyntax(f"{text!r:.60} ends nothing", where=str(line), valid="a whole file")
+        return tuple(found)
+
+    def _body(self) -> list[Statement]:
+        """Statements up to the end of their block."""
+        found = list[Statement]()
+        while self.at < len(self.instructions) and self._word not in (
+            "ENDIF",
+            "ELSE",
+            "ENDFOR",
+            "=",
+        ):
+            line, text = self.instructions[self.at]
+            self.at += 1
+            found += self._block(line, text) or self._simple(line, text)
+        return found
+
+    @property
+    def _word(self) -> str:
+        return _first(self.instructions[self.at][1])
+
+    def _until(self, line: Line, what: str, *ends: str) -> list[Statement]:
+        """The statements of a block up to one of its ends, which is not taken."""
+        found = self._body()
+        if self.at >= len(self.instructions) or self._word not in ends:
+            raise BadSyntax(
+                f"{what} has no {ends[-1]}",
+                where=str(line),
+                valid="a whole file: this one is cut off",
+            )
+        return found
+
+    def _block(self, line: Line, text: str) -> list[Statement]:
+        """A statement that holds others; nothing for another one."""
+        word = _first(text)
+        if word == "FOR":
+            return [self._for(line, text)]
+        if word == "SELECT":
+            return [self._select(line, text)]
+        if word == "IF" and (
+            found := re.fullmatch(r"IF\b(.*)\bTHEN", text, re.IGNORECASE | re.DOTALL)
+        ):
+            return [self._if(line, found[1])]
+        return []
+
+    def _if(self, line: Line, condition: str) -> If:
+        branches = [(_condition(condition, line), tuple(self._until(line, "IF", "ELSE", "ENDIF")))]
+        if self._word == "ELSE":
+            self.at += 1
+            branches.append((Constant(True), tuple(self._until(line, "IF", "ENDIF"))))
+        self.at += 1
+        return If(line, "IF", tuple(branches))
+
+    def _select(self, line: Line, text: str) -> If:
+        """`SELECT R[1]=1,…`, and the instructions after it that begin with `=` or `ELSE`."""
+        condition, action = _split(text[len("SELECT") :])
+        value, _, first = condition.partition("=")
+        branches = [(_condition(f"{value}={first}", line), tuple(self._simple(line, action)))]
+        while self.at < len(self.instructions) and self._word in ("=", "ELSE"):
+            own, case = self.instructions[self.at]
+            self.at += 1
+            condition, action = _split(case)
+            asked = (
+                Constant(True) if _first(case) == "ELSE" else _condition(f"{value}{condition}", own)
+            )
+            branches.append((asked, tuple(self._simple(own, action))))
+        return If(line, "SELECT", tuple(branches))
+
+    def _for(self, line: Line, text: str) -> For:
+        found = re.fullmatch(
+            r"FOR\s+(R\[[^\]]*\])\s*=(.*?)\b(TO|DOWNTO)\b(.*)", text, re.IGNORECASE | re.DOTALL
+        )
+        if found is None:
+            raise BadSyntax(
+                f"{text!r:.60} cannot be read", where=str(line), valid="FOR R[1]=1 TO 3"
+            )
+        first, last = (_condition(found[i], line) for i in (2, 4))
+        step = Constant(1.0 if found[3].upper() == "TO" else -1.0)
+        body = tuple(self._until(line, "FOR", "ENDFOR"))
+        self.at += 1
+        return For(line, "FOR", Name(named(found[1]), line), first, last, step, body)
+
+    def _simple(self, line: Line, text: str) -> list[Statement]:
+        """A statement that holds no other."""
+        word = _first(text)
+        if word in MOVES and (motion := _MOTION.fullmatch(text)):
+            return [self._motion(line, motion)]
+        if word in ("LBL", "-"):
+            return []
+        if word in ("END", "ABORT"):
+            return [Leave(line, word, RETURN if word == "END" else STOP)]
+        if word == "IF":
+            condition, action = _split(text[2:])
+            return [
+                If(line, word, ((_condition(condition, line), tuple(self._simple(line, action))),))
+            ]
+        if word == "WAIT":
+            return [_wait(line, text[4:].strip())]
+        if word == "CALL":
+            return [_call(line, text[4:].strip())]
+        assigned = _ASSIGNED.match(text)
+        if assigned is not None:
+            name = Name(named(assigned[1]), line)
+            return [Assign(line, name, _condition(assigned[2], line), is_of_all=True)]
+        if word in QUIET:
+            return [Do(line, Call(word, (), {}, line))]
+        return [Unreadable(line, word)]
+
+    def _motion(self, line: Line, found: re.Match[str]) -> Do:
+        """A motion; its speed is the second argument.
+
+        Raises:
+            BadSyntax: no speed, or no end, as in a file that is cut off.
+        """
+        points = [self._point(found[2], found[3])]
+        if found[4] is not None:
+            points.append(self._point(found[4], found[5]))
+        speed = _SPEED.fullmatch(found[6])
+        end = None if speed is None else _END.match(speed[3])
+        if speed is None or end is None:
+            told = f"{found[0]!r:.60} has no speed and end"
+            raise BadSyntax(told, where=str(line), valid="as in L P[1] 100mm/sec FINE")
+        rest, n_calls = _TIMED.subn("", speed[3][end.end() :])
+        options = tuple(rest.upper().replace(",", " ").split())
+        unit = (speed[2] or "").lower()
+        motion = Motion(tuple(points), unit, named(end[1]), options, n_calls > 0)
+        args = (Constant(motion), _condition(speed[1], line))
+        return Do(line, Call(found[1].upper(), args, {}, line))
+
+    def _point(self, kind: str, index: str) -> tuple[str, Position | None]:
+        """A point's name, and its position; none of a register, or of one that the file does not have."""
+        index, kind = index.strip(), kind.upper()
+        own = self.positions.get(int(index)) if kind == "P" and index.isdigit() else None
+        return f"{kind}[{index}]", own
+
+
+def _first(text: str) -> str:
+    """The first word of an instruction, in capitals."""
+    found = re.match(r"\s*([A-Za-z_$][\w$.]*|=|-)", text)
+    return found[1].upper() if found else text[:1]
+
+
+def _split(text: str) -> tuple[str, str]:
+    """A condition and what is done then, parted by the first comma outside of brackets."""
+    depth = 0
+    for i, letter in enumerate(text):
+        depth += (letter in "([") - (letter in ")]")
+        if letter == "," and depth == 0:
+            return text[:i].strip(), text[i + 1 :].strip()
+    return text, ""
+
+
+def _condition(text: str, line: Line) -> Expression:
+    """The expression in a text; what cannot be read is not known."""
+    tokens = [one._replace(line=line) for one in tokens_of(text.strip(), _WORD)]
+    reader = ExpressionReader(Cursor(tokens, folds=True), _GRAMMAR)
+    try:
+        found = reader.expression()
+        if reader.cursor.next.kind == "END":
+            return found
+    except BadSyntax:
+        pass
+    return Constant(Unknown(f"{text.strip()!r:.40} is not read"))
+
+
+def _wait(line: Line, text: str) -> Statement:
+    """A wait: for some time, or for what only the controller knows."""
+    seconds = re.fullmatch(
+        r"([0-9]*\.?[0-9]+|R\s*\[[^\]]*\])\s*(?:\(?\s*sec\s*\)?)?", text, re.IGNORECASE
+    )
+    if seconds is not None:
+        return Do(line, Call(WAIT, (_condition(seconds[1], line),), {}, line))
+    condition, _, _ = text.partition("TIMEOUT")
+    return While(line, "WAIT", _condition(condition, line), (), at_end=True)
+
+
+def _call(line: Line, text: str) -> Statement:
+    """A call of another program."""
+    found = re.fullmatch(r"([\w-]+)\s*(?:\((.*)\))?", text, re.DOTALL)
+    if found is None:
+        return Unreadable(line, "CALL")
+    given = [] if not (found[2] or "").strip() else found[2].split(",")
+    return Do(line, Call(found[1].upper(), tuple(_condition(one, line) for one in given), {}, line))

@@ -1,0 +1,352 @@
+"""Programs in KRL: `.src` files, with the `.dat` files that declare their points. Millimetres and degrees.
+
+Sources: KUKA, System Software 8.3, Operating and programming instructions for system integrators (moves,
+aggregates, approximation, status and turn); KUKA's own `bas.src` 8.3 (what `BAS` and inline forms set).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadProgram, at, nearest_name
+from clearance.formats.program.controller_program import (
+    AxisTarget,
+    ControllerMove,
+    ControllerProgram,
+    ControllerWait,
+    PoseTarget,
+    ProgramRequest,
+    Target,
+)
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import Call, Expression, Name, Unknown, number
+from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, SPLINE, WAIT
+from clearance.formats.program.krl_settings import (
+    FUNCTIONS,
+    HELD,
+    Settings,
+    first_variables,
+    key_of,
+)
+from clearance.formats.program.krl_text import module_of
+from clearance.formats.program.krl_values import (
+    FRAME,
+    MM,
+    Aggregate,
+    frame_of,
+    is_number,
+    matrix_of,
+    why,
+)
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.geometry.pose import inverse
+
+AXES = ("A1", "A2", "A3", "A4", "A5", "A6")
+
+STANDS = ("$POS_ACT", "$AXIS_ACT", "$AXIS_ACT_MEAS")
+"""Targets at which the robot is already."""
+
+NEAR_ZERO, FARTHEST = math.radians(2.0), 4.0 * math.pi
+"""An axis that is nearer to 0 may have either sign in a turn bit: so controllers take it."""
+
+GIMBAL = 1.0 - 1e-9
+"""The sine of B from which A and C turn about one axis."""
+
+
+def read_krl(asked: ProgramRequest) -> ControllerProgram:
+    """The moves of a program in KRL.
+
+    Raises:
+        BadInput: with the file and the line.
+    """
+    with at(asked.shown):
+        modules = [module_of(asked.data, asked.shown)]
+        modules += [module_of(data, shown, shown) for shown, data in asked.beside.items()]
+        routines = {
+            name: one for module in reversed(modules) for name, one in module.routines.items()
+        }
+        if not modules[0].routines:
+            raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
+        language = _Krl(asked.asked)
+        skip = frozenset(name.upper() for name in asked.asked.skip)
+        run = Execution(language, routines, skip, first_variables(asked.asked, routines))
+        for module in modules[::-1]:
+            run.run(module.declared)
+        run.run(routines[_entry(list(modules[0].routines), asked.asked.entry)].body)
+        return ControllerProgram(tuple(run.moves), (*run.notes, *language.notes()))
+
+
+def _entry(names: list[str], asked: str | None) -> str:
+    """The procedure that runs: the one that is asked for, or the first."""
+    if asked is None or asked.upper() in names:
+        return names[0] if asked is None else asked.upper()
+    raise BadProgram(
+        f"no procedure {asked!r}", where="entry", valid=nearest_name(asked.upper(), names)
+    )
+
+
+@dataclass(eq=False)
+class _Krl:
+    """What the instructions of KRL do.
+
+    Attributes:
+        asked: what the case says. pose: (4, 4) `base_from_flange` [m] where the robot is; None where its axes say
+            it. axes: [degrees] by name; None where its pose says it. unsaid: lines whose speed is in no file.
+            is_automatic: the program asks whether the controller runs by itself.
+    """
+
+    asked: ProgramFile
+    pose: np.ndarray | None = None
+    axes: Mapping[str, float] | None = None
+    unsaid: dict[str, None] = field(default_factory=dict)
+    is_automatic: bool = False
+
+    def notes(self) -> list[str]:
+        """What is assumed."""
+        told = "automatic operation is assumed: $T1 and $T2 are FALSE"
+        found = [told] if self.is_automatic else []
+        if self.unsaid:
+            lines = ", ".join([*self.unsaid][:6])
+            found.append(f"$VEL.CP is not in the files: a speed is assumed ({lines})")
+        return found
+
+    # what the run asks
+
+    @property
+    def state(self) -> Any:
+        return (None if self.pose is None else self.pose.tolist(), self.axes)
+
+    def moves(self, name: str) -> bool | None:
+        """Whether an instruction decides where the robot goes; None for one that is not known."""
+        if name in MOVES or name in (SPLINE, "BAS"):
+            return True
+        return False if name in QUIET or name in FUNCTIONS or name in (AGGREGATE, WAIT) else None
+
+    def value_of(self, name: str, run: Execution) -> Any:
+        """What is assumed of the controller: it runs a program by itself."""
+        if name in ("$T1", "$T2"):
+            self.is_automatic = True
+            return False
+        return None
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        return values
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """A part of an aggregate, or an element of an array; texts of pendants have none."""
+        if not isinstance(value, Mapping):
+            raise TypeError
+        return value.get(key_of(by), Unknown(f"{key_of(by)} of it is not given"))
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        if not isinstance(value, dict):
+            raise TypeError
+        value[key_of(by)] = new
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        """The value of an aggregate, or of a function that inline forms call."""
+        if call.name == AGGREGATE:
+            return {name: run.evaluated(one) for name, one in call.named.items()}
+        if call.name not in FUNCTIONS:
+            return Unknown(f"{call.name}() at {call.line}")
+        args = [run.evaluated(one) for one in call.args]
+        return FUNCTIONS[call.name](Settings(run, call.line), *args)
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """A move, a wait, or a setting; all else moves nothing.
+
+        Raises:
+            BadInput: a move that is not read.
+        """
+        with at(str(call.line)):
+            if call.name in MOVES:
+                self._move(call, run)
+            elif call.name == WAIT:
+                seconds = number(run.evaluated(call.args[0]), call.line, "the time")
+                if seconds > 0.0:
+                    run.add(ControllerWait(call.line.number, seconds, call.line.file))
+            elif call.name == "BAS":
+                command, *value = (run.evaluated(one) for one in call.args)
+                Settings(run, call.line).bas(command, value[0] if value else 0)
+            elif call.name == SPLINE:
+                raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
+            elif call.name in ("INTERRUPT", "TRIGGER"):
+                run.note("interrupts and triggers, which are not looked at", str(call.line))
+            else:
+                run.pass_over(call.name, call.line)
+
+    # moves
+
+    def _move(self, call: Call, run: Execution) -> None:
+        first = call.args[0]
+        if isinstance(first, Name) and first.name in STANDS:
+            return
+        kept = {name: run.variables[name] for name in HELD}
+        settings = Settings(run, call.line)
+        for name, held in call.named.items():
+            if name.startswith("WITH"):
+                settings.hold(*held.value)  # type: ignore[union-attr]
+        kind = MOVES[call.name]
+        targets = [_aggregate(run.evaluated(one)) for one in call.args]
+        if len(targets) != (2 if kind == "circ" else 1) or call.name.endswith("CIRC_REL"):
+            raise BadProgram(
+                f"{call.name} with {len(targets)} targets is not read",
+                valid="CIRC with two, LIN, PTP",
+            )
+        if call.name.endswith("_REL"):
+            targets = [self._absolute(targets[0], "#TOOL" in call.named, settings)]
+        if settings.value("$IPO_MODE") != "#BASE":
+            told = f"$IPO_MODE is {settings.value('$IPO_MODE')}: the tool may stand, and the robot bring the part"
+            raise BadProgram(told, valid="$IPO_MODE = #BASE")
+        to = self._target(kind, targets[-1], _name_of(call.args[-1]), settings)
+        via = (
+            self._target("via", {**dict.fromkeys("ABC", 0.0), **targets[0]}, "", settings)
+            if kind == "circ"
+            else None
+        )
+        run.add(self._made(call, kind, to, via, settings))
+        self._reached(to, settings)
+        run.variables.update(kept)
+
+    def _made(
+        self, call: Call, kind: str, to: Target, via: Target | None, settings: Settings
+    ) -> ControllerMove:
+        speeds = settings.speeds(kind)
+        if kind != "ptp" and speeds["speed"] is None:
+            self.unsaid[str(call.line)] = None
+        is_free = isinstance(to, AxisTarget) and isinstance(settings.value("$TOOL"), Unknown)
+        words = [name for name in call.named if name.startswith("C_")]
+        return ControllerMove(
+            line=call.line.number,
+            kind=kind,  # type: ignore[arg-type]
+            to=to,
+            tool=np.eye(4) if is_free else settings.frame("$TOOL", "tools"),
+            via=via,
+            orientation=settings.orientation(kind),
+            zone=settings.zone(kind, words, self.asked.zones),
+            file=call.line.file,
+            **speeds,
+        )
+
+    def _absolute(self, way: Aggregate, in_tool: bool, settings: Settings) -> Aggregate:
+        """The target of a relative move.
+
+        Raises:
+            BadInput: where the robot is before is not known, or the tool is to turn.
+        """
+        if any(key in AXES for key in way):
+            if self.axes is None:
+                raise BadProgram(
+                    "the axes before this move are not known", valid="PTP to axes before it"
+                )
+            return {key: self.axes[key] + _numeric(way.get(key, 0.0)) for key in AXES}
+        if any(way.get(key, 0.0) != 0.0 for key in "ABC"):
+            raise BadProgram(
+                "a relative move that turns the tool is not read", valid="a move to a pose"
+            )
+        step = np.array([_numeric(way.get(key, 0.0)) * MM for key in "XYZ"])
+        pose = self._now(settings)
+        pose[:3, 3] += pose[:3, :3] @ step if in_tool else step
+        return frame_of(pose)
+
+    def _now(self, settings: Settings) -> np.ndarray:
+        """(4, 4) `base_from_tool` [m] before a move, in the frames that hold for it."""
+        if self.pose is None:
+            raise BadProgram(
+                "where the tool is before this move is said by axes, and this move counts from there",
+                valid="X, Y, Z, A, B and C, or a move to a pose before it",
+            )
+        return (
+            inverse(settings.frame("$BASE", "frames"))
+            @ self.pose
+            @ settings.frame("$TOOL", "tools")
+        )
+
+    def _target(self, kind: str, given: Aggregate, name: str, settings: Settings) -> Target:
+        """The axes or the pose that an aggregate says."""
+        external = {
+            key: _numeric(value) for key, value in given.items() if re.fullmatch("E[1-6]", key)
+        }
+        if not any(key in AXES for key in given):
+            unchecked, ranges = _configuration(given) if kind == "ptp" else ("", {})
+            pose = settings.frame("$BASE", "frames") @ self._pose(given, settings)
+            return PoseTarget(pose, external, ranges, unchecked=unchecked, name=name)
+        if kind != "ptp":
+            raise BadProgram("axes are given", valid="X, Y, Z, A, B and C")
+        full = {**(self.axes or {}), **{key: _numeric(given[key]) for key in AXES if key in given}}
+        missing = [key for key in AXES if key not in full]
+        if missing:
+            raise BadProgram(
+                f"no {', '.join(missing)}, and where it is before is not known",
+                valid="all six axes",
+            )
+        return AxisTarget(tuple(math.radians(full[key]) for key in AXES), external, name)
+
+    def _pose(self, given: Aggregate, settings: Settings) -> np.ndarray:
+        """(4, 4) `base_from_tool` [m]; what is not given stays as it is."""
+        if all(key in given for key in FRAME):
+            return matrix_of(given, "the target")
+        pose = self._now(settings)
+        placed = matrix_of({**frame_of(pose), **given}, "the target")
+        turns = [key for key in "ABC" if key in given]
+        if not turns:
+            placed[:3, :3] = pose[:3, :3]
+        elif len(turns) < 3 and abs(pose[2, 0]) > GIMBAL:
+            told = f"only {', '.join(turns)} of the angles is given, where B is 90 degrees and the others are any"
+            raise BadProgram(told, valid="A, B and C, or none of them")
+        return placed
+
+    def _reached(self, to: Target, settings: Settings) -> None:
+        """Keeps where a move ends."""
+        if isinstance(to, AxisTarget):
+            self.pose, self.axes = None, dict(zip(AXES, np.degrees(to.axes).tolist(), strict=True))
+        else:
+            self.pose, self.axes = to.pose @ inverse(settings.frame("$TOOL", "tools")), None
+
+
+def _configuration(given: Aggregate) -> tuple[str, dict[int, tuple[float, float]]]:
+    """Flags of a configuration that are not checked, and where axes are by the others: bit n of T is 1 where axis
+    n + 1 is below 0, and bit 2 of S where axis 5 is.
+
+    Raises:
+        BadInput: S and T do not agree.
+    """
+    status, turn = (int(given[key]) if is_number(given.get(key)) else None for key in "ST")
+    signs = {} if turn is None else {axis: bool(turn >> (axis - 1) & 1) for axis in range(1, 7)}
+    if status is not None:
+        is_below = bool(status & 4)
+        if signs.setdefault(5, is_below) != is_below:
+            told = f"S {status} and T {turn} do not agree on the sign of A5"
+            raise BadProgram(told, valid="bit 2 of S as bit 4 of T")
+    ends = {True: (-FARTHEST, NEAR_ZERO), False: (-NEAR_ZERO, FARTHEST)}
+    unchecked = "" if status is None else f"bits 0 and 1 of S {status}"
+    return unchecked, {axis: ends[below] for axis, below in signs.items()}
+
+
+def _aggregate(value: Any) -> Aggregate:
+    """A target.
+
+    Raises:
+        BadInput: it is not known, or none.
+    """
+    if not isinstance(value, Mapping):
+        raise BadProgram(
+            f"the target is not known: {why(value)}", valid="the file that declares it beside"
+        )
+    return value
+
+
+def _name_of(one: Expression) -> str:
+    return one.name if isinstance(one, Name) else ""
+
+
+def _numeric(value: Any) -> float:
+    if not is_number(value):
+        raise BadProgram(f"a position is not known: {why(value)}", valid="a number")
+    return float(value)

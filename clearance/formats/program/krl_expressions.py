@@ -1,0 +1,154 @@
+"""Words and expressions of KRL: instructions, aggregates (`{X 1, Y 2}`), members of enumerations.
+
+Not for: statements (`krl_text`), frames as values (`krl_values`).
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+
+from clearance.formats.program.expressions import (
+    COMPARED,
+    Call,
+    Constant,
+    Expression,
+    ExpressionReader,
+    Grammar,
+    Unknown,
+    numeric,
+)
+from clearance.formats.program.krl_values import composed, quotient
+from clearance.formats.program.tokens import Cursor, Line
+
+MOVES = {
+    spline + kind + relative: kind.lower()
+    for spline in ("", "S")
+    for kind in ("PTP", "LIN", "CIRC")
+    for relative in ("", "_REL")
+}
+"""The instructions that move, and the way each takes."""
+
+WAIT, SPLINE = "WAIT SEC", "SPLINE"
+"""Calls that stand for a wait, and for a spline, which is not read."""
+
+QUIET = frozenset(
+    (
+        *("INTERRUPT", "TRIGGER", "PULSE", "ANOUT", "ANIN", "DIGIN", "SIGNAL", "EXT"),
+        *("EXTFCT", "EXTP", "EXTFCTP", "STRUC", "ENUM", "IMPORT", "$OUT"),
+        *("SET_CD_PARAMS", "MSGNOTIFY", "MSGQUIT", "ERR_CLEAR", "ON_ERROR_PROCEED"),
+    )
+)
+"""Instructions that move nothing, whatever stands behind them."""
+
+NOTHING = ("CONTINUE", "DEFDAT", "ENDDAT")
+
+TYPES = frozenset(("INT", "REAL", "BOOL", "CHAR", "FRAME", "POS", "E6POS", "AXIS", "E6AXIS"))
+
+AGGREGATE = "{}"
+"""The call that an aggregate is."""
+
+WORD = re.compile(
+    r"""(?P<skip>[ \t\f\v]+|;[^\n]*)
+    |(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|'[HhBb][0-9A-Fa-f]+')
+    |(?P<string>"[^"\n]*")
+    |(?P<name>\#?\$?[A-Za-z_][A-Za-z0-9_$]*)
+    |(?P<mark>==|<>|<=|>=|[-+*/:.,=<>()\[\]{}])""",
+    re.VERBOSE,
+)
+
+
+class _Capitals(Grammar):
+    """A grammar whose names are compared in capitals."""
+
+    def folded(self, name: str) -> str:
+        return name.upper()
+
+
+GRAMMAR = _Capitals(
+    binary={
+        "OR": (1, lambda a, b: bool(a) or bool(b)),
+        "EXOR": (1, lambda a, b: bool(a) != bool(b)),
+        "AND": (2, lambda a, b: bool(a) and bool(b)),
+        "==": (3, operator.eq),
+        "<>": (3, operator.ne),
+        **{word: (3, act) for word, act in COMPARED.items()},
+        "+": (4, numeric(operator.add)),
+        "-": (4, numeric(operator.sub)),
+        "*": (5, numeric(operator.mul)),
+        "/": (5, numeric(quotient)),
+        ":": (6, composed),
+    },
+    unary={
+        "NOT": (7, operator.not_),
+        "-": (7, operator.neg),
+        "+": (7, operator.pos),
+    },
+    constants={"TRUE": True, "FALSE": False},
+    folds=True,
+)
+
+
+class Expressions(ExpressionReader):
+    """Expressions of KRL: aggregates, members of enumerations, and arguments that are left out."""
+
+    def _atom(self) -> Expression:
+        word = self.cursor.next
+        if self.cursor.accept("{"):
+            return self._aggregate(word.line)
+        if word.kind == "name" and word.text.startswith("#"):
+            return Constant(self.cursor.take().text.upper())
+        if word.kind == "number":
+            return Constant(_number(self.cursor.take().text))
+        return super()._atom()
+
+    def arguments(self, *ends: str) -> tuple[tuple[Expression, ...], dict[str, Expression]]:
+        """The arguments up to one of some words; one that is left out is not known."""
+        args = list[Expression]()
+        while not self.cursor.is_at(*ends):
+            is_out = self.cursor.is_at(",")
+            args.append(Constant(Unknown("it is left out")) if is_out else self.expression())
+            if not self.cursor.accept(",") and not self.cursor.is_at(*ends):
+                self.cursor.refuse(" or ".join(repr(one) for one in (",", *ends)))
+        return tuple(args), {}
+
+    def _aggregate(self, line: Line) -> Call:
+        """What stands in braces, the first of which is taken; `{E6POS: X 1}` may name its type."""
+        found, cursor = dict[str, Expression](), self.cursor
+        while not cursor.is_at("}"):
+            name = GRAMMAR.folded(cursor.expect_kind("name", "the name of a part").text)
+            if not found and cursor.accept(":"):
+                continue
+            while cursor.accept("["):
+                while not cursor.accept("]"):
+                    name += cursor.expect_kind("number", "an index").text
+            found[name] = self.expression()
+            if not cursor.accept(",") and not cursor.is_at("}"):
+                cursor.refuse("',' or '}'")
+        cursor.expect("}")
+        return Call(AGGREGATE, (), found, line)
+
+
+def _number(text: str) -> float:
+    """Whole numbers stay so: their quotient is one too."""
+    if text[0] == "'":
+        return int(text[2:-1], 16 if text[1] in "Hh" else 2)
+    return int(text) if text.isdigit() else float(text)
+
+
+def parameters_of(cursor: Cursor) -> tuple[tuple[str, ...], frozenset[str]]:
+    """The names of parameters, and those whose values go back: all but `:IN`."""
+    cursor.expect("(")
+    found, returned = list[str](), set[str]()
+    while not cursor.accept(")"):
+        name = cursor.expect_kind("name", "a parameter").text.upper()
+        words = list[str]()
+        while not cursor.is_at(",", ")"):
+            words.append(cursor.take().text.upper())
+            if words[-1] == "\n":
+                cursor.refuse("')'")
+        found.append(name)
+        if "IN" not in words:
+            returned.add(name)
+        cursor.accept(",")
+    return tuple(found), frozenset(returned)

@@ -1,0 +1,350 @@
+"""What is in force in a program in KRL: tool, base, speeds and corners, and what sets them.
+
+Not for: moves (`krl`).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from clearance.errors import BadProgram, MissingKey
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import Expression, Name, Unknown
+from clearance.formats.program.krl_values import (
+    FRAME,
+    MM,
+    Aggregate,
+    frame_of,
+    is_number,
+    matrix_of,
+    why,
+)
+from clearance.formats.program.statements import Assign, For, Routine, assigned, within
+from clearance.formats.program.tokens import Line
+from clearance.formats.schema.program_file import ProgramFile
+
+_ORIENTATIONS: Mapping[tuple[str, str], Literal["to", "constant", "tangent"]] = {
+    ("#VAR", "#BASE"): "to",
+    ("#CONSTANT", "#BASE"): "constant",
+    ("#CONSTANT", "#PATH"): "tangent",
+}
+"""How the tool turns on an arc, by `$ORI_TYPE` and `$CIRC_TYPE`."""
+
+_NULL = dict.fromkeys(FRAME, 0.0)
+
+_FIRST: Mapping[str, Any] = {
+    **{name: _NULL for name in ("$NULLFRAME", "$WORLD", "$ROBROOT")},
+    **{"$ORI_TYPE": "#VAR", "$CIRC_TYPE": "#BASE", "$IPO_MODE": "#BASE"},
+    **{name: {} for name in ("$VEL", "$ACC", "$APO", "$VEL_AXIS", "TOOL_DATA", "BASE_DATA")},
+    **{name: Unknown(f"{name} is not set before") for name in ("$TOOL", "$BASE")},
+    **{name: Unknown(f"{name} is not set before") for name in ("FDAT_ACT", "PDAT_ACT", "LDAT_ACT")},
+}
+"""What a program begins with."""
+
+HELD = (
+    "$VEL",
+    "$VEL_AXIS",
+    "$ACC",
+    "$TOOL",
+    "$BASE",
+    "$IPO_MODE",
+    "$APO",
+    "$ORI_TYPE",
+    "$CIRC_TYPE",
+)
+"""What `WITH` changes for one move; all else after it says nothing of its way."""
+
+_COMMANDS = frozenset(
+    (
+        *("#INITMOV", "#TOOL", "#BASE", "#FRAMES", "#VEL_PTP", "#VEL_CP", "#ACC_PTP", "#ACC_CP"),
+        *("#PTP_PARAMS", "#CP_PARAMS", "#PTP_DAT", "#CP_DAT", "#ACC_GLUE"),
+    )
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Settings:
+    """What is in force at a line: tool, base, speeds, corners."""
+
+    run: Execution
+    line: Line
+
+    def value(self, name: str) -> Any:
+        """The value of a variable."""
+        return self.run.value_of(Name(name, self.line))
+
+    def part(self, name: str, by: Any) -> Any:
+        """A part of one."""
+        return _part(self.value(name), by)
+
+    def set(self, name: str, value: Any, by: Any = None) -> None:
+        """Sets a variable that all routines share, or a part of it."""
+        if by is None:
+            self.run.variables[name] = value
+        else:
+            whole = self.run.variables.get(name)
+            self.run.variables[name] = {**(whole if isinstance(whole, Mapping) else {}), by: value}
+
+    def hold(self, target: Expression, value: Expression) -> None:
+        """Sets what `WITH` says of a move."""
+        parts = []
+        while not isinstance(target, Name):
+            parts.append(target.by if isinstance(target.by, str) else self.run.evaluated(target.by))  # type: ignore[union-attr]
+            target = target.of  # type: ignore[union-attr]
+        if target.name == "$VEL_AXIS":
+            self.share(self.run.evaluated(value))
+        elif target.name in HELD:
+            self.set(target.name, self.run.evaluated(value), *(key_of(part) for part in parts))
+
+    def share(self, value: Any) -> None:
+        """Sets the speed of all axes [%]."""
+        self.set("$VEL_AXIS", dict.fromkeys(range(1, 7), value))
+
+    def frame(self, name: str, key: str) -> np.ndarray:
+        """(4, 4) [m] The tool or base in force.
+
+        Raises:
+            MissingKey: it is not known.
+        """
+        value = self.value(name)
+        if isinstance(value, Mapping):
+            return matrix_of(value, name)
+        named = re.match(r"(TOOL|BASE)_DATA\[\d+\]", why(value))
+        valid = f'program: {{{key}: {{"{named[0] if named else name}": {{xyz: […], rpy: […]}}}}}} in m and rad'
+        raise MissingKey(
+            f"{name} is not known: {why(value)}", valid=f"a file beside that sets it, or {valid}"
+        )
+
+    def numbered(self, array: str, index: Any, none: str) -> Any:
+        """The tool or base of a number; 0 is none."""
+        if not is_number(index):
+            return index if isinstance(index, Unknown) else Unknown(why(index))
+        if index == 0:
+            return self.value(none)
+        found = self.part(array, int(index))
+        return (
+            Unknown(f"{array}[{int(index)}] is not in the files")
+            if isinstance(found, Unknown)
+            else found
+        )
+
+    def tool(self, index: Any) -> Any:
+        return self.numbered("TOOL_DATA", index, "$NULLFRAME")
+
+    def base(self, index: Any) -> Any:
+        return self.numbered("BASE_DATA", index, "$WORLD")
+
+    def bas(self, command: Any, value: Any) -> None:
+        """What KUKA's `BAS` does for a command.
+
+        Raises:
+            BadInput: another command.
+        """
+        if command not in _COMMANDS:
+            raise BadProgram(f"BAS({why(command)}) is not read", valid=", ".join(sorted(_COMMANDS)))
+        if command == "#INITMOV":
+            self.set("$BASE", self.base(0))
+            self.set("$TOOL", self.tool(1))
+            self.set("$ORI_TYPE", "#VAR")
+            self.set("$CIRC_TYPE", "#BASE")
+            self.set("$VEL", self.value("DEF_VEL_CP"), "CP")
+            self.set("$APO", self.value("DEF_APO_CDIS"), "CDIS")
+            self.share(100.0)
+        elif command in ("#TOOL", "#BASE"):
+            self.set(
+                f"${command[1:]}", self.tool(value) if command == "#TOOL" else self.base(value)
+            )
+        elif command in ("#VEL_PTP", "#PTP_PARAMS", "#PTP_DAT"):
+            self._of_joints(command, value)
+        elif command in ("#VEL_CP", "#CP_PARAMS", "#CP_DAT"):
+            self._of_path(command, value)
+        if command in ("#FRAMES", "#PTP_PARAMS", "#CP_PARAMS"):
+            self.set("$TOOL", self.tool(self.part("FDAT_ACT", "TOOL_NO")))
+            self.set("$BASE", self.base(self.part("FDAT_ACT", "BASE_NO")))
+            mode = self.part("FDAT_ACT", "IPO_FRAME")
+            self.set("$IPO_MODE", "#BASE" if isinstance(mode, Unknown) else mode)
+
+    def _of_joints(self, command: str, value: Any) -> None:
+        self.share(self.part("PDAT_ACT", "VEL") if command == "#PTP_DAT" else value)
+        if command != "#VEL_PTP":
+            for part, size in _corner_of_joints(self.value("PDAT_ACT")).items():
+                self.set("$APO", size, part)
+
+    def _of_path(self, command: str, value: Any) -> None:
+        self.set("$VEL", self.part("LDAT_ACT", "VEL") if command == "#CP_DAT" else value, "CP")
+        if command == "#VEL_CP":
+            return
+        self.set("$APO", self.part("LDAT_ACT", "APO_DIST"), "CDIS")
+        for key, name, usual in (
+            ("ORI_TYP", "$ORI_TYPE", "#VAR"),
+            ("CIRC_TYP", "$CIRC_TYPE", "#BASE"),
+        ):
+            said = self.part("LDAT_ACT", key)
+            self.set(name, usual if isinstance(said, Unknown) else said)
+
+    def orientation(self, kind: str) -> Literal["to", "constant", "tangent"]:
+        """How the tool turns on a line or an arc.
+
+        Raises:
+            BadInput: as no line and no arc of ours does.
+        """
+        if kind == "ptp":
+            return "to"
+        turn, circle = self.value("$ORI_TYPE"), self.value("$CIRC_TYPE")
+        found = _ORIENTATIONS.get((str(turn), "#BASE" if kind == "lin" else str(circle)))
+        if found is None:
+            raise BadProgram(
+                f"$ORI_TYPE is {turn} and $CIRC_TYPE {circle}",
+                valid="#VAR and #BASE, #CONSTANT and #BASE, or #CONSTANT and #PATH",
+            )
+        return found
+
+    def speeds(self, kind: str) -> dict[str, Any]:
+        """The speeds of a move, by the fields of a `ControllerMove`."""
+        if kind == "ptp":
+            shares = [self._positive("$VEL_AXIS", i) for i in range(1, 7)]
+            known = [share for share in shares if share is not None]
+            return {"share": min(1.0, min(known) / 100.0) if known else None}
+        turns = [self._positive("$VEL", part) for part in ("ORI1", "ORI2")]
+        slowest = min((turn for turn in turns if turn is not None), default=None)
+        return {
+            "speed": self._positive("$VEL", "CP"),
+            "acceleration": self._positive("$ACC", "CP"),
+            "turn_speed": None if slowest is None else math.radians(slowest),
+        }
+
+    def _positive(self, name: str, by: Any) -> float | None:
+        """A speed; None where it is not known.
+
+        Raises:
+            BadInput: it is 0 or less.
+        """
+        value = self.part(name, by)
+        if not is_number(value):
+            return None
+        if value <= 0:
+            raise BadProgram(f"{name}.{by} is {value:g}", valid="more than 0")
+        return float(value)
+
+    def zone(self, kind: str, words: list[str], zones: Mapping[str, float]) -> float:
+        """[m] The radius of the corner at a move's end.
+
+        Raises:
+            MissingKey: the files say no length.
+        """
+        if not words:
+            return 0.0
+        by_length = "C_DIS" in words or ("C_SPL" in words and kind != "ptp")
+        distance = self.part("$APO", "CDIS")
+        if by_length and is_number(distance):
+            return float(distance) * MM
+        word = "C_DIS" if by_length else words[0]
+        if word in zones:
+            return zones[word]
+        told = "$APO.CDIS, its length, is not in the files" if by_length else "is no length"
+        raise MissingKey(
+            f"{word}: {told}",
+            valid=f"program: {{zones: {{{word}: 0.05}}}}, the radius of such corners [m]",
+        )
+
+
+def _corner_of_joints(data: Any) -> Aggregate:
+    """The corner that the data of a joint move say: a share [%], or by its mode a distance [mm]."""
+    part = "CDIS" if _part(data, "APO_MODE") == "#CDIS" else "CPTP"
+    return {part: _part(data, "APO_DIST")}
+
+
+def _of_number(
+    act: Callable[[float], float], before: Callable[[float], float] = float
+) -> Callable[..., Any]:
+    """A function of one number."""
+    return lambda settings, value: act(before(value)) if is_number(value) else Unknown(why(value))
+
+
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {
+    "STOOL": lambda settings, index: settings.tool(index),
+    "STOOL2": lambda settings, data: settings.tool(_part(data, "TOOL_NO")),
+    "SBASE": lambda settings, index: settings.base(index),
+    "SIPO_MODE": lambda settings, mode="#BASE": mode,
+    "SVEL_CP": lambda settings, speed, *_: {"CP": speed},
+    "SVEL_JOINT": lambda settings, share: share,
+    "SAPO": lambda settings, data: {"CDIS": _part(data, "APO_DIST")},
+    "SAPO_PTP": lambda settings, data: _corner_of_joints(data),
+    "SORI_TYP": lambda settings, data: _part(data, "ORI_TYP"),
+    **{
+        name: lambda settings, *_: Unknown("only the controller knows it")
+        for name in (
+            "VARSTATE",
+            "SLOAD",
+            "SACC_CP",
+            "SACC_JOINT",
+            "SJERK",
+            "STRLEN",
+            "CAST_FROM",
+            "CAST_TO",
+        )
+    },
+    **{name: _of_number(act) for name, act in (("ABS", abs), ("SQRT", math.sqrt))},
+    **{name: _of_number(act, math.radians) for name, act in (("SIN", math.sin), ("COS", math.cos))},
+}
+
+
+def key_of(by: Any) -> Any:
+    """The key of an element or a part."""
+    if isinstance(by, str):
+        return by
+    if by != int(by):
+        raise LookupError(by)
+    return int(by)
+
+
+def _part(data: Any, key: Any) -> Any:
+    """A part of an aggregate."""
+    if not isinstance(data, Mapping):
+        return data if isinstance(data, Unknown) else Unknown(f"{why(data)} for {key}")
+    return data.get(key, Unknown(f"no {key} is given"))
+
+
+def first_variables(asked: ProgramFile, routines: Mapping[str, Routine]) -> dict[str, Any]:
+    """The variables that a program begins with: those of the controller, and tools and frames of the case."""
+    shared = _shared_names([*routines.values()])
+    found: dict[str, Any] = {
+        name: Unknown(f"{name} is in no file that is given") for name in shared
+    }
+    found |= {name: dict(one) if isinstance(one, dict) else one for name, one in _FIRST.items()}
+    for name, pose in (*asked.tools.items(), *asked.frames.items()):
+        root, _, index = name.upper().rstrip("]").partition("[")
+        if index.isdigit():
+            found.setdefault(root, {})[int(index)] = frame_of(pose.matrix())
+        else:
+            found[root] = frame_of(pose.matrix())
+    return found
+
+
+def _shared_names(routines: Sequence[Routine]) -> set[str]:
+    """Variables that routines give values to and do not declare: all have them in common."""
+    found = set[str]()
+    for routine in routines:
+        statements = list(within(routine.body))
+        own = {
+            one.target.name
+            for one in statements
+            if isinstance(one, Assign) and one.is_own and isinstance(one.target, Name)
+        }
+        for one in statements:
+            name = (
+                assigned(one.target)
+                if isinstance(one, Assign)
+                else one.name
+                if isinstance(one, For)
+                else None
+            )
+            if name is not None and name.name not in own and name.name not in routine.parameters:
+                found.add(name.name)
+    return found

@@ -1,0 +1,183 @@
+"""FANUC's listings: the moves that a program makes, by hand; a line for what the file does not decide."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.formats.program.controller_program import ControllerWait
+from tests.formats.program.reading import read
+
+HEAD = "/PROG  CELL\n/ATTR\nOWNER\t\t= MNEDITOR;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n/MN\n"
+FRAMES = "UFRAME_NUM=1 ;\nUTOOL_NUM=1 ;\n"
+
+
+def point(number: int, x: float, y: float, frame: int = 1, more: str = "") -> str:
+    """A point that looks down, taught in a frame."""
+    return (
+        f"P[{number}:\"A\"]{{\n   GP1:\n\tUF : {frame}, UT : 1,\t\tCONFIG : 'N U T, 0, 0, 0',\n"
+        f"\tX = {x:9.3f}  mm,\tY = {y:9.3f}  mm,\tZ =    50.000  mm,\n"
+        f"\tW =   180.000 deg,\tP =     0.000 deg,\tR =    90.000 deg{more}\n}};\n"
+    )
+
+
+HOME = """P[1]{
+   GP1:
+	UF : 0, UT : 2,	
+	J1=    10.000 deg,	J2=    20.000 deg,	J3=    -5.000 deg,
+	J4=     0.000 deg,	J5=   -45.000 deg,	J6=    30.000 deg
+};
+"""
+POINTS = HOME + point(2, 100.0, 0.0) + point(3, 200.0, 0.0) + point(4, 200.0, 100.0)
+CASE = {
+    "tools": {"UTOOL[1]": {"xyz": [0.0, 0.0, 0.1]}},
+    "frames": {"UFRAME[1]": {"xyz": [0.5, 0.0, 0.2], "rpy": [0.0, 0.0, math.pi / 2]}},
+}
+
+
+def listing(body: str, points: str = POINTS) -> str:
+    """A program whose lines begin at the sixth of the file."""
+    lines = enumerate(body.strip("\n").split("\n"), 1)
+    rows = [f"    {row}" if row.startswith(":") else f"{i:4d}:{row}" for i, row in lines]
+    return f"{HEAD}{chr(10).join(rows)}\n/POS\n{points}/END\n"
+
+
+def program(body: str, points: str = POINTS, **asked):
+    return read("CELL.LS", listing(body, points), **{**CASE, **asked})
+
+
+def place(move) -> list[float]:
+    return move.to.pose[:3, 3].tolist()
+
+
+def test_motions_in_frames_and_by_axes_become_moves_with_their_lines():
+    body = (
+        FRAMES
+        + """  !a remark ;
+J P[1:HOME] 50% FINE    ;
+L P[2] 250mm/sec CNT50 ACC100    ;
+L P[3] 300cm/min CR10 TB .10sec,CALL GRIP ;
+DO[1:gun]=ON ;
+C P[2]
+: P[4] 100mm/sec FINE    ;
+WAIT   1.50(sec) ;
+"""
+    )
+    found = program(body, zones={"CNT50": 0.02})
+    home, line, next_, arc, wait = found.moves
+    # J3 is against the horizontal: the third axis has turned by J3 + J2
+    degrees = [10.0, 20.0, 15.0, 0.0, -45.0, 30.0]
+    assert np.degrees(home.to.axes) == pytest.approx(degrees) and home.share == 0.5
+    assert [move.line for move in found.moves] == [9, 10, 11, 13, 15]
+    # x of the frame is the robot's y
+    assert place(line) == pytest.approx([0.5, 0.1, 0.25]) and line.tool[2, 3] == 0.1
+    # R 90 in a frame turned by 90 degrees about z, after W 180: x back, y along, z down
+    turned = np.array([[-1, 0, 0], [0, 1, 0], [0, 0, -1]])
+    assert np.abs(line.to.pose[:3, :3] - turned).max() < 1e-12
+    assert (line.speed, line.zone, line.to.name) == (0.25, 0.02, "P[2]")
+    assert next_.speed == pytest.approx(0.05) and next_.zone == 0.01
+    assert arc.via.pose[:3, 3] == pytest.approx([0.5, 0.1, 0.25])
+    assert place(arc) == pytest.approx([0.4, 0.2, 0.25]) and wait == ControllerWait(15, 1.5)
+    told = "\n".join(found.notes)
+    assert "J3 + J2" in told and "DO (line 12)" in told and "TB, TA, DB" in told
+
+
+def test_loops_calls_and_registers_are_resolved():
+    body = (
+        FRAMES
+        + """R[2:speed]=100 ;
+FOR R[1]=1 TO 2 ;
+IF (R[1]=2) THEN ;
+L P[3] R[2]mm/sec FINE ;
+ELSE ;
+L P[2] R[2]mm/sec FINE ;
+ENDIF ;
+ENDFOR ;
+CALL SUB ;
+L P[4] R[9]mm/sec FINE ;
+"""
+    )
+    sub = listing("L P[2] R[2]mm/sec FINE ;\nR[2]=50 ;", point(2, 0.0, 0.0)).replace("CELL", "SUB")
+    found = read("CELL.LS", listing(body), {"SUB.LS": sub.encode()}, **CASE)
+    assert [(move.file, move.line) for move in found.moves] == [
+        *(("", 13), ("", 11), ("SUB.LS", 6), ("", 17))
+    ]
+    assert [move.speed for move in found.moves] == [0.1, 0.1, 0.1, None]
+    assert place(found.moves[2]) == pytest.approx([0.5, 0.0, 0.25])
+    assert any("assumed (line 17)" in note for note in found.notes)
+
+
+def test_other_groups_and_axes_are_external():
+    turned = "\n   GP2:\n\tUF : 1, UT : 1,\t\n\tJ1=    30.000 deg"
+    rail = ",\n\tE1=   250.000  mm"
+    (move,) = program(
+        FRAMES + "L P[2] 100mm/sec FINE ;", point(2, 0.0, 0.0, more=rail + turned)
+    ).moves
+    assert move.to.external == {"E1": 250.0, "GP2J1": 30.0}
+
+
+L2 = FRAMES + "L P[2] 100mm/sec FINE"
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (FRAMES + "L P[9] 100mm/sec FINE ;", "line 8: P[9]: no position of it under /POS"),
+        (FRAMES + "L PR[1] 100mm/sec FINE ;", "line 8: PR[1]: a position register"),
+        (L2 + " Offset,PR[1] ;", "line 8: OFFSET is not read, and may move the target or the way"),
+        (
+            FRAMES + "L P[2] 100mm/sec CNT100 ;",
+            "line 8: CNT100 is no length; program: {zones: {CNT100: 0.05}}",
+        ),
+        (FRAMES + "L P[2] 0mm/sec FINE ;", "line 8: a speed of 0 mm/sec; more than 0"),
+        (
+            "UFRAME_NUM=2 ;\nL P[2] 100mm/sec FINE ;",
+            "line 7: P[2] was taught in UFRAME 1, and UFRAME_NUM is 2",
+        ),
+        ("UFRAME[1]=PR[5] ;\n" + L2 + " ;", "line 9: P[2]: UFRAME[1] is set in the program"),
+        (
+            "UFRAME_NUM=7 ;\nL P[5] 100mm/sec FINE ;",
+            'line 7: P[5]: UFRAME[7] is not in a listing; program: {frames: {"UF',
+        ),
+        (FRAMES + "L P[6] 100mm/sec FINE ;", "line 8: P[6] has no X; a taught position"),
+        (FRAMES + "A P[2] 100mm/sec FINE ;", "line 8: A with 1 points is not read"),
+        (
+            "WAIT DI[1]=ON ;",
+            "line 6: WAIT waits for what is not known: only the controller knows DI[1]",
+        ),
+        ("IF DI[1]=ON,JMP LBL[1] ;", "line 6: IF decides on JMP at line 6"),
+        ("JMP LBL[1] ;", "line 6: 'JMP' is not understood"),
+        (
+            "CALL GRIP ;",
+            "line 6: 'GRIP' is no known instruction, and may move the robot; a file beside",
+        ),
+        (" Weave Sine[5] ;", "line 6: 'WEAVE' is not understood"),
+        (FRAMES + "L P[2] 100mm/se", "line 8: 'L P[2] 100mm/se' has no end; ';', in a whole file"),
+        (FRAMES + "L P[2] 100mm/sec ;", "line 8: 'L P[2] 100mm/sec' has no speed and end"),
+        ("FOR R[1]=1 TO 2 ;\n" + L2 + " ;", "line 6: FOR has no ENDFOR; a whole file"),
+    ],
+)
+def test_what_a_listing_does_not_decide_is_refused_with_its_line(body, told):
+    untaught = point(6, 0.0, 0.0).replace("    0.000  mm,\tY", " ********  mm,\tY")
+    with pytest.raises(cl.ClearanceError) as caught:
+        program(body, POINTS + point(5, 0.0, 0.0, 7) + untaught)
+    assert str(caught.value).startswith("CELL.LS: ") and told in str(caught.value)
+
+
+def test_a_listing_that_is_cut_off_within_its_points_is_refused():
+    text = listing(L2 + " ;")
+    with pytest.raises(cl.ClearanceError, match="no /END is in it"):
+        read("CELL.LS", text[: text.index("P[4:") + 40], **CASE)
+    with pytest.raises(cl.ClearanceError, match="under /POS is no position"):
+        read("CELL.LS", text.replace("};\n/END", "/END"), **CASE)
+
+
+def test_a_listing_may_have_a_mark_and_letters_of_another_page():
+    text = listing(L2 + " ;").replace("/ATTR", '/ATTR\nCOMMENT = "Tür";')
+    one, two = (
+        read("CELL.LS", text.encode(code), **CASE).moves for code in ("utf-8-sig", "latin-1")
+    )
+    assert len(one) == len(two) == 1 and one[0].line == two[0].line == 9

@@ -1,0 +1,211 @@
+"""KRL: the moves that a program makes, by hand; a line for what its files do not decide."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.formats.program.controller_program import AxisTarget, ControllerWait
+from tests.formats.program.reading import read
+
+HEAD = """&ACCESS RVP
+DEF weld( )
+;FOLD INI;%{PE}
+GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM ( )
+BAS (#INITMOV,0 )
+;ENDFOLD (INI)
+"""
+POINTS = """DEFDAT weld PUBLIC
+DECL E6AXIS XHOME={A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 45.0,A6 0.0,E1 0.0}
+DECL E6POS XP1={X 100.0,Y 0.0,Z 50.0,A 90.0,B 0.0,C 180.0,S 2,T 10,E1 0.0}
+DECL FDAT FP1={TOOL_NO 2,BASE_NO 1,IPO_FRAME #BASE,POINT2[] " ",TQ_STATE FALSE}
+DECL LDAT LCPDAT1={VEL 2.0,ACC 100.0,APO_DIST 8.0,APO_MODE #CDIS,ORI_TYP #VAR}
+DECL FRAME GRID[2]
+GRID[1]={X 0.0,Y 10.0,Z 0.0,A 0.0,B 0.0,C 0.0}
+TOOL_DATA[2]={X 0.0,Y 0.0,Z 200.0,A 0.0,B 0.0,C 0.0}
+BASE_DATA[1]={X 500.0,Y 0.0,Z 300.0,A 90.0,B 0.0,C 0.0}
+ENDDAT
+"""
+FRAMES = "$TOOL={X 0,Y 0,Z 100,A 0,B 0,C 0}\n$BASE={X 500,Y 0,Z 300,A 90,B 0,C 0}\n"
+DOWN = "A 0, B 0, C 180"
+
+
+def program(body: str, points: str = POINTS, head: str = HEAD, **asked):
+    """The program whose lines begin behind `HEAD`, of seven lines."""
+    return read("weld.src", f"{head}{body}\nEND\n", {"weld.dat": points.encode()}, **asked)
+
+
+def moves_of(body: str, **asked):
+    return program(body, **asked).moves
+
+
+def place(move) -> list[float]:
+    return move.to.pose[:3, 3].tolist()
+
+
+def test_an_inline_form_takes_tool_base_speed_and_corner_from_its_data():
+    body = """PTP XHOME
+;FOLD LIN P1 CONT Vel=0.5 m/s CPDAT1 Tool[2] Base[1];%{PE}
+$BWDSTART=FALSE
+LDAT_ACT=LCPDAT1
+FDAT_ACT=FP1
+BAS(#CP_PARAMS,0.5)
+LIN XP1 C_DIS
+;ENDFOLD
+SLIN XP1 WITH $VEL = SVEL_CP(0.1, , LCPDAT1), $TOOL = STOOL2(FP1), $LOAD = SLOAD(FP1.TOOL_NO)
+LIN XP1:GRID[1]"""
+    found = program(body)
+    home, line, slow, after = found.moves
+    quarter = math.pi / 2
+    assert home.to.axes == pytest.approx((0.0, -quarter, quarter, 0.0, quarter / 2, 0.0))
+    assert (home.line, home.kind, home.share, home.to.name) == (7, "ptp", 1.0, "XHOME")
+    # the base is turned by 90 degrees about z: its x is the robot's y
+    assert place(line) == pytest.approx([0.5, 0.1, 0.35]) and line.tool[2, 3] == 0.2
+    # A 90 in it makes 180 about z, then C 180 about the new x: x goes back, y stays, z looks down
+    turned = np.array([[-1, 0, 0], [0, 1, 0], [0, 0, -1]])
+    assert np.abs(line.to.pose[:3, :3] - turned).max() < 1e-12
+    assert (line.line, line.zone, line.speed) == (13, 0.008, 0.5)
+    assert (slow.speed, after.speed) == (0.1, 0.5)
+    # 10 mm along y of XP1, which is the robot's y
+    assert place(after) == pytest.approx([0.5, 0.11, 0.35])
+    assert any("interrupts and triggers" in note and "line 4" in note for note in found.notes)
+
+
+def test_calls_loops_and_what_stays_become_moves_with_their_lines():
+    body = (
+        FRAMES
+        + """$VEL.CP=0.2
+LIN {X 0, Y 0, Z 100, A 0, B 0, C 180}
+FOR I=0 TO 2 STEP 2
+  stitch(I*10.0, 5)
+ENDFOR
+LIN_REL {Z 20} #TOOL
+WAIT SEC 0.5
+LIN {Y 7}
+END
+DEF stitch(at:IN, deep:IN)
+  REAL at
+  INT deep
+  LIN {X at}
+  LIN_REL {Z -deep}
+"""
+    )
+    first, one, _, two, down, back, wait, last = moves_of(body)
+    assert [move.line for move in (first, one, two, down, back, last)] == [10, 21, 21, 22, 14, 16]
+    # x of the base is y of the robot
+    assert place(one) == pytest.approx([0.5, 0.0, 0.4]) and place(two)[1:] == pytest.approx(
+        [0.02, 0.395]
+    )
+    assert place(down) == pytest.approx([0.5, 0.02, 0.39])
+    # the tool looks down: its z is the robot's -z; y of the base is -x of the robot
+    assert place(back) == pytest.approx([0.5, 0.02, 0.37])
+    assert place(last) == pytest.approx([0.493, 0.02, 0.37])
+    assert np.array_equal(last.to.pose[:3, :3], back.to.pose[:3, :3]) and last.speed == 0.2
+    assert wait == ControllerWait(15, 0.5)
+
+
+def test_arcs_turn_as_their_types_say_and_a_line_may_keep_the_tool():
+    arc = f"CIRC {{X 10, Y 10, Z 0}}, {{X 20, Y 0, Z 0, {DOWN}}}\n"
+    start = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}\n"
+    types = (
+        "$ORI_TYPE=#CONSTANT\n"
+        + arc
+        + "$CIRC_TYPE=#PATH\n"
+        + arc
+        + f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
+    )
+    _, plain, constant, tangent, line = moves_of(FRAMES + start + arc + types)
+    found = [move.orientation for move in (plain, constant, tangent, line)]
+    assert found == ["to", "constant", "tangent", "constant"]
+    assert plain.via.pose[:3, 3] == pytest.approx([0.49, 0.01, 0.3])
+
+
+def test_turns_of_a_joint_move_become_ranges_of_axes():
+    body = (
+        FRAMES
+        + f"PTP {{X 0, Y 0, Z 0, {DOWN}, S 6, T 18}}\nLIN {{X 9, Y 0, Z 0, {DOWN}, S 0, T 18}}"
+    )
+    ptp, line = moves_of(body)
+    below = [axis for axis, (low, high) in ptp.to.ranges.items() if high < 0.1 and low < -6.0]
+    above = [axis for axis, (low, high) in ptp.to.ranges.items() if low > -0.1 and high > 6.0]
+    assert (below, above) == ([2, 5], [1, 3, 4, 6])
+    assert "S 6" in ptp.to.unchecked and not line.to.ranges
+
+
+def test_the_case_says_what_the_files_name_only():
+    moves = "BAS(#TOOL,3)\n$BASE=BASE_DATA[9]\nLIN XP1 C_DIS\nPTP XP1 C_PTP\n"
+    body = moves + "IF $IN[1] THEN\n$OUT[2]=TRUE\nENDIF\ngrip()"
+    found = program(
+        body,
+        tools={"TOOL_DATA[3]": {"xyz": [0.0, 0.0, 0.05]}},
+        frames={"BASE_DATA[9]": {"xyz": [1.0, 0.0, 0.0]}},
+        zones={"C_DIS": 0.01, "C_PTP": 0.02},
+        skip=["grip"],
+    )
+    line, ptp = found.moves
+    assert place(line) == pytest.approx([1.1, 0.0, 0.05]) and line.tool[2, 3] == 0.05
+    assert (line.zone, ptp.zone) == (0.01, 0.02)
+    assert any("GRIP (line 14)" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("encode", ["utf-8-sig", "latin-1", "crlf"])
+def test_texts_of_controllers_are_read_in_their_encodings(encode):
+    text = f"{HEAD}PTP XHOME ; Grundstellung über dem Tisch\nEND"
+    data = text.replace("\n", "\r\n").encode() if encode == "crlf" else text.encode(encode)
+    (move,) = read("weld.src", data, {"weld.dat": POINTS.encode()}).moves
+    assert isinstance(move.to, AxisTarget) and move.line == 7
+
+
+LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ("PTP XP9", "line 7: the target is not known: 'XP9' is in no file that is given"),
+        ("LIN XP1", "line 7: $TOOL is not known: TOOL_DATA[1] is not in the files"),
+        ("BAS(#TOOL,0)\nBAS(#BASE,4)\nLIN XP1", 'frames: {"BASE_DATA[4]": {xyz: […], rpy: […]}}'),
+        (FRAMES + "LIN XP1 C_DIS", "line 9: C_DIS: $APO.CDIS, its length, is not in the files"),
+        (
+            FRAMES + "$APO.CPTP=50\nPTP XP1 C_PTP",
+            "line 10: C_PTP: is no length; program: {zones: {C_PTP: 0.05}}",
+        ),
+        (FRAMES + "$VEL.CP=0\nLIN XP1", "line 10: $VEL.CP is 0; more than 0"),
+        (
+            FRAMES + "PTP XHOME\nLIN {Z 500}",
+            "line 10: where the tool is before this move is said by axes",
+        ),
+        (
+            FRAMES + LINE + "\nLIN_REL {A 10}",
+            "line 10: a relative move that turns the tool is not read",
+        ),
+        (
+            FRAMES + "PTP {X 0,Y 0,Z 0,A 0,B 0,C 0,S 2,T 18}",
+            "line 9: S 2 and T 18 do not agree on the sign of A5",
+        ),
+        (FRAMES + "$IPO_MODE=#TCP\nLIN XP1", "line 10: $IPO_MODE is #TCP: the tool may stand"),
+        (FRAMES + "$ORI_TYPE=#JOINT\nLIN XP1", "line 10: $ORI_TYPE is #JOINT"),
+        (FRAMES + "LIN XHOME", "line 9: axes are given; X, Y, Z, A, B and C"),
+        (FRAMES + "SPLINE\nSPL XP1\nENDSPLINE", "line 9: a spline is not read"),
+        ("WAIT FOR $IN[3]", "line 7: WAIT FOR waits for what is not known"),
+        ("IF $IN[1] THEN\nPTP XHOME\nENDIF", "line 7: IF decides on PTP at line 8"),
+        ("grip()", "line 7: 'GRIP' is no known instruction, and may move the robot"),
+        ("HALT", "line 7: 'HALT' is not understood"),
+        ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
+        ("PTP XHOME\nEND\nDEF half()\nPTP XHOME\nEN", "line 9: half has no END; a whole file"),
+        ("FOR I=1 TO 3\nPTP XHOME", "line 7: FOR has no ENDFOR; a whole file"),
+    ],
+)
+def test_what_the_files_do_not_decide_is_refused_with_its_line(body, told):
+    text = f"{HEAD}{body}\n" + ("" if body.endswith("EN") else "END\n")
+    with pytest.raises(cl.ClearanceError) as caught:
+        read("weld.src", text, {"weld.dat": POINTS.encode()})
+    assert str(caught.value).startswith("weld.src: ") and told in str(caught.value)
+
+
+def test_a_move_is_never_left_out():
+    with pytest.raises(cl.ClearanceError, match="PTP moves the robot"):
+        program("PTP XHOME", skip=["ptp"])
