@@ -13,7 +13,7 @@ from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import triangle_soup
 from tests.crosscheck.sliding import box, rail_record
 from tests.examples import share_of
-from tests.query.test_clouds_of_all_sizes import GRID, KINDS, answer, scan, solid_of
+from tests.query.test_clouds import GRID, KINDS, answer, scan, solid_of
 
 pytestmark = pytest.mark.peer
 

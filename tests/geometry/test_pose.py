@@ -1,14 +1,18 @@
-"""Poses from quaternions and angles, their inverses, and what is refused."""
+"""Poses and quaternions of rotations: inverses, what is refused, and scipy's to the last bit."""
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadPose, BadShape, ClearanceError, NotFinite
 from clearance.geometry.pose import inverse, pose_from_quaternion, pose_from_rpy, validated_pose
+from clearance.geometry.quaternions import quaternions_of
 
 number = st.floats(-10, 10)
 quaternions = st.lists(st.floats(-1, 1), min_size=4, max_size=4).map(np.array)
@@ -70,3 +74,41 @@ def test_refuses(make, fault):
     with pytest.raises(fault) as caught:
         make()
     assert isinstance(caught.value, ClearanceError) and "\n" not in str(caught.value)
+
+
+_RANDOM = Rotation.random(2000, random_state=7).as_matrix()
+
+
+def _products() -> np.ndarray:
+    """Each turned on by the next: rounding has added up."""
+    found = _RANDOM[:300].copy()
+    for other in _RANDOM[300:320]:
+        found = found @ other
+    return found
+
+
+def _half_turns() -> np.ndarray:
+    axes = np.array([*itertools.product((-1.0, 0.0, 1.0), repeat=3)])
+    axes = axes[np.abs(axes).any(axis=1)]
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
+
+
+@pytest.mark.parametrize(
+    "rotations",
+    [
+        _RANDOM,
+        _products(),
+        _half_turns(),
+        Rotation.create_group("O").as_matrix().round(),
+        Rotation.from_rotvec(1e-9 * _RANDOM[:, 0]).as_matrix(),
+        np.eye(3)[None],
+        np.empty((0, 3, 3)),
+    ],
+    ids=["any", "products", "half turns", "cube", "nearly none", "none", "no matrix"],
+)
+def test_they_are_those_of_scipy_to_the_last_bit(rotations):
+    found = quaternions_of(rotations)
+    expected = Rotation.from_matrix(rotations).as_quat(canonical=True) if len(rotations) else found
+    assert found.tobytes() == np.ascontiguousarray(expected).tobytes()
+    assert found.shape == (len(rotations), 4)

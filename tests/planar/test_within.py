@@ -1,4 +1,4 @@
-"""`within` decides by proven bounds, or says that it cannot; and it goes no further than its limit."""
+"""Hausdorff distances within a limit, by the paper and without trimming: proven, or said not to be."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,10 @@ from clearance.cli.commands import clearance as command
 from clearance.errors import ClearanceError
 from clearance.planar import hausdorff as searched
 from clearance.planar.curve import Curve
-from clearance.planar.hausdorff import Undecided, hausdorff, within
+from clearance.planar.hausdorff import Hausdorff, Undecided, greater_of, hausdorff, within
+from clearance.planar.steady import steady
+from clearance.planar.systems import directed, directions, empty_state, solved, whole
+from tests.examples import some_slow
 from tests.planar.unlike import CUBIC, reparametrised
 
 NEAR = [
@@ -58,5 +61,64 @@ def test_compare_fails_where_the_limit_is_not_decided(tmp_path):
         out = CliRunner().invoke(
             command, ["profile", "compare", str(one), str(two), "--limit", limit]
         )
-        assert out.exit_code == code and f"limit {limit}: {said}" in out.output
+        assert out.exit_code == code and out.output.startswith(f"{said} {limit} (")
     assert "which counts as beyond" in out.output
+
+
+def waves(n, seed):
+    random = np.random.default_rng(seed)
+    c = np.stack([np.arange(n) * 1.0, np.cumsum(random.normal(size=n))], axis=1)
+    return Curve.bspline(c), Curve.bspline(c + [0.0, 0.3] + 0.8 * random.normal(size=(n, 2)))
+
+
+PAIRS = [(n, seed) for n in (5, 10, 15, 30) for seed in range(4)]
+
+
+@pytest.mark.parametrize(("n", "seed"), PAIRS)
+def test_the_papers_answer_is_never_below_and_its_bounds_hold(n, seed):
+    a, b = waves(n, seed)
+    true, published = hausdorff(a, b), hausdorff(a, b, method="paper")
+    assert published.distance >= true.distance - true.error_bound - 1e-13 * a.size
+    assert published.lower <= true.upper and true.lower <= published.upper
+    assert abs(published.distance - true.distance) <= published.error_bound + true.error_bound
+    assert np.hypot(*(published.point_a - published.point_b)) == pytest.approx(published.distance)
+
+
+def test_the_greatest_of_all_roots_is_not_the_distance():
+    """A bump beside one leg of an arch: its tip has a common normal with the other leg, three times as long."""
+    arch = Curve.polyline([[-1, 0], [-1, 4], [1, 4], [1, 0]])
+    bump = Curve.bezier([[-0.9, 1], [-0.4, 1.2], [-0.4, 1.8], [-0.9, 2]])
+    true = hausdorff(bump, arch).directed["a_to_b"]
+    published = hausdorff(bump, arch, method="paper").directed["a_to_b"]
+    tip = bump.point(0.5)[0]
+    assert true.distance == pytest.approx(tip + 1.0) and published.distance >= 1.0 - tip - 1e-12
+    assert published.lower <= true.distance <= published.upper < 0.5
+
+
+HARD = {
+    "the same curve": (Curve.bspline([[0, 0], [1, 2], [3, 1], [4, 4]]),) * 2,
+    "one straight and doubled back": (
+        Curve.bezier([[0, 0], [2, 0], [-1, 0], [1, 0]]),
+        Curve.bezier([[0, 1], [0.3, 0.2], [0.6, 0.3], [1, 1]]),
+    ),
+    "concentric circles": (Curve.circle([0, 0], 1), Curve.circle([0, 0], 1.25)),
+}
+
+
+def untrimmed(a: Curve, b: Curve) -> Hausdorff:
+    """The Hausdorff distance from the systems solved on whole curves: it shares no bound with trimming."""
+    both = [
+        directed(way, solved(way, whole(way.one), whole(way.two), empty_state()))
+        for way in directions(steady(a), steady(b))
+    ]
+    return greater_of(*both)
+
+
+@pytest.mark.parametrize("name", some_slow(HARD, {"the same curve", "concentric circles"}))
+def test_systems_without_end_stop_with_a_true_bound(name):
+    """Infinitely many roots, or too many to tell apart: the budget ends it, and the bound says what is left."""
+    a, b = HARD[name]
+    one, two = hausdorff(a, b), untrimmed(a, b)
+    assert two.lower <= one.upper and one.lower <= two.upper
+    assert two.error_bound <= 0.05 * a.size and two.tally.given_up > 0
+    assert two.tally.systems <= 40_000 and two.tally.intervals <= 900_000

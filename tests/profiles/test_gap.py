@@ -1,9 +1,19 @@
-"""The proven gap of a sketch and an outline, on circles, whose gaps are known."""
+"""Gaps of a sketch and an outline, proven on circles; nearest places on lines and arcs."""
 
+import math
+
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from clearance.planar.curve import Curve
+from clearance.profiles.contour import Contour
+from clearance.profiles.fit_rows import gaps_of_shape, sides_of
 from clearance.profiles.gap import ClosedContours, proven_gap
+from clearance.profiles.pieces import ContourPieces
+from tests.examples import examples
+from tests.oracle.outlines import inside
 
 
 def contours(*circles: tuple[float, float]) -> ClosedContours:
@@ -33,3 +43,40 @@ def test_a_gap_is_never_overstated(circles, around, gap):
 def test_where_one_contour_is_on_the_wrong_side_there_is_no_gap(around):
     found, _ = proven_gap(RING, contours((0.0, 0.5), (3.0, 0.5)), around=around)
     assert found == -1.0
+
+
+def ring(seed, n):
+    """A closed chain about the origin, lines and arcs either way."""
+    rng = np.random.default_rng(seed)
+    turn = np.sort(rng.uniform(0.0, 2.0 * math.pi, n))
+    radius = rng.uniform(0.5, 1.0, n)
+    vertices = np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=1)
+    return Contour(vertices, rng.uniform(-0.9, 0.9, n) * (rng.random(n) < 0.6))
+
+
+@examples(50)
+@given(st.integers(0, 10**6), st.integers(3, 70))
+def test_no_point_of_many_on_the_pieces_is_nearer_than_the_foot(seed, n):
+    pieces = ContourPieces([ring(seed, n), ring(seed + 1, 5)])
+    points = np.random.default_rng(seed).uniform(-2.0, 2.0, (20, 2))
+    piece, share, foot = pieces.feet(points)
+    assert np.allclose(pieces.point(piece, share), foot, atol=1e-12)
+    off = np.hypot(*(points - foot).T)
+    along = pieces.point(*pieces.spread(64))
+    least = np.hypot(*(points[:, None] - along[None]).transpose(2, 0, 1)).min(axis=1)
+    longest = 4.0 * math.pi / 64.0
+    assert (off <= least + 1e-12).all() and (off >= least - longest).all()
+
+
+@pytest.mark.parametrize("bulge", [0.0, 0.1, -0.02])
+def test_beyond_a_sharp_corner_a_point_is_outside_whichever_side_is_nearest(bulge):
+    """Behind a needle's tip the point lies before one of its sides and behind the other's line."""
+    needle = Contour(np.array([[0.0, 0.0], [3.0, -0.2], [3.0, 0.2]]), np.array([bulge, 0.0, bulge]))
+    closed = ClosedContours.of([needle])
+    sides = sides_of(closed.pieces, closed.region)
+    points = np.array([[-0.1, 0.02], [-0.1, -0.02], [-1e-3, 1e-3], [1.0, 0.0], [3.1, 0.3]])
+    other = ContourPieces([Contour(points, np.zeros(len(points)))])
+    samples = np.arange(len(points)), np.zeros(len(points))
+    reported = gaps_of_shape(closed.pieces, sides, other, samples).distance > 0.0
+    rows = [np.column_stack([needle.vertices, needle.bulges]).tolist()]
+    assert reported.tolist() == [bool(inside(p.tolist(), rows)) for p in points]

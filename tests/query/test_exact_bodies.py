@@ -1,15 +1,22 @@
-"""Bodies against rational arithmetic, and the search against brute force, bit for bit."""
+"""Bodies, and one inside another, against rational arithmetic; the search against brute force, bit for bit."""
 
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance
 from clearance.geometry.shapes import sphere
+from clearance.geometry.tree import surface_of
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.search.containment import contained
+from clearance.kernels.search.scratch import new_scratch
 from tests import oracle
-from tests.examples import examples
+from tests.examples import examples, first_fast
+from tests.made_cases import at, torus
 from tests.strategies import BOX_FACES, CUBE_CORNERS, QUARTER_TURNS, boxes, poses, rotations
 
 
@@ -93,3 +100,115 @@ def test_tree_and_brute_force_agree_bit_for_bit():
             for j, other in enumerate(faces_b)
         ]
         assert (near.distance, near.face_a, near.face_b) == min(every)
+
+
+OCTAHEDRON = np.array(
+    [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float
+)
+OCTAHEDRON_FACES = [
+    (0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5),
+]  # fmt: skip
+
+
+def is_contained(a, b, pose_a, pose_b):
+    return contained(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)), new_scratch())[0]
+
+
+def cube(half):
+    return Polyhedron(CUBE_CORNERS * half, BOX_FACES)
+
+
+@pytest.mark.parametrize("turn", first_fast(QUARTER_TURNS, 6))
+def test_rays_through_corners_and_edges_are_no_special_case(turn):
+    """Over an octahedron's tip all rays along an axis meet a corner, over its edges an edge."""
+    outer, tiny = Polyhedron(4.0 * OCTAHEDRON, OCTAHEDRON_FACES), cube(0.125)
+    for x, y, z in [
+        (0.125, 0.125, 0.125),
+        (1.125, 0.125, 0.125),
+        (0.125, 0.125, 5.125),
+        (0.125, 5.0, 0.125),
+    ]:
+        pose = at(*(turn @ (x, y, z)))
+        near = distance(outer, tiny, pose_b=pose)
+        sq = oracle.solid_distance_sq(
+            4.0 * OCTAHEDRON, OCTAHEDRON_FACES, CUBE_CORNERS * 0.125, BOX_FACES, None, pose
+        )
+        assert near.contact == (sq == 0)
+        assert (near.face_a == -1) == (max(x, y, z) < 5.0)
+
+
+@pytest.mark.parametrize("ulps", [-1, 1])
+def test_one_ulp_inside_or_outside(ulps):
+    """A cube an ulp inside another's face is contact, an ulp outside it is not."""
+    inner = np.nextafter(1.0 - 0.25, np.inf * ulps) if ulps < 0 else np.nextafter(1.25, np.inf)
+    pose = at(inner, 0.0, 0.0)
+    near = distance(cube(1.0), cube(0.25), pose_b=pose)
+    sq = oracle.solid_distance_sq(
+        CUBE_CORNERS, BOX_FACES, CUBE_CORNERS * 0.25, BOX_FACES, None, pose
+    )
+    assert near.contact == (sq == 0) == (ulps < 0)
+
+
+@given(poses(reach=1.0), poses(reach=1.0), st.sampled_from([1.0, 0.25, 0.01]), st.booleans())
+@examples(60)
+def test_any_poses_like_the_oracle(pose_a, pose_b, size, swapped):
+    shapes = [(CUBE_CORNERS, BOX_FACES), (CUBE_CORNERS * 0.3 * size, BOX_FACES)]
+    if swapped:
+        shapes.reverse()
+    near = distance(*(Polyhedron(*s) for s in shapes), pose_a=pose_a, pose_b=pose_b)
+    sq = oracle.solid_distance_sq(*shapes[0], *shapes[1], pose_a, pose_b)
+    assert near.contact == (sq == 0)
+    assert oracle.error(near.distance, sq) <= Fraction(near.error_bound)
+
+
+def test_the_inside_of_a_cavity_is_outside():
+    hollow = Polyhedron(
+        np.concatenate([2.0 * CUBE_CORNERS, CUBE_CORNERS]),
+        [*BOX_FACES, *[tuple(8 + i for i in reversed(face)) for face in BOX_FACES]],
+    )
+    assert not distance(hollow, cube(0.5), pose_b=at(0.25, 0.0, 0.125)).contact
+    assert distance(hollow, cube(0.25), pose_b=at(1.5, 0.0, 0.0)).contact
+
+
+def test_both_poses_are_taken_exactly():
+    """Far from the origin the motion between the bodies is not a float; `contained` does not round it."""
+    random = np.random.default_rng(31)
+    a, b = surface_of(cube(1.0)), surface_of(cube(2.0**-60))
+    for _ in range(60):
+        pose_a, pose_b = np.eye(4), np.eye(4)
+        pose_a[:3, :3] = rotations(random, 1)[0]
+        pose_a[:3, 3] = random.normal(size=3)
+        face_point = np.array([1.0, *random.uniform(-0.9, 0.9, 2)])
+        pose_b[:3, 3] = pose_a[:3, :3] @ face_point + pose_a[:3, 3]
+        if (
+            oracle.polyhedron_distance_sq(
+                CUBE_CORNERS, BOX_FACES, CUBE_CORNERS * 2.0**-60, BOX_FACES, pose_a, pose_b
+            )
+            == 0
+        ):
+            continue
+        found = is_contained(a, b, pose_a, pose_b)
+        corner = [pose_b[:3, 3].tolist()[k] for k in range(3)]
+        assert found == oracle.contains(
+            [Fraction(x) + Fraction(2) ** -60 for x in corner], CUBE_CORNERS, BOX_FACES, pose_a
+        )
+
+
+@pytest.mark.slow
+def test_rays_through_many_faces_like_the_oracle():
+    """A ray looks only into the boxes of the tree that it may meet; a ring is met up to four times."""
+    random = np.random.default_rng(32)
+    ring = torus(1.0, 0.4, 14, 7)
+    faces = ring.face_vertices.reshape(-1, 3).tolist()
+    n_inside = 0
+    for _ in range(120):
+        pose_a, pose_b = np.eye(4), np.eye(4)
+        pose_a[:3, :3] = rotations(random, 1)[0]
+        pose_a[:3, 3] = random.normal(size=3)
+        x = random.uniform((-1.4, -1.4, -0.4), (1.4, 1.4, 0.4))
+        pose_b[:3, 3] = pose_a[:3, :3] @ x + pose_a[:3, 3]
+        near = distance(ring, cube(2.0**-20), pose_a=pose_a, pose_b=pose_b)
+        corner = [Fraction(x) + Fraction(2) ** -20 for x in pose_b[:3, 3].tolist()]
+        assert near.contact == oracle.contains(corner, ring.vertices, faces, pose_a)
+        n_inside += near.contact
+    assert 20 < n_inside < 100

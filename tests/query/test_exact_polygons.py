@@ -1,4 +1,4 @@
-"""Polygon pairs against rational arithmetic, family by family: contact, distance, bound and witness points."""
+"""Polygon pairs against rational arithmetic, family by family; faces that pierce one another, and needles."""
 
 import functools
 from fractions import Fraction
@@ -8,9 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import clearance as cl
 from clearance import polygon_distance, polygon_distances
 from tests import oracle
 from tests.examples import examples, share_of
+from tests.oracle.polygons import polygon_distance_sq
+from tests.oracle.rationals import root
 from tests.strategies import FAMILIES, polygon_pairs
 
 
@@ -145,3 +148,97 @@ def test_near_parallel_segments_of_the_field():
     assert oracle.error(near.distance, oracle.segment_distance_sq(*p, *q)) <= Fraction(
         near.error_bound
     )
+
+
+BESIDE = (0.0, 1e-300, 1e-17, 1e-16, 1e-14, 1e-11, 1e-6, 1e-2, 0.5)
+
+
+def convex(rng: np.random.Generator, n_corners: int, slenderness: float) -> np.ndarray:
+    """(n, 3) a convex polygon in a coordinate plane, exactly flat."""
+    angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, n_corners))
+    corners = np.column_stack([np.cos(angles), slenderness * np.sin(angles), np.zeros(n_corners)])
+    return corners[:, rng.permutation(3)]
+
+
+@examples(300)
+@given(
+    st.integers(0, 2**32 - 1), st.integers(3, 7), st.sampled_from(BESIDE), st.booleans(),
+    st.sampled_from([1.0, 1e-3, 1e-7]), st.sampled_from([0.0, 1.0, 1e4]),
+)  # fmt: skip
+def test_contact_of_a_piercing_face_is_exact(seed, n_corners, beside, outside, slenderness, away):
+    """A triangle goes through the plane of a face beside a point of an edge, its corners far from the face."""
+    rng = np.random.default_rng(seed)
+    face = convex(rng, n_corners, slenderness)
+    i = rng.integers(n_corners)
+    corner, following = face[i], face[(i + 1) % n_corners]
+    at = corner + rng.uniform(-0.1, 1.1) * (following - corner)
+    out = at - face.mean(axis=0)
+    at = at + (1.0 if outside else -1.0) * beside * out / max(np.linalg.norm(out), 1e-300)
+    direction = rng.normal(size=3)
+    piercing = np.array(
+        [at - direction, at + rng.uniform(0.5, 2.0) * direction, at + 3.0 * rng.normal(size=3)]
+    )
+    shift = away * rng.integers(-4, 5, 3)
+    face, piercing = face + shift, piercing + shift
+    found = polygon_distance(face, piercing), polygon_distance(piercing, face)
+    truth = polygon_distance_sq(face, piercing)
+    for answer in found:
+        assert answer.contact == (truth == 0)
+        assert answer.distance == pytest.approx(
+            float(truth) ** 0.5, rel=1e-12, abs=1e-15 * (1.0 + 4.0 * away)
+        )
+
+
+NEARLY_TOUCHING = [
+    (
+        [[-1.382616204177022, 0.19321875160259425, 0.4524802510839217],
+         [-1.3945506843426108, -1.4288736304505336, 1.0828683963389525],
+         [-1.3839569494050161, 0.010990216382078921, 0.5232990940055253]],
+        [[-1.3932807543344152, -1.2562691336749507, 1.015789708275826],
+         [-2.3932807543344152, 4.743730866325049, 3.0157897082758263],
+         [-2.3932807543344152, -0.25626913367495074, 3.0157897082758263]],
+    ),
+    (
+        [[0.0420194719450008, -0.17551645199409543, 0.8012928872505272],
+         [-0.5105623469439452, -0.8166631234553791, -2.8778638394402525],
+         [-0.33810111681757543, -0.684415232835813, -1.653702894154667]],
+        [[-0.1305638617616431, -0.5752223406368394, -0.12469587432396158],
+         [0.16070942116269363, 0.0993714921154576, 1.43811901353772],
+         [-0.05228155381433528, -0.3939191841820066, 0.2953246344274365]],
+    ),
+    (
+        [[0.7001662121893211, -0.5867323946702635, -1.6141242993134088e-09],
+         [-0.7798667078120805, 3.388621482660107, -5.554496122519355e-10],
+         [-0.11449539329571876, -0.41981100404052507, -7.374183959082534e-10]],
+        [[-0.8816547085836236, 3.5798768403937817, -0.015086949163100863],
+         [-0.11144646638529676, 2.132688058070693, 0.09907279539971088],
+         [-0.555591149920125, 2.967217174388166, 0.03324197089699118]],
+    ),
+]  # fmt: skip
+
+
+def off_by(p, q):
+    """(|distance - truth|, error bound), both exact."""
+    near = cl.polygon_distance(p, q)
+    truth = root(polygon_distance_sq(p.tolist(), q.tolist()), 80)
+    return abs(Fraction(near.distance) - truth), Fraction(near.error_bound)
+
+
+@pytest.mark.parametrize("pair", NEARLY_TOUCHING, ids=["needle", "coplanar", "flat"])
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_bound_holds_over_a_slender_triangle(pair, swapped):
+    p, q = (np.array(side) for side in (reversed(pair) if swapped else pair))
+    error, bound = off_by(p, q)
+    assert 0 < error <= bound
+
+
+def test_the_bound_holds_under_corners_a_hair_over_needles():
+    random = np.random.default_rng(71)
+    for _ in range(60):
+        a, b = random.normal(size=(2, 3))
+        off = 10.0 ** random.uniform(-9, -3) * random.normal(size=3)
+        needle = np.array([a, b, a + random.uniform(0.2, 0.8) * (b - a) + off])
+        over = needle.mean(axis=0) + 10.0 ** random.uniform(-17, -8) * random.normal(size=3)
+        other = np.array([over, over + random.normal(size=3), over + random.normal(size=3)])
+        error, bound = off_by(needle, other)
+        assert error <= bound

@@ -1,18 +1,29 @@
-"""The folder of resumable rows: only one that we made and marked is emptied, and never through a link."""
+"""Records: plain data, its status by hand, and the folder of resumable rows, which goes through no link."""
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
+from types import FunctionType, MethodType
+from typing import Any
 
+import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.errors import Unwritable
 from clearance.record.rows import folder as rows_folder
 from clearance.record.rows.folder import LOCK, MARK
 from clearance.record.rows.resumable import open_resumable_rows
+from clearance.record.status import STATUSES, status_codes, status_of
+from clearance.world.case import Case, Limits
+from clearance.world.motion import Motion
+from clearance.world.timeline import Timeline
 
 
 class Interrupted(BaseException):
@@ -179,3 +190,101 @@ def test_a_folder_taken_away_is_gone_at_once(
         monkeypatch.setattr(rows_folder.shutil, "rmtree", watched)
     assert seen == [False]
     assert list(tmp_path.iterdir()) == []
+
+
+SCENES = Path(__file__).parents[2] / "scenes"
+GIVEN = Case, Motion, Timeline
+"""What a record was made of, which other rooms answer for."""
+
+
+def closures(value: Any, path: str, seen: set[int]) -> Iterator[str]:
+    """Where a function is kept in a value, or in anything that it holds."""
+    if id(value) in seen or isinstance(value, GIVEN):
+        return
+    seen.add(id(value))
+    if isinstance(value, FunctionType | MethodType | partial):
+        yield path
+    elif isinstance(value, Mapping):
+        for name, one in value.items():
+            yield from closures(one, f"{path}[{name}]", seen)
+    elif isinstance(value, list | tuple | set | frozenset):
+        for i, one in enumerate(value):
+            yield from closures(one, f"{path}[{i}]", seen)
+    elif dataclasses.is_dataclass(value):
+        for name, one in vars(value).items():
+            yield from closures(one, f"{path}.{name}", seen)
+
+
+def kinds(value: Any, seen: set[int]) -> Iterator[str]:
+    """The rooms of all objects that a value holds."""
+    if id(value) in seen or isinstance(value, GIVEN):
+        return
+    seen.add(id(value))
+    held: tuple[Any, ...] = ()
+    if isinstance(value, Mapping):
+        held = tuple(value.values())
+    elif isinstance(value, list | tuple | set | frozenset):
+        held = tuple(value)
+    elif dataclasses.is_dataclass(value):
+        yield type(value).__module__
+        held = tuple(vars(value).values())
+    for one in held:
+        yield from kinds(one, seen)
+
+
+@pytest.fixture(scope="module")
+def run() -> cl.Run:
+    return cl.check(SCENES / "box_box" / "case.yaml", limits=Limits(0.04, 0.06))
+
+
+def test_no_function_is_kept_in_a_record(run):
+    assert [*closures(run.record, "record", set())] == []
+
+
+def test_a_record_holds_no_object_of_a_room_that_measures(run):
+    rooms = {kind.split(".")[1] for kind in kinds(run.record, set())}
+    assert "record" in rooms and not rooms & {"simulate", "run", "budget", "kernels"}
+
+
+def test_the_session_holds_what_the_record_does_not(run):
+    """So that the two tests above would see it."""
+    assert [*closures(run.session.rules, "rules", set())] != []
+    rooms = {kind.split(".")[1] for kind in kinds(run.session.rules, set())}
+    assert "simulate" in rooms
+
+
+def test_reading_a_record_and_its_verdict_measures_nothing_more(run, monkeypatch):
+    """All that moments, pairs and stretches are measured with is out of order."""
+    from clearance.findings.verdict import verdict_of
+    from clearance.query.pair_query import Query
+
+    def refuse(*given, **options):
+        raise AssertionError("a record is read, nothing is measured")
+
+    monkeypatch.setattr(Query, "distances", refuse)
+    monkeypatch.setattr("clearance.simulate.measure.moment_query.distance", refuse)
+    monkeypatch.setattr("clearance.simulate.measure.measure.sweep", refuse)
+    monkeypatch.setattr("clearance.simulate.measure.certify.certify", refuse)
+    record = run.record
+    assert verdict_of(record).status == "violated"
+    assert record.worst.clearance < 0.04 and record.nearest is record.worst
+    assert record.certificate.worst is not None and record.steps.num_rows == 301
+
+
+def test_a_number_has_the_status_of_a_row() -> None:
+    clearances = [-0.01, -0.0, 0.0, 1e-300, 0.004, 0.005, 0.01, 0.02, 0.03, np.inf, np.nan]
+    limits = [Limits(), Limits(0.005), Limits(0.005, 0.02)]
+    for own, touches in itertools.product(limits, (None, False, True)):
+        touching = None if touches is None else np.full(len(clearances), touches)
+        codes = status_codes(np.array(clearances), own, touching)
+        rows = [str(STATUSES[code]) for code in codes]
+        assert [status_of(value, own, touches) for value in clearances] == rows
+
+
+def test_what_is_at_a_limit_keeps_it_and_at_0_it_is_broken() -> None:
+    clearances = np.array([0.0, 0.0049, 0.005, 0.0199, 0.02])
+    apart = np.zeros(5, dtype=bool)
+    told = ["violated", "violated", "near", "near", "clear"]
+    assert [STATUSES[code] for code in status_codes(clearances, Limits(0.005, 0.02), apart)] == told
+    (code,) = status_codes(np.zeros(1), Limits(), np.zeros(1, dtype=bool))
+    assert STATUSES[code] == "violated" and status_of(0.0, Limits()) == "contact"

@@ -1,5 +1,7 @@
 """Which bodies move by one clock."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,8 +12,10 @@ from clearance.world.case import Clock
 from clearance.world.clocks import NO_CLOCK, clocks_of
 from clearance.world.forest import owner_of
 from clearance.world.mount import Mount
+from clearance.world.plausibility import notices_of
 from clearance.world.rules import Rule
 from clearance.world.timing import Window
+from tests.formats.making_cell import load_cell
 
 
 def body(name: str) -> cl.Body:
@@ -49,3 +53,106 @@ def test_a_link_may_have_a_stroke_in_its_name():
 def test_a_rule_has_levels_like_limits(level):
     with pytest.raises(BadDimension):
         Rule(("a", "b"), fail=level)
+
+
+EPOCH = 1750851666.25
+PATH = "time,shoulder\n{0},0\n{1},0.5\n"
+REPORTED = (
+    "CHECK CLOCKS: obstacle 'door' moves from 0 to 1 s, robot 'left' moves from 1750851666.25 to 1750851667.25 s: "
+    "they never move together; do their times come from one clock? If so, give the later table a `start:`, or the "
+    "earlier one `after: hold`"
+)
+
+
+def cell(folder, start, *changes, **files):
+    """The door moves from 0 to 1 s, and the left arm for a second from `start` on."""
+    windows = ("from: 0.25, until: 0.75", f"from: {start + 0.25}, until: {start + 0.75}", "from: 0.5, until: 1",
+               f"from: {start}", "until: 0.5", f"until: {start + 0.5}")  # fmt: skip
+    path = PATH.format(repr(start), repr(start + 1.0))
+    return load_cell(folder, *windows, *changes, trajectory=path, **files)
+
+
+def reported(case):
+    return [notice.text for notice in notices_of(case) if notice.kind == "clocks"]
+
+
+def test_an_arm_by_the_clock_on_the_wall_and_a_door_from_0_are_suspect(tmp_path):
+    assert reported(cell(tmp_path, EPOCH)) == [REPORTED]
+
+
+@pytest.mark.parametrize("start", [0.0, 0.5, 1.0])
+def test_tables_with_a_moment_in_common_are_not(tmp_path, start):
+    assert not reported(cell(tmp_path, start))
+
+
+@pytest.mark.parametrize(
+    ("door", "arm"),
+    [("{file: door.csv, after: hold}", None), ("{file: door.csv, after: absent}", None),
+     ("{file: door.csv, after: loop}", None), (None, "{file: path.csv, start: 0}"),
+     ("{file: door.csv, start: 2.5}", None)],
+)  # fmt: skip
+def test_what_the_case_says_is_meant(tmp_path, door, arm):
+    changes = ["moves: door.csv", f"moves: {door}"] if door else []
+    changes += ["trajectory: path.csv", f"trajectory: {arm}"] if arm else []
+    assert not reported(cell(tmp_path, 3.0, *changes))
+
+
+def test_when_the_earlier_begins_does_not_say_why_the_later_is_later(tmp_path):
+    assert reported(cell(tmp_path, EPOCH, "moves: door.csv", "moves: {file: door.csv, start: 0}"))
+
+
+def test_a_table_between_two_ties_them(tmp_path):
+    """The right arm moves from 0.5 to 3.5 s, so all three are of one clock."""
+    right = "joints: {shoulder: 0.2}", "trajectory: right.csv"
+    between = PATH.format(0.5, 3.5)
+    found = cell(tmp_path, 3.0, *right, right__csv=between)
+    assert not reported(found)
+
+
+def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
+    case = cell(tmp_path, EPOCH)
+    door = next(one for one in case.obstacles if one.moves is not None)
+    moves = replace(
+        door.moves,
+        **{key: getattr(door.moves, key)[:1] for key in ("times", "positions", "quaternions")},
+    )
+    obstacles = [replace(one, moves=moves) if one is door else one for one in case.obstacles]
+    assert not reported(replace(case, obstacles=tuple(obstacles)))
+
+
+def two_recordings(folder, apart, *changes):
+    """Both arms by recordings of which the right one's first stamp is some seconds after the left one's."""
+    files = "joints: {shoulder: 0.2}", "trajectory: path.csv"
+    case = load_cell(folder, *files, *changes)
+    left, right = (
+        replace(one, trajectory=replace(one.given_trajectory, began=EPOCH + late))
+        for one, late in zip(case.robots, (0.0, apart), strict=True)
+    )
+    return replace(case, robots=(left, right))
+
+
+def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
+    assert reported(two_recordings(tmp_path, 3.25)) == [
+        "CHECK CLOCKS: by its stamps the recording of robot 'right' begins 3.25 s after that of 'left', "
+        "but it is taken from 0 s; beside its file, `start: 3.25` keeps the delay and `start: 0` drops it"
+    ]
+    assert "robot 'left' begins 3.25 s after" in reported(two_recordings(tmp_path, -3.25))[0]
+    assert not reported(two_recordings(tmp_path, 5e-4))
+
+
+def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_path):
+    """Two drivers of one rate never send their first messages at one moment. These send two a second."""
+    case = two_recordings(tmp_path, 0.25)
+    (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
+    assert one.severity == "warning" and "begins 0.25 s after that of 'left'" in one.text
+    (one,) = [n for n in notices_of(two_recordings(tmp_path, 1.25)) if n.kind == "clocks"]
+    assert one.severity == "suspect"
+
+
+@pytest.mark.parametrize("start", [0, 0.5, 3.25])
+def test_a_recording_begins_when_the_case_says(tmp_path, start):
+    said = (
+        "trajectory: path.csv}\nscene",
+        f"trajectory: {{file: path.csv, start: {start}}}}}\nscene",
+    )
+    assert not reported(two_recordings(tmp_path, 3.25, *said))

@@ -1,10 +1,12 @@
 """URDF to a robot: shapes in their link's frame, and joints as written."""
 
+import math
+
 import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadSyntax
+from clearance.errors import BadSyntax, NothingToMeasure
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.mimics import followers
@@ -12,6 +14,7 @@ from clearance.world.notice import Severity
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests.formats.making import ARM, cube_stl, signed_volume
+from tests.formats.making_case import changed, load_small
 from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, robot
 
 
@@ -290,3 +293,75 @@ def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):
     arm = load_urdf(tmp_path, robot(*(link(BOX, name) for name in "abcde"), *joints))
     told = "arm.urdf: joints without <limit>, taken as unlimited: 'j', 'k'"
     assert [note for note in arm.notes if "without <limit>" in note] == [told]
+
+
+URDF = """<robot name="r"><link name="a"/><link name="b"><collision><geometry><sphere radius="0.1"/></geometry>
+</collision></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+{limit}</joint></robot>"""
+
+
+@pytest.mark.parametrize(
+    "given, velocity",
+    [
+        ('<limit lower="-1" upper="1" velocity="2.5"/>', 2.5),
+        ('<limit lower="-1" upper="1" velocity="0"/>', math.inf),
+        ('<limit lower="-1" upper="1" velocity="nan"/>', math.inf),
+        ('<limit lower="-1" upper="1" velocity="fast"/>', math.inf),
+        ('<limit lower="-1" upper="1"/>', math.inf),
+        ("", math.inf),
+    ],
+)
+def test_a_speed_that_is_one_is_read_and_nothing_is_refused_for_it(tmp_path, given, velocity):
+    (tmp_path / "r.urdf").write_text(URDF.format(limit=given))
+    (joint,) = cl.load_urdf(tmp_path / "r.urdf").joints
+    assert joint.velocity == velocity and "velocity" not in repr(joint)
+
+
+VISUAL = '<visual><geometry><box size="2 2 2"/></geometry></visual>'
+
+
+def arm(base: str, *others: str) -> str:
+    """A base and links that turn on it, by what they are made of."""
+    links = [link(shapes, f"link{i}") for i, shapes in enumerate(others)]
+    joints = [joint(f"joint{i}", "base", f"link{i}") for i in range(len(others))]
+    return robot(link(base, "base"), *links, *joints)
+
+
+def test_links_that_are_seen_but_not_measured_are_a_warning_of_their_own(tmp_path):
+    (notice,) = load_urdf(tmp_path, arm(BOX, VISUAL, "", VISUAL, BOX + VISUAL)).notices
+    assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
+    assert notice.text.startswith(
+        "2 links have a visual but no collision shape and are not measured: 'link0', 'link2'; "
+    )
+    assert "geometry: collision_or_visual" in notice.text
+    (notice,) = load_urdf(tmp_path, arm(BOX, *([VISUAL] * 9))).notices
+    assert "9 links have" in notice.text and "'link5' and 3 more" in notice.text
+
+
+def test_bare_frames_are_a_note_and_no_warning(tmp_path):
+    found = load_urdf(tmp_path, arm(BOX, "", BOX))
+    assert found.notices == ()
+    assert found.notes == ("arm.urdf: 1 link without any shape: link0",)
+
+
+def test_collision_or_visual_measures_all_that_has_a_shape(tmp_path):
+    urdf = arm(BOX + VISUAL, VISUAL, "")
+    found = load_urdf(tmp_path, urdf, geometry="collision_or_visual")
+    assert found.notices == ()
+    sizes = {body.name: float(body.shape.bounds[1, 0]) for body in found.bodies}
+    assert sizes == {"base": 0.5, "link0": 1.0}
+    case = changed("arm.urdf", "arm.urdf, geometry: collision_or_visual")
+    loaded = load_small(tmp_path, case, urdf=urdf.replace("joint0", "shoulder"))
+    assert len(loaded.robots[0].robot.bodies) == 2
+
+
+@pytest.mark.parametrize(
+    ("shape", "asked", "other"), [(VISUAL, "collision", "visual"), (BOX, "visual", "collision")]
+)
+def test_a_robot_of_the_other_kind_of_shapes_is_told_what_to_give(tmp_path, shape, asked, other):
+    with pytest.raises(NothingToMeasure) as caught:
+        load_urdf(tmp_path, arm(shape, shape), geometry=asked)
+    assert str(caught.value) == (
+        f"arm.urdf: no link has a {asked} shape, 2 links have a {other} shape; "
+        f"give robot: {{geometry: {other}}}"
+    )

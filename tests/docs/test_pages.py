@@ -1,4 +1,4 @@
-"""The page Installing follows the project file, and holds what it says of networks and of the cache."""
+"""Pages follow the project: Installing its file, the changelog its release."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+import clearance
 from clearance.geometry import surface_cache
 from clearance.geometry.shapes import box
 from tests.docs.code_blocks import GUIDE, ROOT
@@ -92,3 +93,11 @@ def test_the_cache_lies_where_the_page_says(monkeypatch, tmp_path):
     place = surface_cache._path_of(box((1, 1, 1)))
     assert place.is_relative_to(tmp_path / "caches" / "clearance")
     assert f"{surface_cache.MOST_BYTES // 1_000_000} MB" in PAGE
+
+
+def test_the_newest_release_is_this_version():
+    text = (ROOT / "clearance" / "CHANGELOG.md").read_text(encoding="utf-8")
+    releases = re.findall(r"^## \[(\d[^\]]*)\] - (\d{4}-\d\d-\d\d)$", text, re.MULTILINE)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert releases[0][0] == project["version"] == clearance.__version__
+    assert [date for _, date in releases] == sorted((date for _, date in releases), reverse=True)
