@@ -27,6 +27,7 @@ CASES = {
     "panda_shelf": "A Panda reaches into a shelf and pushes against a carton.",
     "dual_arm_handover": "Two Pandas hand a bar over in mid-air, onto a tray that drives on.",
     "turntable_cell": "An arm on a carriage looks at two towers that turn past it.",
+    "welding_cell": "A robot program welds two parts on a turntable, past a clamp.",
     "door_and_arm": "An arm goes through a hatch whose door swings past it.",
 }
 """Scenes, and a sentence on what happens."""
