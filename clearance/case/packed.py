@@ -24,6 +24,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from clearance.errors import BadPack, at
+from clearance.formats.files.input_files import regular_file
 from clearance.formats.files.mesh_paths import VARIABLES
 from clearance.formats.files.place import Place, reading_in
 from clearance.formats.schema.strict_model import StrictModel, validated
@@ -128,7 +129,7 @@ def unpacked(path: Path) -> Iterator[Unpacked | None]:
         yield None
         return
     with at(path.name):
-        with path.open("rb") as file:
+        with regular_file(path) as file:
             found = _unpacked(path, hashlib.file_digest(file, "sha256").hexdigest())
         with reading_in(found.place):
             yield found

@@ -34,8 +34,12 @@ class ExitCode(IntEnum):
     PIPE_CLOSED = 141
 
 
-QUIET = frozenset({"--quiet", "-q", "--json"})
+QUIET = frozenset({"--quiet", "--brief", "-q", "--json"})
 """Options with which nobody hears how far a command is."""
+
+
+COMPLETE = "_CLEARANCE_COMPLETE"
+"""The variable by which a shell asks for completions, as click has it."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -77,6 +81,10 @@ def _dispatch(arguments: list[str]) -> int:
     from clearance.errors import ClearanceError, Incomplete
     from clearance.progress import never_silent
 
+    if COMPLETE in os.environ:  # a shell asks how a command line may go on
+        from click.shell_completion import shell_complete
+
+        return shell_complete(clearance, {}, "clearance", COMPLETE, os.environ[COMPLETE])
     try:
         _require_text(arguments)
         with clearance.make_context("clearance", arguments) as context:

@@ -39,6 +39,13 @@ ARGUMENTS = {"recorded": "RUN"}
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+@click.option("-q", "--brief", is_flag=True, help="Print the verdict and errors only.")
+@click.option(
+    "--watch",
+    "as_watch",
+    is_flag=True,
+    help="Check again whenever an input file changes, until Ctrl-C; the page of --out loads itself anew.",
+)
 def check(
     case_file: Path,
     jobs: int | None,
@@ -46,6 +53,8 @@ def check(
     baseline: Path | None,
     as_json: bool,
     quiet: bool,
+    brief: bool,
+    as_watch: bool,
     **given: Any,
 ) -> int:
     """Measures the least clearance of every step of CASE.yaml.
@@ -60,30 +69,44 @@ def check(
     options = made(CheckOptions, said(CheckOptions, given), spelled)
     outputs = Outputs(**given)
     outputs.require_writable()
+    printed = PrintedOutput(as_json, quiet, brief)
     _require_file(case_file)
-    from clearance.case.case_file import load_case
-    from clearance.files import refuse_inputs
-    from clearance.run import Question
 
-    question = Question.of(load_case(case_file), options, spelled)
-    refuse_inputs(outputs.files, question.case.files_read)
-    before = _baseline_of(baseline, outputs.files)
-    require_receipt(receipt, outputs.out, question)
-    run = _answer(question, before, outputs, jobs, PrintedOutput(as_json, quiet))
-    write_receipt_of(run, receipt, outputs.out, case_file, options, quiet=as_json or quiet)
-    return ExitCode(run.verdict.exit_code)
+    def checked() -> ExitCode:
+        from clearance.case.case_file import load_case
+        from clearance.files import refuse_inputs
+        from clearance.run import Question
+
+        question = Question.of(load_case(case_file), options, spelled)
+        refuse_inputs(outputs.files, question.case.files_read)
+        before = _baseline_of(baseline, outputs.files)
+        require_receipt(receipt, outputs.out, question)
+        run = _answer(question, before, outputs, jobs, printed)
+        write_receipt_of(run, receipt, outputs.out, case_file, options, quiet=not printed.has_words)
+        return ExitCode(run.verdict.exit_code)
+
+    if not as_watch:
+        return checked()
+    if receipt is not None:
+        raise click.UsageError(
+            "--watch and --receipt exclude each other: a receipt is of one report"
+        )
+    from clearance.cli.watch import watch
+
+    watch(checked, outputs.out)
 
 
 class PrintedOutput(NamedTuple):
-    """What is printed: the summary as JSON, nothing, or, where neither is asked for, words."""
+    """What is printed: the summary as JSON, nothing, the verdict, or, where none is asked for, all."""
 
     as_json: bool
     quiet: bool
+    brief: bool = False
 
     @property
     def has_words(self) -> bool:
-        """True if people read it."""
-        return not (self.as_json or self.quiet)
+        """True if people read all of it."""
+        return not (self.as_json or self.quiet or self.brief)
 
 
 def _answer(
@@ -165,7 +188,12 @@ def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:
         from clearance.report.summary import json_text
 
         click.echo(json_text(run.summary), nl=False)
-    elif not printed.quiet:
+    elif printed.has_words:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
+    elif printed.brief:
+        from clearance.report.terminal import print_answer
+        from clearance.report.topics import verdict
+
+        print_answer(run.report, None, topics=[verdict.TOPIC])

@@ -7,6 +7,7 @@ as soon as it is known. Not for: what a topic says (`topics`).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from rich.console import Console
@@ -17,22 +18,27 @@ from clearance.errors import shown
 from clearance.findings.verdict import contact_line, moment_line
 from clearance.record.wording import limits_text, mm
 from clearance.report.model import ReportModel
-from clearance.report.topic import TerminalTable
+from clearance.report.topic import TerminalTable, Topic
 from clearance.report.topics import IN_TERMINAL
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _PLAIN_WIDTH = 160  # columns for tables where the output is not a terminal
 
 
-def print_answer(model: ReportModel, out: Path | None, console: Console | None = None) -> None:
+def print_answer(
+    model: ReportModel,
+    out: Path | None,
+    console: Console | None = None,
+    topics: Iterable[Topic] = IN_TERMINAL,
+) -> None:
     """Prints the answer on stdout, or on `console`.
 
     Args:
-        out: the folder of the report, if there is one.
+        out: the folder of the report, if it is to be named. topics: what is printed below the headline.
     """
     console = console or terminal()
     _print(console, _headline(model))
-    for topic in IN_TERMINAL:
+    for topic in topics:
         for line in () if topic.lines is None else topic.lines(model):
             if isinstance(line, TerminalTable):
                 console.print(terminal_table(line))

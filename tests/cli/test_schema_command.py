@@ -157,3 +157,12 @@ def test_a_case_in_which_nothing_moves_is_marked_and_refused(errors):
     assert errors(text)
     with pytest.raises(BadInput, match="'trajectory' is missing"):
         validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+
+
+def test_a_shell_is_told_how_a_command_line_may_go_on(monkeypatch, capsys):
+    monkeypatch.setenv("_CLEARANCE_COMPLETE", "zsh_complete")
+    for words, told in (("clearance wor", "workspace"), ("clearance check --watc", "--watch")):
+        monkeypatch.setenv("COMP_WORDS", words)
+        monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
+        assert run([]) == 0
+        assert told in capsys.readouterr().out.splitlines()

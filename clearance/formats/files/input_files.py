@@ -13,6 +13,7 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cached_property
 from io import BufferedReader, BytesIO
 from pathlib import Path
@@ -166,8 +167,38 @@ class _NotRegular(OSError):
     """A pipe, socket or device."""
 
 
+FileState = tuple[int, int, int]
+"""What changes with a file: time [ns] of its content, size, inode."""
+
+_OPENED: ContextVar[dict[Path, FileState | None] | None] = ContextVar("opened", default=None)
+
+
+@contextmanager
+def files_opened() -> Iterator[dict[Path, FileState | None]]:
+    """Collects the files that are opened in the block, missing ones too, each as it was just before."""
+    opened: dict[Path, FileState | None] = {}
+    token = _OPENED.set(opened)
+    try:
+        yield opened
+    finally:
+        _OPENED.reset(token)
+
+
+def state_of(path: Path) -> FileState | None:
+    """What a file is like now; None if it is not there."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
 def regular_file(path: Path) -> BufferedReader:
     """Opens a file on disk; a pipe or a device, which may never end, is not waited for."""
+    opened = _OPENED.get()
+    if opened is not None:
+        place = Path(os.path.abspath(path))
+        opened.setdefault(place, state_of(place))
     descriptor = os.open(
         path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     )
