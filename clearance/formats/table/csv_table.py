@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, islice
 from typing import BinaryIO, NamedTuple
@@ -76,7 +77,7 @@ def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTabl
         names: of the columns, where there is no header.
     """
     with opened() as file:
-        start = file.read(65536).removeprefix(b"\xef\xbb\xbf").lstrip().partition(b"\n")[0]
+        start = file.read(65536).removeprefix(BOM_UTF8).lstrip().partition(b"\n")[0]
         if _is_of_blanks(start):
             return as_written(blanks_as_tabs(opened), names)
         others = [mark for mark in _SEPARATORS if mark.encode() in start]
@@ -215,7 +216,9 @@ def _blocks(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[n
     swap = str.maketrans(",.", ".,")
     try:
         with table.opened() as file:
-            text = io.TextIOWrapper(file, "utf-8-sig", "surrogateescape", newline="")
+            if file.read(3) != BOM_UTF8:
+                file.seek(0)
+            text = io.TextIOWrapper(file, "ascii", "surrogateescape", newline="")  # as numbers are
             lines = (line for line in islice(text, _n_above(table), None) if line.strip("\r\n"))
             if table.decimal == ",":
                 lines = (line.translate(swap) for line in lines)

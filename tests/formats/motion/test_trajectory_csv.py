@@ -105,5 +105,6 @@ def test_tables_are_read_block_by_block(monkeypatch):
     assert parse(rows).positions.ravel().tolist() == [10, 11, 12, 13]
     last = parse(rows + "4,14").times
     assert last.tolist() == [0, 1, 2, 3, 4]
+    assert parse("\ufeff" + rows).times.tolist() == [0, 1, 2, 3]
     with pytest.raises(BadSyntax, match=r"line 9: 'x' in column 'a' is not a number"):
         parse(rows + "4,x\n")
