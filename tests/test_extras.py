@@ -127,7 +127,7 @@ def test_each_door_says_which_extra_it_needs(hidden, tmp_path):
     dxf = refused_by(read_dxf, str(tmp_path / "drawing.dxf"))
     assert dxf == "a DXF drawing needs ezdxf, which is not installed; pip install 'clearance[dxf]'"
     robot = refused_by(resolved, "pybullet_data:r2d2.urdf", tmp_path)
-    assert robot.endswith("needs the package pybullet; pip install 'clearance[simulate]'")
+    assert robot.endswith("needs the package pybullet_data; pip install 'clearance[simulate]'")
     kept = cl.check(CASE, need="pairs")
     for table in ("steps", "pairs"):
         with pytest.raises(cl.ClearanceError, match=r"needs pyarrow.*'clearance\[tables\]'"):

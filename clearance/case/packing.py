@@ -20,7 +20,8 @@ from clearance.case.case_file import load_case
 from clearance.case.packed import MANIFEST, PACKAGES, TREE, refuse_zip, unpacked
 from clearance.errors import BadPack
 from clearance.files import written_file
-from clearance.formats.files.input_files import PYBULLET_DATA, regular_file
+from clearance.formats.files.brought import is_brought
+from clearance.formats.files.input_files import regular_file
 from clearance.formats.files.mesh_paths import is_package, variables_of
 from clearance.formats.robot.urdf.xacro_file import variables_asked
 from clearance.world.case import LOOKUP, Source
@@ -102,9 +103,9 @@ def _listed(contents: Contents) -> tuple[dict[str, str], dict[str, object]]:
     """The files by name in the zip, and what is told of them."""
     sources = [one for one in contents.sources if one.is_file]
     brought = {
-        f"{PACKAGES}/pybullet_data/{one.path.removeprefix(PYBULLET_DATA)}": one.read_from
+        f"{PACKAGES}/{one.path.replace(':', '/', 1)}": one.read_from
         for one in sources
-        if one.path.startswith(PYBULLET_DATA)
+        if is_brought(one.path)
     }
     own = [one.read_from for one in sources if one.read_from not in brought.values()]
     own += [os.path.abspath(one) for one in contents.others]

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from clearance.errors import BadInput
-from clearance.formats.files.input_files import PYBULLET_DATA, path_from
+from clearance.formats.files.brought import is_brought
+from clearance.formats.files.input_files import path_from
 from clearance.plain_yaml import parse_yaml
 
 Node = dict[str, Any]
@@ -99,7 +100,7 @@ def _move(case: Node, from_folder: Path, folder: Path) -> None:
     """Writes every path of a case file as seen from another folder."""
 
     def moved(given: str) -> str:
-        return given if given.startswith(PYBULLET_DATA) else path_from(folder, from_folder / given)
+        return given if is_brought(given) else path_from(folder, from_folder / given)
 
     done = set[tuple[int, object]]()
     for holder, key in _paths(case):

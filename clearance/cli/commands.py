@@ -19,6 +19,7 @@ from clearance.cli.new import new
 from clearance.cli.pack import pack
 from clearance.cli.pre_commit import pre_commit
 from clearance.cli.profile import profile
+from clearance.cli.robots import robots
 from clearance.cli.srdf import srdf
 from clearance.cli.verify import verify
 from clearance.cli.view import view
@@ -66,6 +67,7 @@ for command in (
     pack,
     pre_commit,
     profile,
+    robots,
     schema,
     srdf,
     verify,

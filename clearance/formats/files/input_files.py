@@ -8,7 +8,6 @@ machine. Not for: what is in the files.
 from __future__ import annotations
 
 import hashlib
-import importlib.util
 import os
 import stat
 from collections.abc import Callable, Iterator
@@ -19,14 +18,12 @@ from io import BufferedReader, BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from clearance.errors import MissingFile, Unavailable
-from clearance.extras import install
-from clearance.formats.files.place import current_place, here, top
+from clearance.errors import MissingFile
+from clearance.formats.files.brought import brought_folders, brought_path, is_brought
+from clearance.formats.files.place import here, top
 
 if TYPE_CHECKING:
     from clearance.world.case import Source
-
-PYBULLET_DATA = "pybullet_data:"
 
 SHORT = 2**20
 """[bytes] Files up to this length are read once, whoever goes through them how often."""
@@ -48,8 +45,8 @@ class InputFiles:
         self._held: set[Path] = set()
 
     @cached_property
-    def _brought(self) -> Path | None:
-        return _pybullet_data_folder()
+    def _brought(self) -> dict[str, str]:
+        return brought_folders()
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -125,9 +122,9 @@ class InputFiles:
     def shown(self, path: Path | str) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         whole = os.path.abspath(path)
-        brought = None if self._brought is None else _below(whole, str(self._brought))
-        if brought is not None:
-            return PYBULLET_DATA + brought
+        for folder, name in self._brought.items():
+            if (below := _below(whole, folder)) is not None:
+                return f"{name}:{below}"
         return _below(whole, self._place) or relative_path(Path(whole), self.folder)
 
 
@@ -254,28 +251,15 @@ def _below(path: str, folder: str) -> str | None:
 
 
 def resolved(given: str, folder: Path) -> Path:
-    """The path that a text in a case file means: `pybullet_data:…`, or relative to `folder`.
+    """The path that a text in a case file means: `PACKAGE:…`, or relative to `folder`.
 
     Raises:
-        Unavailable: `pybullet_data:` without that package.
+        Unavailable, MissingFile: as `brought_path`.
     """
-    if not given.startswith(PYBULLET_DATA):
-        return here(os.path.normpath(folder / given))  # also from a folder that is not there yet
-    brought = _pybullet_data_folder()
-    if brought is None:
-        raise Unavailable(f"{given!r} needs the package pybullet", valid=install("simulate"))
-    return brought / given.removeprefix(PYBULLET_DATA).lstrip("/")
-
-
-def _pybullet_data_folder() -> Path | None:
-    """Where pybullet keeps its models, found without importing pybullet (which takes 0.1 s)."""
-    place = current_place()
-    if place is not None:
-        return place.packages / "pybullet_data"
-    found = importlib.util.find_spec("pybullet_data")
-    if found is None or found.origin is None:
-        return None
-    return Path(found.origin).parent
+    brought = brought_path(given)
+    if brought is not None:
+        return brought
+    return here(os.path.normpath(folder / given))  # also from a folder that is not there yet
 
 
 FARTHEST = 4
@@ -287,7 +271,7 @@ def path_from(folder: Path, given: str | Path) -> str:
 
     From the root where `folder` is reached by a link, since `..` would then be of two meanings.
     """
-    if str(given).startswith(PYBULLET_DATA):
+    if is_brought(given):
         return str(given)
     path, folder = Path(os.path.abspath(given)), Path(os.path.abspath(folder))
     try:

@@ -44,7 +44,7 @@ def load_robot(
     """The robot in a file of any format that is read, for cases that are made in memory.
 
     Args:
-        path: of a URDF or MJCF file; or `pybullet_data:…`, as in a case file.
+        path: of a URDF or MJCF file; or the name of what a package brings, as in a case file.
         package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
 
     Raises:

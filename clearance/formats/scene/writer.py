@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.errors import shown
-from clearance.formats.files.input_files import PYBULLET_DATA, path_from
+from clearance.formats.files.brought import is_brought
+from clearance.formats.files.input_files import path_from
 from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.text.yaml_text import flow
 
@@ -71,7 +72,7 @@ class _Paths:
 
     def written(self, given: str) -> str:
         """How a path is written in the folder."""
-        if given.startswith(PYBULLET_DATA):
+        if is_brought(given):
             return given
         path, files = self._asked.path.parent / given, self._asked.files
         if not files.is_held(path):

@@ -53,7 +53,7 @@ def load_urdf(
     """The robot in a URDF file, for cases that are made in memory.
 
     Args:
-        path: or `pybullet_data:…`, as in a case file.
+        path: or the name of what a package brings, `pybullet_data:…`, as in a case file.
         package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
 
     Raises:

@@ -1,0 +1,54 @@
+"""`clearance robots`: what installed packages bring, by the names that `--robot` and case files take."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from clearance.cli import ExitCode
+
+if TYPE_CHECKING:
+    from clearance.formats.robot.listing import BroughtRobot
+
+
+@click.command()
+@click.argument("words", metavar="[WORD]…", nargs=-1)
+def robots(words: tuple[str, ...]) -> int:
+    """Lists the robots of installed packages, or those with every WORD in their name.
+
+    A name stands in a case file (`urdf: example-robot-data:ur5`) or after --robot. Triangles are
+    those of collision meshes, as their files state them; a file without a moving joint is no robot.
+    Packages that bring robots: pybullet_data, example-robot-data, robot_descriptions. Nothing is
+    fetched: robot_descriptions shows what its own loader has brought here before.
+    """
+    from clearance.formats.files.brought import PROVIDERS
+    from clearance.formats.robot.listing import brought_robots
+
+    asked = [word.lower() for word in words]
+    found = [one for one in brought_robots() if all(word in one.given.lower() for word in asked)]
+    width = max((len(one.given) for one in found), default=0)
+    for one in found:
+        click.echo(f"{one.given:{width}}  {one.n_links:4} links  {_collision(one)}")
+    missing = [provider for provider in PROVIDERS if provider.folder is None]
+    for provider in missing:
+        click.echo(f"not here: {provider.name} ({provider.installs})", err=True)
+    if not found and len(missing) < len(PROVIDERS):
+        click.echo("no robot has such a name", err=True)
+    return ExitCode.CLEAR
+
+
+def _collision(one: BroughtRobot) -> str:
+    """What is measured of a robot."""
+    from clearance.record.wording import count
+
+    told = []
+    if one.n_triangles is None:
+        told.append("meshes that do not state their triangles")
+    elif one.n_triangles:
+        told.append(count(one.n_triangles, "triangle"))
+    if one.n_shapes:
+        told.append(count(one.n_shapes, "round or box shape"))
+    if one.n_missing:
+        told.append(f"{count(one.n_missing, 'mesh file')} missing")
+    return ", ".join(told) or "no collision shapes"
