@@ -17,7 +17,7 @@ from PIL import Image
 
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "scripts" / "docs"
-SIZE, COLOURS = (800, 500), 64
+SIZE, COLOURS = (800, 500), 200
 PASSES = 3
 
 CASES = {
@@ -34,8 +34,8 @@ CASES = {
 
 HEAD = """# Gallery
 
-Each picture is the worst moment of a case, as `--png` draws it. The time is processor time of the whole command, least of
-{passes}, without picture and report.
+Each picture is the worst moment of a case, as `--png` draws it. The time is processor time of the whole
+command, least of {passes}, without picture and report.
 
 """
 
