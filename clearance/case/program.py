@@ -22,7 +22,7 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.pose import inverse
 from clearance.programs.motion import motion_of
-from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
+from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
 from clearance.world.case import PlacedRobot
 from clearance.world.robot import Robot
 
@@ -101,7 +101,7 @@ def _of_schema(program: schema.Program) -> ConvertedProgram:
     places, names = [], []
     for i, move in enumerate(program.moves):
         (key,) = (key for key in move.keys() if getattr(move, key) is not None)
-        places.append(f"moves[{i}]" if key == "wait" else f"moves[{i}].{key}")
+        places.append(f"moves[{i}]" if key in ("wait", "tool") else f"moves[{i}].{key}")
         path = move.ptp or move.lin or move.circ
         to = None if path is None or path.to is None else path.to.name
         names.append(f"{key.upper()} {i + 1}" + (f" → {to}" if to else ""))
@@ -167,6 +167,8 @@ def _moves(read: ConvertedProgram, frames: _Frames) -> Iterator[Move]:
 def _move(move: schema.Move, frames: _Frames, where: str, name: str) -> Move:
     if move.wait is not None:
         return Wait(name, where, move.wait)
+    if move.tool is not None:
+        return ToolChange(name, where, move.tool.matrix())
     if move.ptp is not None:
         to = move.ptp.to
         pose = None if to is None else frames.pose(to)

@@ -61,6 +61,18 @@ def pose_from_rpy(xyz: Sequence[float], rpy: Sequence[float]) -> np.ndarray:
     return _pose(np.array(rotation), xyz)
 
 
+def pose_from_rotation_vector(xyz: Sequence[float], vector: Sequence[float]) -> np.ndarray:
+    """The (4, 4) pose that turns about a vector by its length [rad] and then moves by `xyz` [m].
+
+    Raises:
+        BadShape, NotFinite: not three finite numbers each.
+    """
+    turn = _numbers(vector, 3, "rotation vector")
+    angle = float(np.linalg.norm(turn))
+    axis = turn / angle if angle > 0.0 else turn
+    return pose_from_quaternion(xyz, [*(np.sin(0.5 * angle) * axis), np.cos(0.5 * angle)])
+
+
 def inverse(pose: np.ndarray) -> np.ndarray:
     """The (..., 4, 4) poses that undo the given ones: `body_from_world` of `world_from_body`.
 

@@ -58,6 +58,14 @@ def quaternions_of(rotations: np.ndarray) -> np.ndarray:
     return found
 
 
+def rotation_vector(rotation: np.ndarray) -> np.ndarray:
+    """(3,) axis times angle [rad], at most pi, of a rotation (3, 3)."""
+    x, y, z, w = quaternions_of(rotation[None])[0]
+    sine = float(np.linalg.norm([x, y, z]))
+    angle = 2.0 * np.arctan2(sine, w)
+    return np.array([x, y, z]) * (2.0 if sine < 1e-12 else angle / sine)
+
+
 def _is_negative(found: np.ndarray) -> np.ndarray:
     """(n,) True where the first of w, x, y, z that is not 0 is below it."""
     negative = np.zeros(len(found), dtype=bool)

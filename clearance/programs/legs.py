@@ -105,7 +105,7 @@ def runs_of(arm: Arm, program: Program, start: np.ndarray) -> list[Run]:
 
 def has_zone(move: Move) -> bool:
     """True where it is not to stop at its end."""
-    return not isinstance(move, Wait) and move.zone > SHORTEST
+    return isinstance(move, JointMove | PathMove) and move.zone > SHORTEST
 
 
 def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
@@ -117,7 +117,8 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
     before, legs = 0.0, list[Leg]()
     for (move, way, joints), (next_move, following, _) in pairwise(ways):
         assert way is not None and following is not None
-        assert not isinstance(move, Wait) and not isinstance(next_move, Wait)
+        assert isinstance(move, JointMove | PathMove)
+        assert isinstance(next_move, JointMove | PathMove)
         with at(move.where):
             radius, into, out = _cut(arm, move.zone, way, following)
         legs.append(Leg(move, way.part(before, 1.0 - into)))

@@ -65,12 +65,14 @@ def motion_of(robot: Robot, program: Program) -> ProgramMotion:
         raise BadDimension(f"a step of {program.step * 1e3:g} mm", valid="0.01 to 1000 mm")
     arm = Arm(robot, program.link, program.link_from_tool)
     samples = _Samples(arm, program, _start_of(robot, arm, program))
-    for run in runs_of(arm, program, samples.at):
-        ways = ways_of(arm, run, samples.at)
-        samples.note_targets(ways)
-        for leg in legs_of(arm, ways):
-            with at(leg.move.where):
-                samples.add(leg)
+    for part in program.parts:
+        samples.arm = arm = Arm(robot, part.link, part.link_from_tool)
+        for run in runs_of(arm, part, samples.at):
+            ways = ways_of(arm, run, samples.at)
+            samples.note_targets(ways)
+            for leg in legs_of(arm, ways):
+                with at(leg.move.where):
+                    samples.add(leg)
     return samples.motion()
 
 

@@ -5,8 +5,8 @@ Not for: files (`formats`), how joints follow (`motion`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -69,7 +69,16 @@ class Wait:
     seconds: float
 
 
-Move = JointMove | PathMove | Wait
+@dataclass(frozen=True, eq=False)
+class ToolChange:
+    """Another tool from here on: (4, 4) `link_from_tool` [m]."""
+
+    name: str
+    where: str
+    link_from_tool: np.ndarray
+
+
+Move = JointMove | PathMove | Wait | ToolChange
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +97,18 @@ class Program:
     moves: tuple[Move, ...]
     start: dict[str, float]
     step: float = 0.002
+
+    @property
+    def parts(self) -> Iterator[Program]:
+        """Its moves with one tool after the other."""
+        tool, moves = self.link_from_tool, list[Move]()
+        for one in self.moves:
+            if isinstance(one, ToolChange):
+                yield replace(self, link_from_tool=tool, moves=tuple(moves))
+                tool, moves = one.link_from_tool, []
+            else:
+                moves.append(one)
+        yield replace(self, link_from_tool=tool, moves=tuple(moves))
 
 
 SHARE_OF_WAY = 0.5

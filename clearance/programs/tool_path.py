@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadProgram
-from clearance.geometry.quaternions import quaternions_of
+from clearance.geometry.quaternions import rotation_vector
 from clearance.programs.series import (
     ORDER,
     half_skew,
@@ -234,7 +234,7 @@ def corner(before: Stretch, after: Stretch) -> Stretch:
 
 def line(start: np.ndarray, end: np.ndarray) -> Stretch:
     """The straight line from a pose to another (4, 4), its orientation about one axis at a constant rate."""
-    turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
+    turn = _turn_of(end[:3, :3] @ start[:3, :3].T)
     way = Straight(end[:3, 3] - start[:3, 3])
     return Stretch(start, (way, STILL), np.array([turn, NO_TURN]))
 
@@ -249,7 +249,7 @@ def arc(start: np.ndarray, via: np.ndarray, end: np.ndarray, along: bool) -> Str
         BadInput: the points lie on a line or coincide, or the circle is wider than 100 m.
     """
     found = _circle(start[:3, 3], via, end[:3, 3])
-    turn = found.normal * found.angle if along else rotation_vector(end[:3, :3] @ start[:3, :3].T)
+    turn = found.normal * found.angle if along else _turn_of(end[:3, :3] @ start[:3, :3].T)
     return Stretch(start, (found, STILL), np.array([turn, NO_TURN]))
 
 
@@ -283,18 +283,16 @@ def _circle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> Arc:
     return Arc(first, second, angle)
 
 
-def rotation_vector(rotation: np.ndarray) -> np.ndarray:
+def _turn_of(rotation: np.ndarray) -> np.ndarray:
     """(3,) axis times angle [rad] of a rotation (3, 3).
 
     Raises:
         BadInput: half a turn, which may go either way.
     """
-    x, y, z, w = quaternions_of(rotation[None])[0]
-    size = float(np.linalg.norm([x, y, z]))
-    if w < 1e-6:
+    found = rotation_vector(rotation)
+    if float(np.linalg.norm(found)) > np.pi - 2e-6:
         raise BadProgram("the tool turns by half a turn", valid="less, or a move between")
-    angle = 2.0 * np.arctan2(size, w)
-    return np.array([x, y, z]) * (2.0 if size < 1e-12 else angle / size)
+    return found
 
 
 def _turned_by(vector: np.ndarray, stroke: np.ndarray) -> np.ndarray:

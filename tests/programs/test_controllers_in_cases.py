@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.geometry.quaternions import quaternions_of
 from tests.programs.arms import FILES
 from tests.programs.test_programs_in_cases import START, case, far, tool_at
 
@@ -136,4 +137,49 @@ def test_keys_for_controllers_are_refused_beside_our_own_form(tmp_path):
     content["trajectory"]["program"] = {"file": "program.yaml", "skip": ["WaitDI"]}
     path.write_text(yaml.safe_dump(content))
     with pytest.raises(cl.ClearanceError, match="skip: it is for the language of a controller"):
+        cl.load_case(path)
+
+
+NONE = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+
+
+def rapid(flags: str, work: str = "wobj0") -> str:
+    """A joint move by its axes, one to a pose by flags of its configuration, and a line with another tool."""
+    at = tool_at(START)
+    axes = np.degrees(list({**START, "joint_1": -0.4}.values())).tolist()
+    x, y, z = (1e3 * at[:3, 3]).tolist()
+    q = np.roll(quaternions_of(at[None, :3, :3])[0], 1).tolist()
+    target = f"[[{x},{y},{z}],{q},{flags},{NONE}]"
+    return f"""MODULE Weld
+  PERS tooldata tip:=[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
+  PERS tooldata pin:=[TRUE,[[50,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
+  PERS wobjdata near:=[FALSE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];
+  PROC main()
+    MoveAbsJ [{axes},{NONE}],v100,fine,tip;
+    MoveJ {target},v100,fine,tip\\WObj:={work};
+    MoveL RelTool({target},50,0,0),v100,z5,pin;
+    MoveL RelTool({target},50,20,0),v100,fine,pin;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_flags_choose_the_configuration_and_tools_change(tmp_path):
+    # -0.5, 0.1, 0.4, 0.1, 1.1, 0.2: quarters -1, 0 and 0 of axes 1, 4 and 6, axis 5 above 0
+    found = cl.load_case(controller_case(tmp_path, "a.mod", rapid("[-1,0,0,0]")))
+    trajectory = found.robots[0].trajectory
+    assert [one.name for one in trajectory.moves] == ["PTP 6", "PTP 7", "LIN 9"]
+    arrived = np.searchsorted(trajectory.times, trajectory.moves[1].end)
+    assert np.abs(trajectory.positions[arrived] - list(START.values())).max() < 1e-9
+    last = tool_at(dict(zip(START, trajectory.positions[-1], strict=True)))
+    way = (last - tool_at(START))[:3, 3]
+    assert np.allclose(way, 0.02 * tool_at(START)[:3, 1], atol=1e-9)
+    assert "joint moves whose speed is the tool's" in "\n".join(found.notes)
+
+
+def test_flags_that_no_configuration_has_are_refused(tmp_path):
+    path = controller_case(tmp_path, "a.mod", rapid("[1,0,0,0]"))
+    with pytest.raises(
+        cl.ClearanceError, match=r"a.mod: line 7: no joints within their limits and joint_1 1.569"
+    ):
         cl.load_case(path)

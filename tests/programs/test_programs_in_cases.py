@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.findings.finding_text import finding_line
+from clearance.geometry.quaternions import quaternions_of
 from clearance.record.wording import certified_text
 from clearance.report.summary import summary_of
 from clearance.report.topics.certainty import certified_of
@@ -195,6 +196,30 @@ def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
         assert ("corner zones" in told) == (zone > 0.0)
         least.append(record.worst.clearance)
     assert least[0] - 0.02 < least[1] <= least[0] + 1e-6
+
+
+def test_another_tool_is_what_the_next_line_is_of(tmp_path):
+    tip = tool_at(START)
+    other = np.eye(4)
+    other[:3, 3] = 0.05, 0.0, 0.1
+    there, back = tip @ other, (tip @ other)[:3, :3] @ rotation_about_z(0.3)
+    to = {**place(there[:3, 3]), "quat_xyzw": quaternions_of(back[None])[0].tolist()}
+    moves = [
+        {"lin": {"to": place(tip[:3, 3])}},
+        {"tool": {"xyz": other[:3, 3].tolist()}},
+        {"lin": {"to": place(there[:3, 3])}},
+        {"lin": {"to": to, "speed": 0.1}},
+    ]
+    one = cl.load_case(case(tmp_path, moves, [far()])).robots[0].trajectory
+    poses = [tool_at(dict(zip(JOINTS, row, strict=True))) @ other for row in one.positions]
+    assert [move.name for move in one.moves] == ["LIN 4"] and len(poses) > 10
+    assert max(np.abs(pose[:3, 3] - there[:3, 3]).max() for pose in poses) < 1e-9
+    assert np.allclose(poses[-1][:3, :3], back, atol=1e-9)
+
+
+def rotation_about_z(angle: float) -> np.ndarray:
+    sine, cosine = np.sin(angle), np.cos(angle)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
 def test_moves_have_names_and_times(tmp_path):

@@ -58,7 +58,8 @@ class ControllerMove:
     Attributes:
         line: where it stands, from 1. kind: of the way. to: its end. tool: (4, 4) `flange_from_tool` [m].
         via: a point of the arc, for `circ`.
-        orientation: as in `schema.program.ArcMove`; on a line it stays where it is constant.
+        orientation: as in `schema.program.ArcMove`, or from the start to the end, seen from the path; on a line it
+            stays where it is constant.
         speed: of the tool's point [m/s]; acceleration [m/s^2]; turn_speed [rad/s]; None for the default.
         share: for `ptp`, of the joints' greatest speeds. axis_speed: for `ptp`, of the axis that leads [rad/s].
         zone: radius of the corner at the end [m]; 0 stops there. file: where it stands, if beside the program's.
@@ -69,7 +70,7 @@ class ControllerMove:
     to: Target
     tool: np.ndarray
     via: Target | None = None
-    orientation: Literal["to", "constant", "tangent"] = "to"
+    orientation: Literal["to", "constant", "tangent", "path"] = "to"
     speed: float | None = None
     acceleration: float | None = None
     turn_speed: float | None = None

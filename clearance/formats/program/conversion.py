@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, MissingKey, UnknownLink, at, nearest_name
-from clearance.formats.program.axes import AxisMap
+from clearance.errors import BadProgram, MissingKey, at
+from clearance.formats.program.arc_turns import turn_on_path
+from clearance.formats.program.controlled_arm import ControlledArm, pose_written
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -27,20 +28,17 @@ from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import inverse
-from clearance.geometry.quaternions import quaternions_of
-from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
-
-FLANGE, BASE_LINK = "tool0", "base"
-"""The links whose frames are the controller's flange and base, where a robot's file keeps to the convention of
-ROS-Industrial."""
 
 FARTHEST_OFF, MOST_TURNED = 0.01, 0.035
 """[m] and [rad] Where a file gives a pose and its axes: robots differ from their nominal sizes by less."""
 
 STANDS = 0.01
 """[degrees or mm] An external axis that moves by less stands: teaching leaves so much."""
+
+NO_WAY = 1e-9
+"""[m] and sine of a turn: a move that is shorter is none."""
 
 CONTROLLER = "controller"
 """The frame of the moves: the controller's base."""
@@ -74,19 +72,28 @@ def converted(
     Raises:
         BadInput: with the line, or the key of the case.
     """
-    made = _Conversion(read, asked, robot)
-    moves = [made.move(one) for one in made.stopping_moves()]
+    has_poses = any(
+        isinstance(one, ControllerMove) and isinstance(one.to, PoseTarget) for one in read.moves
+    )
+    made = _Conversion(read, ControlledArm(asked, robot, read.base if has_poses else ""))
+    named = list(made.moves())
     own, starts_anywhere = made.start(start)
-    program = {"tool": made.tool(), "frames": {CONTROLLER: made.base()}, "start": own}
-    checked = validated(schema.Program, {**program, "step": asked.step, "moves": moves}, asked.file)
-    places = tuple(place_of(one) for one in read.moves)
-    notes = (*read.notes, *made.notes, *made.assumed())
-    return ConvertedProgram(checked, places, tuple(_names(read)), notes, starts_anywhere)
+    tool = {"link": made.arm.link, **pose_written(made.first_tool)}
+    program = {
+        "tool": tool,
+        "frames": {CONTROLLER: made.arm.base()},
+        "start": own,
+        "step": asked.step,
+    }
+    moves, places, names = zip(*named, strict=True)
+    checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
+    notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
+    return ConvertedProgram(checked, places, names, notes, starts_anywhere)
 
 
 @dataclass(eq=False)
 class _Conversion:
-    """What is known of robot and controller, and notes on what is assumed.
+    """What the moves ask of an arm, and notes on what is assumed.
 
     Attributes:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
@@ -94,80 +101,32 @@ class _Conversion:
     """
 
     read: ControllerProgram
-    asked: ProgramFile
-    robot: Robot
+    arm: ControlledArm
     notes: list[str] = field(default_factory=list)
     compared: tuple[float, float] = (-1.0, 0.0)
     others: dict[str, float] = field(default_factory=dict)
+    _before: ControllerMove | None = None
 
     @cached_property
-    def link(self) -> str:
-        """The flange's link.
+    def first_tool(self) -> np.ndarray:
+        """(4, 4) `flange_from_tool` of the first move that a tool matters to [m]."""
+        return next((one.tool for one in self._moves if _uses_tool(one)), self._moves[0].tool)
+
+    def moves(self) -> Iterator[tuple[schema.Move, str, str]]:
+        """The moves, and changes of the tool before them; where each stands, and its name in reports.
 
         Raises:
-            UnknownLink, MissingKey: nobody says it.
+            BadInput: with the line.
         """
-        links = self.robot.link_names
-        if self.asked.link is None and FLANGE not in links:
-            valid = f"the link whose frame is the controller's flange, one of {', '.join(links)}"
-            raise MissingKey(f"there is no link {FLANGE!r}", where="link", valid=valid)
-        link = self.asked.link or FLANGE
-        if link not in links:
-            valid = nearest_name(link, links)
-            raise UnknownLink(f"there is no link {link!r}", where="link", valid=valid)
-        if self.asked.link is None:
-            self.notes.append(f"link {FLANGE!r} is taken for the flange")
-        return link
-
-    @cached_property
-    def chain(self) -> KinematicChain:
-        """From the robot's root to the flange."""
-        return chain_between(self.robot, self.robot.link_names[0], self.link)
-
-    @cached_property
-    def axes(self) -> AxisMap:
-        """How joints follow axes."""
-        with at("axes"):
-            return AxisMap.of(self.chain.masters, self.asked.axes)
-
-    def base(self) -> dict[str, Any]:
-        """The controller's base, as a frame of a program."""
-        if self.root_from_base is None or self.asked.base is not None:
-            assert self.asked.base is not None
-            return self.asked.base.model_dump(exclude_unset=True)
-        return {"on": schema.BASE, **_written(self.root_from_base)}
-
-    @cached_property
-    def root_from_base(self) -> np.ndarray | None:
-        """(4, 4) the controller's base, seen from the robot's root [m]; None where only the cell says it."""
-        if self.asked.base is not None:
-            return self.asked.base.matrix() if self.asked.base.on == schema.BASE else None
-        root = self.robot.link_names[0]
-        link = BASE_LINK if BASE_LINK in self.robot.link_names else root
-        if chain_between(self.robot, root, link).masters:
-            link = root
-        if self.read.base and link != BASE_LINK and self._has_poses:
-            valid = "where it is, as base: {on: base, xyz: [0, 0, …]}, seen from the robot's root"
-            raise MissingKey(self.read.base, where="base", valid=valid)
-        self.notes.append(f"poses are seen from link {link!r}, taken for the controller's base")
-        return chain_between(self.robot, root, link).end
-
-    @property
-    def _has_poses(self) -> bool:
-        return any(isinstance(one.to, PoseTarget) for one in self._moves)
-
-    def tool(self) -> dict[str, Any]:
-        """The tool on the flange.
-
-        Raises:
-            BadInput: another one later.
-        """
-        using = [move for move in self._moves if _uses_tool(move)] or self._moves
-        for move in using:
-            if not np.array_equal(move.tool, using[0].tool):
-                with at(place_of(move)):
-                    raise BadProgram("another tool than before", valid="a program of one tool")
-        return {"link": self.link, **_written(using[0].tool)}
+        tool, names = self.first_tool, _names(self.read)
+        for one, name in zip(self._stopping_moves(), names, strict=True):
+            place = place_of(one)
+            if isinstance(one, ControllerMove) and _uses_tool(one):
+                if not np.array_equal(one.tool, tool):
+                    change = {"tool": pose_written(one.tool)}
+                    yield validated(schema.Move, change, place), place, f"TOOL {place}"
+                tool = one.tool
+            yield self._move(one), place, name
 
     def start(self, given: Mapping[str, float]) -> tuple[dict[str, float], bool]:
         """The joints at the beginning, and whether they are but where the first move ends.
@@ -179,24 +138,54 @@ class _Conversion:
             return dict(given), False
         first = self._moves[0]
         if first.kind == "ptp" and isinstance(first.to, AxisTarget):
-            return self.axes.joints_of(first.to), True
+            return self.arm.axes.joints_of(first.to), True
         with at(place_of(first)):
             raise MissingKey(
                 "the first move ends at a pose, and the joints at its beginning are unknown",
                 valid="trajectory: {program: …, start_state: {joint: …}}",
             )
 
-    def stopping_moves(self) -> Iterator[ControllerMove | ControllerWait]:
-        """The moves, without corner zones where no move follows at once: controllers stop there."""
+    def _stopping_moves(self) -> Iterator[ControllerMove | ControllerWait]:
+        """The moves, without corner zones where controllers stop all the same."""
+        before: ControllerMove | None = None
         after = [*self.read.moves, None][1:]
         for one, other in zip(self.read.moves, after, strict=True):
-            follows = isinstance(other, ControllerMove)
-            if isinstance(one, ControllerMove) and one.zone and not follows:
-                self.notes.append(f"{place_of(one)}: the tool stops, since no move follows at once")
-                one = replace(one, zone=0.0)
-            yield one
+            if isinstance(one, ControllerMove):
+                why = self._why_it_stops(before, one, other) if one.zone else ""
+                if why:
+                    self.notes.append(f"{place_of(one)}: the tool stops, since {why}")
+                before = replace(one, zone=0.0) if why else one
+            yield before if isinstance(one, ControllerMove) and before else one
 
-    def move(self, one: ControllerMove | ControllerWait) -> schema.Move:
+    def _why_it_stops(
+        self,
+        before: ControllerMove | None,
+        one: ControllerMove,
+        other: ControllerMove | ControllerWait | None,
+    ) -> str:
+        """Why a corner zone is none; empty where it is one.
+
+        Raises:
+            BadProgram: the tool changes where it is.
+        """
+        if not isinstance(other, ControllerMove):
+            return "no move follows at once"
+        if not np.array_equal(one.tool, other.tool):
+            with at(place_of(one)):
+                raise BadProgram("a corner zone before another tool", valid="a stop there")
+        if self._stays(before, one) or self._stays(one, other):
+            return "it does not move before or after"
+        return ""
+
+    def _stays(self, before: ControllerMove | None, one: ControllerMove) -> bool:
+        """True where a move ends where the one before it does: a line with its point, another with the tool."""
+        ends = self.arm.base_from_flange(before), self.arm.base_from_flange(one)
+        if ends[0] is None or ends[1] is None:
+            return False
+        off = np.abs((ends[1] - ends[0]) @ one.tool)
+        return bool((off[:3, 3] if one.kind == "lin" else off).max() < NO_WAY)
+
+    def _move(self, one: ControllerMove | ControllerWait) -> schema.Move:
         """A move, as `schema.program.Move` has it.
 
         Raises:
@@ -211,6 +200,8 @@ class _Conversion:
                 made = {"ptp": self._joint_move(one)}
             else:
                 made = {one.kind: self._path_move(one)}
+            if isinstance(one, ControllerMove):
+                self._before = one
         return validated(schema.Move, made, place)
 
     def _require_still(self, one: ControllerMove | ControllerWait) -> None:
@@ -221,7 +212,7 @@ class _Conversion:
         """
         for axis, value in one.to.external.items() if isinstance(one, ControllerMove) else ():
             off = value - self.others.setdefault(axis, value)
-            if axis not in self.axes.external.values() and abs(off) > STANDS:
+            if axis not in self.arm.axes.external.values() and abs(off) > STANDS:
                 raise BadProgram(
                     f"external axis {axis} moves, and no joint follows it",
                     valid=f"program: {{axes: {{a joint: {{axis: {axis}}}}}}}",
@@ -230,11 +221,11 @@ class _Conversion:
     def _joint_move(self, one: ControllerMove) -> dict[str, Any]:
         made: dict[str, Any] = {"speed": self._share(one), "zone": one.zone}
         if isinstance(one.to, AxisTarget):
-            return {**made, "joints": self.axes.joints_of(one.to)}
-        held = {name: [value, value] for name, value in self.axes.held(one.to).items()}
-        made["within"] = {**self.axes.ranges_of(one.to), **held}
+            return {**made, "joints": self.arm.axes.joints_of(one.to)}
+        held = {name: [value, value] for name, value in self.arm.axes.held(one.to).items()}
+        made["within"] = {**self.arm.axes.ranges_of(one.to), **held}
         if one.to.near is not None:
-            made["near"] = self.axes.joints_of(AxisTarget(one.to.near, one.to.external))
+            made["near"] = self.arm.axes.joints_of(AxisTarget(one.to.near, one.to.external))
             self._compare(one.to, made["near"], one.tool)
         return {**made, "to": self._target(one, one.to)}
 
@@ -244,9 +235,9 @@ class _Conversion:
         Raises:
             BadProgram: too far.
         """
-        if self.root_from_base is None:
+        if self.arm.root_from_base is None:
             return
-        off = inverse(self._tool_at(joints, tool)) @ self.root_from_base @ to.pose
+        off = inverse(self.arm.tool_at(joints, tool)) @ self.arm.root_from_base @ to.pose
         way, turn = (
             float(np.linalg.norm(off[:3, 3])),
             float(np.arccos(np.clip(0.5 * np.trace(off[:3, :3]) - 0.5, -1.0, 1.0))),
@@ -264,7 +255,7 @@ class _Conversion:
             "speed": one.speed,
             "acceleration": one.acceleration,
             "turn_speed": one.turn_speed,
-            "hold": self.axes.held(one.to) or None,
+            "hold": self.arm.axes.held(one.to) or None,
             "zone": one.zone,
         }
         made = {key: value for key, value in given.items() if value is not None}
@@ -275,26 +266,36 @@ class _Conversion:
         assert one.via is not None
         via = self._target(one, one.via)
         point = {"frame": via["frame"], "xyz": via["xyz"]}
-        return {**made, "to": to, "via": point, "orientation": one.orientation}
+        return {**made, "to": to, "via": point, "orientation": self._turn(one)}
+
+    def _turn(self, one: ControllerMove) -> str:
+        """How the tool turns on an arc.
+
+        Raises:
+            BadProgram: otherwise than is read, or nobody knows how.
+        """
+        if one.orientation != "path":
+            return one.orientation
+        ends = self.arm.base_from_flange(self._before), self.arm.base_from_flange(one)
+        via = None if one.via is None else self.arm.base_from_flange(replace(one, to=one.via))
+        if ends[0] is None or ends[1] is None or via is None:
+            raise BadProgram("where the tool is before the arc is not known", valid="a line before")
+        start, middle, end = (pose @ one.tool for pose in (ends[0], via, ends[1]))
+        return turn_on_path(start, middle[:3, 3], end)
 
     def _target(self, one: ControllerMove, to: Target) -> dict[str, Any]:
         """A pose of the tool; where axes are given, theirs."""
         name = {"name": to.name} if to.name else {}
         if isinstance(to, PoseTarget):
-            return {"frame": CONTROLLER, **_written(to.pose), **name}
-        pose = self._tool_at(self.axes.joints_of(to), one.tool)
-        return {"frame": schema.BASE, **_written(pose), **name}
-
-    def _tool_at(self, joints: Mapping[str, float], tool: np.ndarray) -> np.ndarray:
-        """(4, 4) `root_from_tool` [m]."""
-        row = np.array([[joints[joint.name] for joint in self.chain.masters]])
-        return np.asarray(self.chain.frames(row)[0, -1] @ tool)
+            return {"frame": CONTROLLER, **pose_written(to.pose), **name}
+        pose = self.arm.tool_at(self.arm.axes.joints_of(to), one.tool)
+        return {"frame": schema.BASE, **pose_written(pose), **name}
 
     def _share(self, one: ControllerMove) -> float:
         """The share of the joints' greatest speeds with which a joint move goes."""
         if one.axis_speed is None:
             return 1.0 if one.share is None else one.share
-        limits = [joint.velocity for joint in self.chain.masters if joint.velocity > 0.0]
+        limits = [joint.velocity for joint in self.arm.chain.masters if joint.velocity > 0.0]
         return min(1.0, one.axis_speed / min(limits)) if np.isfinite(min(limits)) else 1.0
 
     def assumed(self) -> Iterator[str]:
@@ -331,13 +332,7 @@ def place_of(one: ControllerMove | ControllerWait) -> str:
 
 def _uses_tool(move: ControllerMove) -> bool:
     """True where it matters which tool is on the flange."""
-    return move.kind != "ptp" or isinstance(move.to, PoseTarget)
-
-
-def _written(pose: np.ndarray) -> dict[str, Any]:
-    """A (4, 4) pose as the schema has it."""
-    quaternion = quaternions_of(pose[None, :3, :3])[0]
-    return {"xyz": pose[:3, 3].tolist(), "quat_xyzw": quaternion.tolist()}
+    return move.kind != "ptp" or isinstance(move.to, PoseTarget) or move.zone > 0.0
 
 
 def _names(read: ControllerProgram) -> Iterator[str]:

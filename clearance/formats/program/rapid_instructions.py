@@ -265,7 +265,7 @@ class Rapid:
                 line.number, rule.kind, to, flange_from_tool(given["tool"]), via, file=line.file
             )
         if rule.kind != "ptp":
-            move = replace(move, speed=speed, turn_speed=turn_speed)
+            move = replace(move, speed=speed, turn_speed=turn_speed, orientation="path")
         if point > 0.0:
             self.zones[len(run.moves)] = (point, turn)
         run.add(move)

@@ -34,8 +34,8 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.tokens import Line, text_of
 from clearance.formats.program.urscript_text import UrScript, script_of
-from clearance.geometry.pose import inverse, pose_from_quaternion
-from clearance.geometry.quaternions import quaternions_of
+from clearance.geometry.pose import inverse, pose_from_rotation_vector
+from clearance.geometry.quaternions import rotation_vector
 
 TCP = "tcp"
 """The tool that a script takes from the installation, among the tools of a case."""
@@ -318,19 +318,12 @@ def _pose(value: Any, line: Line) -> ToolPose:
 
 def _matrix(pose: ToolPose) -> np.ndarray:
     """(4, 4) of a pose [m]."""
-    vector = np.array(pose[3:])
-    angle = float(np.linalg.norm(vector))
-    axis = vector / angle if angle > 0.0 else vector
-    return pose_from_quaternion(pose[:3], [*(math.sin(0.5 * angle) * axis), math.cos(0.5 * angle)])
+    return pose_from_rotation_vector(pose[:3], pose[3:])
 
 
 def _written(matrix: np.ndarray) -> ToolPose:
     """The pose of a (4, 4) matrix [m]."""
-    quaternion = quaternions_of(matrix[None, :3, :3])[0]
-    sine = float(np.linalg.norm(quaternion[:3]))
-    angle = 2.0 * math.atan2(sine, quaternion[3])
-    vector = quaternion[:3] * (angle / sine if sine > 0.0 else 2.0)
-    return ToolPose([*matrix[:3, 3].tolist(), *vector.tolist()])
+    return ToolPose([*matrix[:3, 3].tolist(), *rotation_vector(matrix[:3, :3]).tolist()])
 
 
 def _value(call: Call, args: list[Any]) -> Any:

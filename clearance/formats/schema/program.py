@@ -112,12 +112,13 @@ class ArcMove(PathMove):
 
 
 class Move(StrictModel):
-    """One move: one of `ptp`, `lin`, `circ`, and `wait` [s]."""
+    """One move: one of `ptp`, `lin`, `circ`, `wait` [s], and `tool`: another on the same link from here on."""
 
     ptp: JointMove | None = None
     lin: LinearMove | None = None
     circ: ArcMove | None = None
     wait: Annotated[float | None, Field(gt=0)] = None
+    tool: Pose | None = None
 
     @model_validator(mode="after")
     def _one(self) -> Move:

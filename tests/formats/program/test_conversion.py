@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.formats.program.arc_turns import turn_on_path
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -19,12 +20,14 @@ from clearance.formats.program.controller_program import (
 from clearance.formats.program.conversion import converted
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
+from clearance.geometry.pose import pose_from_rpy
 from clearance.world.robot import Joint, JointKind
 from tests.programs.arms import FILES
 
 QUARTER = math.pi / 2
 AXES = AxisTarget((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), name="home")
 HOME = ControllerMove(3, "ptp", AXES, np.eye(4), share=0.5)
+POSE = replace(HOME, to=PoseTarget(pose_from_rpy([0.5, 0.0, 0.3], [0.0, 0.0, 0.0])))
 
 
 def at(x: float, y: float, z: float) -> np.ndarray:
@@ -56,7 +59,8 @@ def test_a_pose_is_seen_from_the_controllers_base():
     target = PoseTarget(at(0.5, 0.0, 0.3), name="P1")
     line = ControllerMove(7, "lin", target, at(0.0, 0.0, 0.1), speed=0.2, zone=0.01)
     base = {"on": "world", "xyz": [1.0, 2.0, 0.0]}
-    found = made(HOME, line, line, ControllerWait(8, 0.5), line, base=base)
+    on = replace(line, to=PoseTarget(at(0.6, 0.0, 0.3)))
+    found = made(HOME, line, on, ControllerWait(8, 0.5), line, line, base=base)
     assert found.program.frames["controller"].model_dump(exclude_unset=True) == base
     assert found.program.tool.xyz == [0.0, 0.0, 0.1] and found.program.tool.link == "tool_tip"
     lin = found.program.moves[1].lin
@@ -66,16 +70,18 @@ def test_a_pose_is_seen_from_the_controllers_base():
         0.01,
         0.2,
     )
-    assert found.program.moves[4].lin.zone == 0.0
-    assert sum("no move follows" in note for note in found.notes) == 2
-    assert found.names == (
-        "PTP 3 → home",
-        "LIN 7 → P1",
-        "LIN 7 (2) → P1",
-        "WAIT 8",
-        "LIN 7 (3) → P1",
-    )
-    assert found.places == ("line 3", "line 7", "line 7", "line 8", "line 7")
+    assert found.names[:4] == ("PTP 3 → home", "LIN 7 → P1", "LIN 7 (2)", "WAIT 8")
+    assert found.places == ("line 3", "line 7", "line 7", "line 8", "line 7", "line 7")
+
+
+def test_controllers_stop_where_no_way_follows():
+    one = replace(POSE, kind="lin", zone=0.01)
+    two = replace(one, to=PoseTarget(at(0.6, 0.0, 0.3)), line=4)
+    found = made(HOME, one, two, ControllerWait(8, 0.5), one, two, replace(two, line=5), one)
+    zones = [move.lin.zone for move in found.program.moves if move.lin]
+    assert zones == [0.01, 0.0, 0.01, 0.0, 0.0, 0.0]
+    stops = [note for note in found.notes if "the tool stops" in note]
+    assert [note.partition(":")[0] for note in stops] == ["line 4", "line 4", "line 5", "line 3"]
 
 
 def test_a_link_called_base_is_the_controllers():
@@ -100,6 +106,46 @@ def test_the_start_is_the_first_target_of_axes_and_its_way_in_is_unknown():
     assert list(found.program.start.values()) == list(AXES.axes) and found.starts_anywhere
     start = {f"joint_{i}": 0.0 for i in range(1, 7)}
     assert not made(HOME, start=start).starts_anywhere
+
+
+def test_another_tool_is_a_move_of_its_own():
+    other = replace(POSE, tool=at(0.0, 0.0, 0.2), line=9)
+    found = made(HOME, POSE, other, HOME, other)
+    assert found.program.tool.xyz == [0.0, 0.0, 0.0]
+    assert [one.tool and one.tool.xyz for one in found.program.moves] == (
+        [None, None, [0.0, 0.0, 0.2], None, None, None]
+    )
+    assert found.names[2:4] == ("TOOL line 9", "PTP 9") and found.places[2] == "line 9"
+
+
+def turned(degrees: float, axis: int, x: float, y: float) -> np.ndarray:
+    angles = [0.0, 0.0, 0.0]
+    angles[axis] = math.radians(degrees)
+    return pose_from_rpy([x, y, 0.0], angles)
+
+
+HALF = math.sqrt(0.5)
+ROUND = {
+    "as it was": ((HALF, HALF), turned(0, 2, 0, 1), "to"),
+    "with the path": ((HALF, HALF), turned(90, 2, 0, 1), "tangent"),
+    "half with it": ((HALF, HALF), turned(45, 2, 0, 1), "to"),
+    "three quarters with it": ((-1.0, 0.0), turned(270, 2, 0, -1), "tangent"),
+    "tilted": ((HALF, HALF), turned(20, 0, 0, 1), "the tool tilts"),
+    "tilted with the path": ((HALF, HALF), turned(90, 2, 0, 1) @ turned(9, 1, 0, 0), "the tool tilts"),
+    "as it was, after three quarters": ((-1.0, 0.0), turned(0, 2, 0, -1), "half a turn or more"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", ROUND)
+def test_a_turn_seen_from_the_path_is_about_one_axis_or_refused(case):
+    # from (1, 0) round the origin, counter-clockwise
+    via, end, told = ROUND[case]
+    start, through = turned(0, 2, 1, 0), np.array([*via, 0.0])
+    if told in ("to", "tangent"):
+        assert turn_on_path(start, through, end) == told
+    else:
+        with pytest.raises(cl.ClearanceError, match=told):
+            turn_on_path(start, through, end)
 
 
 def test_a_speed_of_axes_is_a_share_of_the_slowest_joints():
@@ -132,9 +178,6 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
         converted(ControllerProgram((HOME, line), base="at axis 2"), asked, robot, {})
 
 
-POSE = replace(HOME, to=PoseTarget(at(0.5, 0.0, 0.3)))
-
-
 @pytest.mark.parametrize(
     ("moves", "asked", "told"),
     [
@@ -147,7 +190,11 @@ POSE = replace(HOME, to=PoseTarget(at(0.5, 0.0, 0.3)))
         ([HOME], {"axes": {"joint_1": {"axis": 2}, "joint_2": {"axis": 2}}}, "each of 1 to 6 once"),
         ([HOME], {"axes": {"joint_1": {"axis": "E1"}}}, "6 axes are given, and the arm has 5"),
         ([HOME], {"axes": {"joint_2": {"offset": "90 mm"}}}, "'90 mm' is given; radians, metres"),
-        ([HOME, POSE, replace(POSE, tool=at(0, 0, 1), line=9)], {}, "line 9: another tool"),
+        (
+            [HOME, replace(POSE, zone=0.01), replace(POSE, tool=at(0, 0, 1))],
+            {},
+            "line 3: a corner zone before another tool",
+        ),
         ([ControllerWait(3, 1.0)], {}, "nothing moves"),
     ],
 )

@@ -1,0 +1,117 @@
+"""The arm as its controller sees it: its flange, its base, and how joints follow axes. Not for: moves
+(`conversion`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import MissingKey, UnknownLink, at, nearest_name
+from clearance.formats.program.axes import AxisMap
+from clearance.formats.program.controller_program import ControllerMove, PoseTarget
+from clearance.formats.schema import program as schema
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.geometry.pose import inverse
+from clearance.geometry.quaternions import quaternions_of
+from clearance.world.kinematic_chain import KinematicChain, chain_between
+from clearance.world.robot import Robot
+
+FLANGE, BASE_LINK = "tool0", "base"
+"""The links whose frames are the controller's flange and base, where a robot's file keeps to the convention of
+ROS-Industrial."""
+
+
+@dataclass(eq=False)
+class ControlledArm:
+    """What a case and a robot say of an arm.
+
+    Attributes:
+        doubt: why the robot's root link may not be the controller's base; empty where that does not matter.
+        notes: a line each on what is assumed.
+    """
+
+    asked: ProgramFile
+    robot: Robot
+    doubt: str = ""
+    notes: list[str] = field(default_factory=list)
+
+    @cached_property
+    def link(self) -> str:
+        """The flange's link.
+
+        Raises:
+            UnknownLink, MissingKey: nobody says it.
+        """
+        links = self.robot.link_names
+        if self.asked.link is None and FLANGE not in links:
+            valid = f"the link whose frame is the controller's flange, one of {', '.join(links)}"
+            raise MissingKey(f"there is no link {FLANGE!r}", where="link", valid=valid)
+        link = self.asked.link or FLANGE
+        if link not in links:
+            valid = nearest_name(link, links)
+            raise UnknownLink(f"there is no link {link!r}", where="link", valid=valid)
+        if self.asked.link is None:
+            self.notes.append(f"link {FLANGE!r} is taken for the flange")
+        return link
+
+    @cached_property
+    def chain(self) -> KinematicChain:
+        """From the robot's root to the flange."""
+        return chain_between(self.robot, self.robot.link_names[0], self.link)
+
+    @cached_property
+    def axes(self) -> AxisMap:
+        """How joints follow axes."""
+        with at("axes"):
+            return AxisMap.of(self.chain.masters, self.asked.axes)
+
+    def base(self) -> dict[str, Any]:
+        """The controller's base, as a frame of a program."""
+        if self.root_from_base is None or self.asked.base is not None:
+            assert self.asked.base is not None
+            return self.asked.base.model_dump(exclude_unset=True)
+        return {"on": schema.BASE, **pose_written(self.root_from_base)}
+
+    @cached_property
+    def root_from_base(self) -> np.ndarray | None:
+        """(4, 4) the controller's base, seen from the robot's root [m]; None where only the cell says it."""
+        if self.asked.base is not None:
+            return self.asked.base.matrix() if self.asked.base.on == schema.BASE else None
+        root = self.robot.link_names[0]
+        link = BASE_LINK if BASE_LINK in self.robot.link_names else root
+        if chain_between(self.robot, root, link).masters:
+            link = root
+        if self.doubt and link != BASE_LINK:
+            valid = "where it is, as base: {on: base, xyz: [0, 0, …]}, seen from the robot's root"
+            raise MissingKey(self.doubt, where="base", valid=valid)
+        self.notes.append(f"poses are seen from link {link!r}, taken for the controller's base")
+        return chain_between(self.robot, root, link).end
+
+    def tool_at(self, joints: Mapping[str, float], tool: np.ndarray) -> np.ndarray:
+        """(4, 4) `root_from_tool` [m]."""
+        row = np.array([[joints[joint.name] for joint in self.chain.masters]])
+        return np.asarray(self.chain.frames(row)[0, -1] @ tool)
+
+    def base_from_flange(self, one: ControllerMove | None) -> np.ndarray | None:
+        """(4, 4) where the flange is at the end of a move, seen from the controller's base [m]; None if it is not
+        known.
+        """
+        if one is None or one.orientation == "constant":
+            return None
+        if isinstance(one.to, PoseTarget):
+            return np.asarray(one.to.pose @ inverse(one.tool))
+        if self.root_from_base is None:
+            return None
+        flange = self.tool_at(self.axes.joints_of(one.to), np.eye(4))
+        return np.asarray(inverse(self.root_from_base) @ flange)
+
+
+def pose_written(pose: np.ndarray) -> dict[str, Any]:
+    """A (4, 4) pose [m] as the schema has it."""
+    quaternion = quaternions_of(pose[None, :3, :3])[0]
+    return {"xyz": pose[:3, 3].tolist(), "quat_xyzw": quaternion.tolist()}
