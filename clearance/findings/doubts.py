@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from clearance.world.case import Case
 
 SUSPECT, DISPUTED, UNUSED_WAIVER = "suspect", "disputed", "unused waiver"
+UNPROVEN_MOTION = "unproven motion"
 NOT_CHECKED, WARNING, ACCEPTED, NOTE = "not checked", "warning", "accepted", "note"
 
-FAILING = (SUSPECT, DISPUTED, UNUSED_WAIVER)
+FAILING = (SUSPECT, DISPUTED, UNUSED_WAIVER, UNPROVEN_MOTION)
 """Those by which a run is not passed, whatever was measured."""
 
 KINDS = (*FAILING, NOT_CHECKED, WARNING, ACCEPTED, NOTE)
@@ -77,6 +78,13 @@ def open_suspects(record: Record) -> tuple[Notice, ...]:
     return tuple(one for one in suspects if one.kind not in record.case.accept)
 
 
+def unproven_motion(record: Record) -> tuple[Notice, ...]:
+    """The notices of motion that is not proven, where a proof is asked for."""
+    if record.certificate is None:
+        return ()
+    return tuple(one for one in record.notices if one.severity is Severity.UNPROVEN)
+
+
 def not_checked_code(name: str) -> str:
     """The stable code of what is not checked, whichever robot it is of."""
     return codes().get(re.split(r" of | \(", name)[0], "")
@@ -102,7 +110,9 @@ def _of_input(record: Record) -> Iterator[Doubt]:
         if notice.severity is Severity.SUSPECT:
             kind = SUSPECT if notice in unaccepted else ACCEPTED
             yield Doubt(kind, notice.kind, notice.text)
-        elif notice.severity is Severity.WARNING:
+        elif notice in unproven_motion(record):
+            yield Doubt(UNPROVEN_MOTION, notice.about, notice.text)
+        elif notice.severity is not Severity.VIOLATED:
             yield Doubt(WARNING, notice.kind, notice.text)
     robots = (note for placed in record.case.robots for note in placed.robot.notes)
     yield from _notes([*record.case.notes, *robots, *record.notes])

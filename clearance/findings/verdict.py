@@ -19,6 +19,7 @@ from clearance.findings.doubts import (
     not_checked,
     not_checked_code,
     open_suspects,
+    unproven_motion,
 )
 from clearance.findings.finding import CLEARANCE, NOT_PROVEN, PROFILE, UNPROVEN, Finding
 from clearance.findings.finding_text import coded_line, waived_lines
@@ -65,11 +66,13 @@ class Verdict:
     Attributes:
         status: "clear", "near", "violated", "contact", "suspect" where input is in doubt and not accepted, or
             "unused waiver" where a waiver has expired, or is not needed, and all else is well; "not proven" where
-            all limits are kept as measured and one is not proven to be with the case's tolerances.
+            all limits are kept as measured and one is not proven to be with the case's tolerances, or a stretch of
+            a program is not.
         measured: the status by what was measured alone, less what is waived.
         basis: "motion", "samples" or "pose", of a run of one step.
         reasons: why it is not clear, one line each.
         unproven: the one of them that says that a limit could not be proven though nothing below it occurs.
+        unproven_motion: stretches of a program that are not proven, one line a robot.
         suspects: the notices that make it suspect.
         warnings: what a reader must know beside the clearance; suspect input that is accepted is among it.
         disputed_by: the peer that disagrees, if one does.
@@ -106,6 +109,7 @@ class Verdict:
     with_tolerances: tuple[str, ...] = ()
     at_level: str = ""
     self_clearance: tuple[str, ...] = ()
+    unproven_motion: tuple[str, ...] = ()
 
     @property
     def scope(self) -> tuple[str, ...]:
@@ -117,13 +121,14 @@ class Verdict:
 
     @property
     def exit_code(self) -> int:
-        """0 clear or near, 1 violated, contact, not proven with tolerances or an unused waiver, 2 suspect, 3 a
-        peer disagrees; the greatest that holds."""
+        """0 clear or near, 1 violated, contact, not proven with tolerances or of a program, or an unused waiver,
+        2 suspect, 3 a peer disagrees; the greatest that holds."""
         if self.disputed_by is not None:
             return 3
         if self.status == SUSPECT:
             return 2
         failing = self.waiver_faults or self.tolerances == NOT_PROVEN
+        failing = failing or self.unproven_motion
         return 0 if self.measured in _PASSING and not failing else 1
 
     @property
@@ -140,6 +145,8 @@ class Verdict:
         if passing and self.tolerances:
             text = _with_tolerances(text, self.tolerances, shown(NOT_PROVEN))
             passing = self.tolerances == KEPT
+        if self.unproven_motion:
+            text = f"{shown(NOT_PROVEN)} on part of the motion, {text} as measured"
         if self.basis == SAMPLES:
             text += " at the samples only" if passing else ", looked at the samples only"
         elif self.basis == POSE:
@@ -184,6 +191,8 @@ def verdict_of(
     reasons = [reason for reason in (_occurring(record, worst), unproven) if reason is not None]
     open_lines = [coded_line(finding) for finding in of_tolerances]
     reasons = [*open_lines, *reasons] if measured in _PASSING else [*reasons, *open_lines]
+    not_proven = tuple(one.line for one in unproven_motion(record))
+    reasons = [*not_proven, *reasons] if measured in _PASSING else [*reasons, *not_proven]
     faults = () if judgement is None else judgement.faults
     waiver_faults = tuple(_of_kind(fault, UNUSED_WAIVER) for fault in faults)
     reasons += waiver_faults
@@ -194,7 +203,9 @@ def verdict_of(
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(_of_kind(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
     return Verdict(
-        status=SUSPECT if suspects else _less_open(measured, of_tolerances, waiver_faults),
+        status=SUSPECT
+        if suspects
+        else _less_open(measured, [*of_tolerances, *not_proven], waiver_faults),
         measured=measured,
         basis=record.basis,
         reasons=tuple(reasons),
@@ -204,6 +215,7 @@ def verdict_of(
         disputed_by=None if disputing is None else disputing.peer,
         not_checked=tuple(not_checked(record.case)),
         self_clearance=self_clearance_lines(record),
+        unproven_motion=not_proven,
         broken=tuple(broken),
         nearest=_nearest(record),
         clocks=_when(record.case),
@@ -221,7 +233,7 @@ def _of_kind(text: str, kind: str) -> str:
     return coded(text, codes()[kind])
 
 
-def _less_open(measured: str, open_limits: Sequence[Finding], waiver_faults: Sequence[str]) -> str:
+def _less_open(measured: str, open_limits: Sequence[object], waiver_faults: Sequence[str]) -> str:
     """The status, where no input is suspect."""
     if measured not in _PASSING:
         return measured
@@ -356,6 +368,8 @@ def profile_text(answer: ProfileAnswer) -> str:
 def _warnings(record: Record, notices: tuple[Notice, ...]) -> list[str]:
     """Warnings, and suspect input that is accepted; each once."""
     told = [one.line for one in notices if one.severity is Severity.WARNING]
+    if record.certificate is None:
+        told += [one.line for one in notices if one.severity is Severity.UNPROVEN]
     told += [
         f"{one.line} (accepted: {one.kind})"
         for one in notices

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadProgram
 from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
 from clearance.programs.following import Follower
 from clearance.programs.inverse import joints_at
@@ -38,19 +37,16 @@ CELLS = (4, 6, 8, 12)
 """Into how many parts each range is cut, one after another, until boxes are proven."""
 
 MOST_CELLS = 50_000
-"""Cells of a zone, over all its intervals: some seconds of work. A zone that needs more is refused."""
+"""Cells of a zone, over all its intervals: some seconds of work. A zone that needs more is not proven."""
 
 
 def corner_of(
     follower: Follower, samples: PathSamples, start: float, radius: float, name: str
-) -> CornerZone:
-    """What a corner zone admits, proven.
+) -> CornerZone | None:
+    """What a corner zone admits, proven; None where it is too wide for the arm so near a singularity.
 
     Args:
         samples: of the nominal motion through it. start: [s] when it begins. radius: [m]. name: of its move.
-
-    Raises:
-        BadInput: nothing is proven: the zone is too wide for the arm so near a singularity.
     """
     for n_cells in CELLS:
         if np.prod(_shape(follower.stretch, samples, n_cells)) > MOST_CELLS:
@@ -62,11 +58,7 @@ def corner_of(
             cells = Cells(proven.middle, spread.joints, proven.variation.within, proven.box)
             links = links_off(follower.arm, cells)
             return CornerZone(name, float(ends[0]), float(ends[1]), radius, links)
-    raise BadProgram(
-        f"a corner zone of {radius * 1e3:g} mm is too wide to be proven where the arm is",
-        where="zone",
-        valid="a smaller zone, or another configuration",
-    )
+    return None
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -33,11 +34,13 @@ class Follower:
     """An arm whose tool follows a stretch.
 
     Attributes:
+        start: (k,) where its joints are at the beginning [rad or m].
         free: (k,) which joints follow the path. held: (k,) how far the others go with the stretch, in proportion.
     """
 
     arm: Arm
     stretch: Stretch
+    start: np.ndarray
     free: np.ndarray
     held: np.ndarray
 
@@ -55,13 +58,13 @@ class Follower:
         found[:, self.free] = least_motion(rates[:, :, self.free], wanted[:, :, None])[:, :, 0]
         return found
 
-    def positions(self, start: np.ndarray, shares: np.ndarray) -> np.ndarray:
-        """(n, k) the joints at shares (n,), which increase from 0 to 1, of the stretch that begins at `start`.
+    def positions(self, shares: np.ndarray) -> np.ndarray:
+        """(n, k) the joints at shares (n,) of the stretch, which increase from 0 to 1.
 
         Raises:
             BadInput: the tool cannot go on; where it is, and the joints.
         """
-        at, found, rates = self._coarse(start)
+        at, found, rates = self._coarse
         i = np.clip(np.searchsorted(at, shares, side="right") - 1, 0, len(at) - 2)
         cubics = cubics_of(at, found, rates)
         near = position_on(
@@ -82,9 +85,10 @@ class Follower:
         """(k,) how the joints go with the share."""
         return self.rates(position[None], self._strokes(np.array([share])), np.ones(1))[0]
 
-    def _coarse(self, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    @cached_property
+    def _coarse(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Shares (m,), joints and their derivatives by the share (m, k), near enough for cubics between them."""
-        shares, found, rates = [0.0], [start], [self.rates_at(start, 0.0)]
+        shares, found, rates = [0.0], [self.start], [self.rates_at(self.start, 0.0)]
         step = 1.0
         while shares[-1] < 1.0:
             step = min(step, 1.0 - shares[-1], LONGEST / max(float(np.abs(rates[-1]).max()), 1e-9))
@@ -119,7 +123,7 @@ def follower_of(
             f"{int(free.sum())} joints are free to follow the tool's path",
             valid="six or more; an arm of fewer goes by joint moves",
         )
-    return Follower(arm, stretch, free, held)
+    return Follower(arm, stretch, start, free, held)
 
 
 def _stuck(pose: np.ndarray, joints: np.ndarray) -> BadProgram:

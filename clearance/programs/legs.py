@@ -193,7 +193,7 @@ def ways_of(arm: Arm, run: Run, start: np.ndarray) -> list[PlannedWay]:
             ):
                 assert isinstance(move, PathMove)
                 follower = follower_of(arm, stretch, move.hold, joints)
-                joints = follower.positions(joints, np.ones(1))[0]
+                joints = follower.positions(np.ones(1))[0]
         found.append(PlannedWay(move, way, joints))
     return found
 

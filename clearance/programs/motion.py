@@ -8,7 +8,7 @@ Between two moves without a corner zone the tool stops. Not for: files, and what
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,19 +20,22 @@ from clearance.programs.following import Follower, follower_of
 from clearance.programs.joint_corner import JointCorner, bow
 from clearance.programs.joint_way import JointWay
 from clearance.programs.legs import Corner, Leg, PlannedWay, legs_of, runs_of, ways_of
-from clearance.programs.moves import STEP_TURN, JointMove, PathMove, Program, Wait
+from clearance.programs.moves import STEP_TURN, JointMove, Move, PathMove, Program, Wait
 from clearance.programs.path_samples import PathSamples
 from clearance.programs.time_law import Piece
 from clearance.programs.tool_path import Stretch
 from clearance.world.corner_zone import CornerZone
 from clearance.world.robot import Robot
-from clearance.world.trajectory import MoveSpan, Trajectory
+from clearance.world.trajectory import MoveSpan, Trajectory, UnprovenSpan
 
 MOST_HALVINGS = 8
 """Times that intervals are halved until that is proven."""
 
 SAME_SPEED = 1e-5
 """[rad/s] or [m/s]: speeds of a joint that differ by less differ by rounding."""
+
+MOST_WIDE = 4096
+"""Intervals that are halved at once; where more are not proven, halves would not be either."""
 
 MOST_SAMPLES = 1_000_000
 """Most samples of a program: a step in the wrong unit needs more."""
@@ -111,6 +114,7 @@ class _Samples:
     velocities: list[np.ndarray] = field(default_factory=list)
     spans: list[MoveSpan] = field(default_factory=list)
     corners: list[CornerZone] = field(default_factory=list)
+    unproven: list[UnprovenSpan] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -159,6 +163,7 @@ class _Samples:
             path_error=self.error,
             corners=tuple(self.corners),
             moves=tuple(self.spans),
+            unproven=tuple(self.unproven),
         )
         return ProgramMotion(trajectory, tuple(self.notes))
 
@@ -183,27 +188,43 @@ class _Samples:
     def _along(self, leg: Leg, stretch: Stretch, move: PathMove) -> None:
         """What the tool's path makes of the joints."""
         follower = follower_of(self.arm, stretch, move.hold, self.at)
-        samples = self._proven(follower, self.at, leg.pieces, self._seam)
-        self.error = max(self.error, float(samples.deviations.max()) + self._seam(samples))
-        if leg.corner is not None:
+        samples, wide = self._enclosed(follower, leg.pieces, self._seam)
+        if leg.corner is not None and not wide.any():
             zone = corner_of(follower, samples, self.now, leg.corner.radius, move.name)
-            self._add_corner(zone, leg.corner)
+            if zone is None:
+                self._leave_unproven(move, samples.times[[0, -1]], _too_wide(leg.corner.radius))
+            else:
+                self._add_corner(zone, leg.corner)
+        elif leg.corner is not None:
+            self._leave_unproven(move, samples.times[[0, -1]], SINGULAR)
+        for first, last in _stretches_of(wide):
+            self._leave_unproven(move, samples.times[[first, last]], SINGULAR)
         self._append(samples.times[1:], samples.positions[1:], samples.velocities[1:])
         self.at = samples.positions[-1]
 
-    def _proven(
+    def _enclosed(
         self,
         follower: Follower,
-        start: np.ndarray,
         pieces: Sequence[Piece],
         seam: Callable[[PathSamples], float] = lambda _: 0.0,
-    ) -> PathSamples:
-        """Samples so near to each other that joints between them are within `PATH_ERROR` of their cubics."""
+    ) -> tuple[PathSamples, np.ndarray]:
+        """Samples so near to each other that joints between them are within `PATH_ERROR` of their cubics, and
+        (n - 1,) between which of them that is not proven."""
+        samples = PathSamples.of(follower, pieces, self.program.step)
         for n_halved in range(MOST_HALVINGS + 1):
-            samples = PathSamples.of(follower, start, pieces, self.program.step / 2**n_halved)
-            if float(samples.deviations.max()) + seam(samples) <= PATH_ERROR:
-                return samples
-        raise _unproven(samples, self.arm)
+            off = samples.deviations.max(axis=1)
+            off[0] += seam(samples)
+            wide = off > PATH_ERROR
+            if not wide.any() or n_halved == MOST_HALVINGS or wide.sum() > MOST_WIDE:
+                break
+            samples = samples.halved(follower, wide)
+        self.error = max(self.error, float(off[~wide].max(initial=0.0)))
+        return samples, wide
+
+    def _leave_unproven(self, move: Move, ends: np.ndarray, why: str) -> None:
+        """Tells of a stretch that begins and ends so many seconds from now."""
+        start, end = (self.now + ends).tolist()
+        self.unproven.append(UnprovenSpan(move.name, start, end, why))
 
     def _add_corner(self, zone: CornerZone, corner: Corner) -> None:
         self.corners.append(zone)
@@ -211,7 +232,7 @@ class _Samples:
 
     def _beside_joints(self, leg: Leg, corner: Corner) -> None:
         """The corner zone between two moves of which one is a joint move."""
-        (piece,), joints, wide = leg.pieces, [self.at], np.zeros(len(self.at))
+        (piece,), joints, wide, is_proven = leg.pieces, [self.at], np.zeros(len(self.at)), True
         for move, side in zip(corner.moves, corner.sides, strict=True):
             if isinstance(side, JointWay):
                 joints.append(side.joints(np.ones(1))[0])
@@ -219,16 +240,20 @@ class _Samples:
                 continue
             assert isinstance(move, PathMove)
             follower = follower_of(self.arm, side, move.hold, joints[-1])
-            samples = self._proven(follower, joints[-1], [Piece(1.0, 0.0, 1.0, 0.0)])
+            samples, narrow = self._enclosed(follower, [Piece(1.0, 0.0, 1.0, 0.0)])
+            is_proven = is_proven and not narrow.any()
             joints.append(samples.positions[-1])
             last, wide = samples.velocities[-1], np.maximum(wide, bow(samples))
         rates = np.stack([self.velocities[-1][-1], 2.0 * piece.rate * last])
         zone = JointCorner(joints[0], joints[1], joints[2], rates, wide, piece.duration)
         n = self._n_samples(self.arm.poses(zone.samples(32)[1]))
         times, positions, velocities = zone.samples(n)
-        ends, links = (self.now, self.now + piece.duration), zone.links_off(self.arm, n)
-        found = CornerZone(leg.move.name, *ends, corner.radius, links)
-        self._add_corner(found, corner)
+        if is_proven:
+            ends, links = (self.now, self.now + piece.duration), zone.links_off(self.arm, n)
+            found = CornerZone(leg.move.name, *ends, corner.radius, links)
+            self._add_corner(found, corner)
+        else:
+            self._leave_unproven(leg.move, times[[0, -1]], SINGULAR)
         self._append(times[1:], positions[1:], velocities[1:])
         self.at = positions[-1]
 
@@ -290,14 +315,18 @@ class _Samples:
             )
 
 
-def _unproven(samples: PathSamples, arm: Arm) -> BadProgram:
-    """Where nothing is proven of the joints between samples."""
-    bad = int(np.argmax(samples.deviations.max(axis=1)))
-    x, y, z = arm.poses(samples.positions[bad : bad + 1])[0, :3, 3]
-    return BadProgram(
-        f"the motion near ({x:.4g}, {y:.4g}, {z:.4g}) m is not proven: a singularity is too near",
-        valid="another start configuration, or a joint move there",
-    )
+SINGULAR = "a singularity is too near"
+"""Why joints are not enclosed: none else is known."""
+
+
+def _too_wide(radius: float) -> str:
+    return f"a corner zone of {radius * 1e3:.4g} mm is too wide to be proven where the arm is"
+
+
+def _stretches_of(wide: np.ndarray) -> Iterator[tuple[int, int]]:
+    """The first and the last sample of each row of intervals (n,) that are marked."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], wide, [False]]).astype(int)))
+    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
 
 
 def _note_on(zone: CornerZone, corner: Corner) -> str:

@@ -19,11 +19,13 @@ class PathSamples:
     """Samples on one stretch.
 
     Attributes:
+        parts: each piece and its samples (m,) [s] from its beginning.
         times: (n,) [s] from its beginning. shares: (n,) of the way through it.
         positions, velocities: (n, k) of the arm's joints.
         intervals: between them. deviations: (n - 1, k) [rad or m]; infinite where nothing is proven.
     """
 
+    parts: list[tuple[Piece, np.ndarray]]
     times: np.ndarray
     shares: np.ndarray
     positions: np.ndarray
@@ -32,24 +34,36 @@ class PathSamples:
     deviations: np.ndarray
 
     @classmethod
-    def of(
-        cls, follower: Follower, start: np.ndarray, pieces: Sequence[Piece], step: float
-    ) -> PathSamples:
-        """The samples from joints (k,), so many that the tool moves and turns by no more than a step between them.
+    def of(cls, follower: Follower, pieces: Sequence[Piece], step: float) -> PathSamples:
+        """The samples along pieces, so many that the tool moves and turns by no more than a step between them.
 
         Raises:
             BadInput: the tool cannot go on.
         """
-        counts = [_n_intervals(follower, piece, step) for piece in pieces]
-        parts = [
-            (piece, np.linspace(0.0, piece.duration, n + 1))
-            for piece, n in zip(pieces, counts, strict=True)
-        ]
-        begun = np.cumsum([0.0, *(piece.duration for piece in pieces)])
+        return cls._at(
+            follower,
+            [
+                (piece, np.linspace(0.0, piece.duration, _n_intervals(follower, piece, step) + 1))
+                for piece in pieces
+            ],
+        )
+
+    def halved(self, follower: Follower, wide: np.ndarray) -> PathSamples:
+        """The same with a sample more in the middle of some intervals (n - 1,)."""
+        ends = np.cumsum([0, *(len(times) - 1 for _, times in self.parts)])
+        parts = []
+        for (piece, times), first, last in zip(self.parts, ends, ends[1:], strict=False):
+            middles = (0.5 * (times[:-1] + times[1:]))[wide[first:last]]
+            parts.append((piece, np.sort(np.concatenate([times, middles]))))
+        return self._at(follower, parts)
+
+    @classmethod
+    def _at(cls, follower: Follower, parts: list[tuple[Piece, np.ndarray]]) -> PathSamples:
+        begun = np.cumsum([0.0, *(piece.duration for piece, _ in parts)])
         times = [began + own[:-1] for (_, own), began in zip(parts, begun, strict=False)]
         shares = [piece.at(own[:-1]) for piece, own in parts]
         rates = [piece.rates_at(own[:-1]) for piece, own in parts]
-        changes = [np.full(n, piece.change) for piece, n in zip(pieces, counts, strict=True)]
+        changes = [np.full(len(own) - 1, piece.change) for piece, own in parts]
         last_piece, last_times = parts[-1]
         times_all = np.append(np.concatenate(times), begun[-1])
         shares_all = np.append(np.concatenate(shares), 1.0)
@@ -57,7 +71,7 @@ class PathSamples:
         changes_all = np.append(np.concatenate(changes), last_piece.change)
         rates_all[np.abs(rates_all) < 1e-9 * np.abs(rates_all).max(initial=0.0)] = 0.0
         strokes = follower.stretch.strokes(shares_all, rates_all, changes_all)
-        positions = follower.positions(start, shares_all)
+        positions = follower.positions(shares_all)
         velocities = follower.rates(positions, strokes, rates_all)
         given = Intervals(
             np.diff(times_all),
@@ -67,7 +81,7 @@ class PathSamples:
             strokes[:, :-1],
         )
         off = deviations(follower.arm, follower.stretch, given, follower.free)
-        return cls(times_all, shares_all, positions, velocities, given, off)
+        return cls(parts, times_all, shares_all, positions, velocities, given, off)
 
 
 def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
@@ -76,4 +90,5 @@ def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
     share = piece.duration * np.abs(piece.rates_at(np.array([0.0, piece.duration]))).max()
     turned = np.linalg.norm(stretch.turns, axis=1).sum()
     length = sum(way.length for way in stretch.ways)
-    return max(1, int(np.ceil(share * length / step)), int(np.ceil(share * turned / STEP_TURN)))
+    steps = share * max(length / step, turned / STEP_TURN)
+    return max(1, int(np.ceil(steps - 1e-9)))  # rounding makes no step more

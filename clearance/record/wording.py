@@ -174,6 +174,7 @@ def span_text(start: float, end: float, moves: str = "") -> str:
 def least_proven(certified: dict) -> str:
     """The least proven clearance, and of which moments."""
     when = "at every moment that is measured" if certified["not_measured"] else "at every moment"
+    when = "at every moment that is proven" if certified.get("not_proven") else when
     when = "at this pose" if certified["is_pose"] else when
     return f"at least {mm(certified['lower_bound'])} mm {when}"
 

@@ -42,9 +42,8 @@ def annotation_lines(model: ReportModel, root: Path) -> Iterator[str]:
 
 
 def _of_verdict(verdict: Verdict) -> list[str]:
-    told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects] + [
-        *verdict.waiver_faults
-    ]
+    told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
+    told += [*verdict.unproven_motion, *verdict.waiver_faults]
     if verdict.disputed_by is not None:
         told.append(f"{verdict.disputed_by} disagrees")
     return told

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from clearance.codes import coded, codes
-from clearance.findings.doubts import UNUSED_WAIVER
+from clearance.findings.doubts import UNUSED_WAIVER, unproven_motion
 from clearance.findings.finding import (
     CLEARANCE,
     OF_TOLERANCES,
@@ -217,7 +217,11 @@ def _of_cross_check(record: Record) -> Iterator[TestResult]:
     yield TestResult("cross_check", f"agrees with {check.peer}", text, fault)
 
 
-_FAULTS = {Severity.SUSPECT: "SuspectInput", Severity.VIOLATED: "RuleBroken"}
+_FAULTS = {
+    Severity.SUSPECT: "SuspectInput",
+    Severity.VIOLATED: "RuleBroken",
+    Severity.UNPROVEN: "NotProven",
+}
 """What kind of failure a notice is."""
 
 
@@ -226,6 +230,8 @@ def _of_notices(record: Record) -> Iterator[TestResult]:
     for notice in record.notices:
         fault = _FAULTS.get(notice.severity, "")
         if notice.severity is Severity.SUSPECT and notice.kind in record.case.accept:
+            fault = ""
+        if notice.severity is Severity.UNPROVEN and notice not in unproven_motion(record):
             fault = ""
         name = f"{notice.kind}: {notice.text}"
         yield TestResult(str(notice.severity), name, notice.line, fault)

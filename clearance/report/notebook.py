@@ -23,6 +23,7 @@ def run_html(model: ReportModel) -> str:
     limits = record.rule(record.worst.rule).limits
     beside = [
         *([f"nearest of all {verdict.nearest}"] if verdict.nearest else []),
+        *verdict.unproven_motion,
         *verdict.with_tolerances,
         *verdict.scope,
         *(f"suspect {one.kind}: {one.line}" for one in verdict.suspects),

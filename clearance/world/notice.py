@@ -18,6 +18,7 @@ class Severity(StrEnum):
 
     SUSPECT = "suspect"
     VIOLATED = "violated"
+    UNPROVEN = "unproven"
     WARNING = "warning"
 
 
@@ -58,7 +59,8 @@ class Notice:
 
     Attributes:
         severity: a suspect input makes the verdict suspect unless its kind is accepted; a rule of the case that
-            is broken makes it violated; a warning stands in the headline.
+            is broken makes it violated; what is not proven of the motion fails it, unless only samples are asked
+            for; a warning stands in the headline.
         kind: one of `KINDS`, or a word of its own for the others ("joint limits", "geometry", "package", …).
         text: one line: what was found, where, and what to do.
         about: the name of what it is of, where several could have such a notice: the robot, for joint limits.

@@ -31,6 +31,7 @@ from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
+from clearance.world.unproven_motion import notices_on_unproven
 
 LARGE_LIMIT = 0.5
 """[m] A clearance limit above half a metre would forbid a robot most of its cell; in millimetres it
@@ -60,6 +61,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
             found += notices_on_motion(placed, before, extents)
             found += notices_on_speed(placed, case.limits.joints, before)
             found += notices_on_holes(placed, before)
+            found += notices_on_unproven(placed, before)
             found += notices_on_wrap(placed, before)
         found += notices_on_joints(placed, case.limits.joints, before, extents)
     return worst_first(found)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -56,6 +57,20 @@ class MoveSpan:
     end: float
 
 
+@dataclass(frozen=True)
+class UnprovenSpan:
+    """A stretch of a program on which joints are where it says at the samples, and are not proven to be between.
+
+    Attributes:
+        move: its name. start, end: [s] of the trajectory's own time. why: in a few words.
+    """
+
+    move: str
+    start: float
+    end: float
+    why: str
+
+
 @dataclass(frozen=True, eq=False)
 class Points:
     """The samples of a file with accelerations, where a trajectory has more between them.
@@ -89,6 +104,7 @@ class Trajectory:
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
         moves: of a program, when each is made. frames: the obstacles that its work frames are on.
         corners: stretches on which a controller may leave the path, and how far links may then be off.
+        unproven: stretches of a program that are not proven.
         wrap: one of `WRAPS`, or None if unknown; a case with such a step is then suspect.
             With the shortest way, a `PlacedRobot` subtracts whole turns.
 
@@ -112,6 +128,7 @@ class Trajectory:
     corners: tuple[CornerZone, ...] = ()
     moves: tuple[MoveSpan, ...] = ()
     frames: tuple[str, ...] = ()
+    unproven: tuple[UnprovenSpan, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
@@ -166,24 +183,16 @@ class Trajectory:
         times = timing.run_times(self.times)
         if own is not None:
             own = replace(own, times=timing.run_times(own.times))
-        holes = (
-            replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.holes
-        )
         began = None if self.began is None else self.began - seconds
-        corners = tuple(
-            replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.corners
-        )
-        moves = tuple(
-            replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.moves
-        )
         return replace(
             self,
             times=times,
-            holes=tuple(holes),
+            holes=_shifted(self.holes, seconds),
             points=own,
             began=began,
-            corners=corners,
-            moves=moves,
+            corners=_shifted(self.corners, seconds),
+            moves=_shifted(self.moves, seconds),
+            unproven=_shifted(self.unproven, seconds),
         )
 
     def _refuse_bad_samples(self) -> None:
@@ -219,6 +228,14 @@ class Trajectory:
                 f"{farthest.max():g} rad or m before the next sample",
                 valid=f"{LARGEST:g} or less",
             )
+
+
+Span = TypeVar("Span", Hole, CornerZone, MoveSpan, UnprovenSpan)
+
+
+def _shifted(spans: Sequence[Span], seconds: float) -> tuple[Span, ...]:
+    """The same, some seconds later."""
+    return tuple(replace(one, start=one.start + seconds, end=one.end + seconds) for one in spans)
 
 
 def _numbers(given: object, name: str) -> np.ndarray:

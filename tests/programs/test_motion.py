@@ -109,3 +109,13 @@ def test_a_corner_is_proven_where_a_joint_is_held_and_refused_where_it_goes(move
     assert 0.0005 < corner.links[one.link].way < 0.006
     column = found.joint_names.index(one.joints[2].name)
     assert np.abs(found.positions[:, column] - start[2]).max() < 1e-12
+
+
+def test_a_zone_too_wide_to_be_proven_is_passed_on_its_nominal_path_and_told():
+    moves = lines(first_pose(), [(0.0, 0.12, 0.0), (0.0, 0.0, -0.12)], (0.4, 0.3, 0.0), zone=0.06)
+    found = motion(moves).trajectory
+    (span,) = found.unproven
+    assert span.move == "LIN 1" and "60 mm is too wide" in span.why and not found.corners
+    ends = tool(motion(moves), positions_along(found, np.array([span.start, span.end])))
+    apart = np.linalg.norm(ends[:, :3, 3] - moves[0].pose[:3, 3], axis=1)
+    assert apart == pytest.approx([0.06, 0.06], abs=1e-6)

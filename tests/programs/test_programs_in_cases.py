@@ -10,6 +10,7 @@ import yaml
 from scipy.spatial.transform import Rotation
 
 import clearance as cl
+from clearance.findings.doubts import doubts_of
 from clearance.findings.finding_text import finding_line
 from clearance.geometry.quaternions import quaternions_of
 from clearance.record.wording import certified_text
@@ -408,3 +409,29 @@ def test_a_fault_of_a_program_within_a_case_names_its_field(tmp_path):
     content["trajectory"]["program"] |= {"moves": [{"wait": 1.0}], "start": START}
     path.write_text(yaml.safe_dump(content))
     assert cl.load_case(path).robots[0].trajectory.times[-1] == 1.0
+
+
+def near_singular(folder: Path) -> Path:
+    """A line on which the wrist of the arm passes a hundredth of a radian from where it is straight."""
+    start = dict(zip(JOINTS, (-0.3, 0.1, 0.6, 0.0, -0.01, 0.2), strict=True))
+    first, turned = tool_at(start), tool_at({**start, "joint_5": 0.31})
+    to = place(first[:3, 3] + [0.0, 0.1, 0.05])
+    to["quat_xyzw"] = quaternions_of(turned[None, :3, :3])[0].tolist()
+    return case(folder, [{"lin": {"to": to}}], [far()], start=start)
+
+
+def test_a_stretch_near_a_singularity_is_measured_and_not_proven(tmp_path):
+    run = cl.check(near_singular(tmp_path))
+    trajectory = run.record.case.robots[0].trajectory
+    (span,) = trajectory.unproven
+    assert span.move == "LIN 1" and 0.0 < span.start < span.end < 0.2
+    assert run.verdict.exit_code == 1 and run.verdict.status == "not proven"
+    assert "not proven on part of the motion, clear as measured" in run.verdict.text()
+    told = f"LIN 1, {span.start:.3f}-{span.end:.3f} s: a singularity is too near"
+    assert told in run.verdict.reasons[0] and "unproven motion" in {
+        doubt.kind for doubt in doubts_of(run.record, None) if doubt.fails
+    }
+    certified = certified_text(certified_of(run.record, run.record.certificate))
+    assert "at every moment that is proven" in certified
+    samples = cl.check(near_singular(tmp_path), certify=False)
+    assert samples.passed and any(told in warning for warning in samples.verdict.warnings)

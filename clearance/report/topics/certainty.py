@@ -18,6 +18,7 @@ from clearance.report.moment import step_link
 from clearance.report.topic import Line, Topic, labelled
 from clearance.world.case import Case
 from clearance.world.plausible_recordings import not_measured
+from clearance.world.unproven_motion import not_proven
 
 MOST_ROWS = 200
 """Most steps of a failed cross-check printed on the page; all are in `summary.json`."""
@@ -76,6 +77,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
         "allowed_gap": certificate.gap,
         "greatest_gap": _greatest_gap(certificate),
         "not_measured": [[*span] for span in not_measured(record.case)],
+        "not_proven": [[*span] for span in not_proven(record.case)],
         "is_pose": record.basis == "pose",
         "tally": dict(certificate.tally),
     }

@@ -77,6 +77,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
     yield from (("waived", text) for text in verdict.waived)
     yield from (("waivers", text) for text in verdict.waiver_faults)
     yield from (("violated", text) for text in verdict.broken)
+    yield from (("not proven", text) for text in verdict.unproven_motion)
     yield from (("tolerances", text) for text in verdict.with_tolerances)
     if verdict.unproven:
         yield "unproven", verdict.unproven
@@ -150,6 +151,7 @@ def _beside(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content
     """What a reader must know beside the clearance, right below the verdict."""
     failing = [
         *(f"Violated: {text}" for text in verdict.broken),
+        *map(capital, verdict.unproven_motion),
         *map(capital, verdict.waiver_faults),
     ]
     doubts = [text for text in (verdict.at_level, verdict.unproven) if text]
