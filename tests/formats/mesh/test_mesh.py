@@ -124,14 +124,6 @@ def test_obj_continued_lines_tabs_colours_and_comments():
     assert triangles_from_bytes(data, "m.obj").corners.tolist() == [[0, 1, 2]]
 
 
-@pytest.mark.parametrize("scale", [2, 2.0, (2, 2, 2), (2.0, -2, 2), -2, (-2, -2, 2), (-2, -2, -2)])
-@pytest.mark.parametrize(("name", "data"), [("c.stl", cube_stl()), ("c.obj", CUBE_OBJ.encode())])
-def test_scale_keeps_faces_outward_even_when_it_mirrors(name, data, scale):
-    shape = mesh_from_bytes(data, name, scale).shape
-    assert signed_volume(shape) == 8
-    assert shape.bounds.tolist() == [[-1, -1, -1], [1, 1, 1]]
-
-
 def test_scale_of_each_axis_and_mirroring_move_points_where_they_belong():
     corners = CUBE_CORNERS + np.array([1, 2, 3])
     shape = mesh_from_bytes(binary_stl(corners), "m.stl", (-2, 3, 0.5)).shape

@@ -66,12 +66,6 @@ def test_every_form_gives_the_same_numbers(form):
         assert read.velocities.tolist() == [[0.0, -0.001], [0.5, 0.25]]
 
 
-def test_without_velocities_there_are_none():
-    points = [{key: point[key] for key in ("positions", "time_from_start")} for point in POINTS]
-    assert parse(dumped(with_points(*points))).velocities is None
-    assert parse(dumped(with_points(*[{**p, "velocities": []} for p in points]))).velocities is None
-
-
 def test_times_as_people_write_them_by_hand():
     """Without nanoseconds, which is told, and with a point behind whole seconds."""
     document = {**MESSAGE, "points": [

@@ -53,10 +53,6 @@ def test_velocity_columns_go_with_their_joints(text):
     assert trajectory.velocities.tolist() == [[5, 6], [7, 8]]
 
 
-def test_a_file_without_velocities_has_none():
-    assert parse("time,a,velocity\n0,1,2\n").velocities is None
-
-
 def test_numbers_are_read_to_the_last_bit():
     values = np.random.default_rng(7).normal(size=300) * 10.0 ** np.arange(-150, 150)
     rows = "".join(f"{i},{value!r}\n" for i, value in enumerate(values.tolist()))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput, DuplicateName
-from clearance.formats.robot.compound_joints import COMPOUND, chained
 from clearance.geometry.pose import pose_from_rpy
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
@@ -43,14 +42,6 @@ def test_a_floating_joint_is_a_place_and_roll_pitch_yaw(tmp_path):
         "arm.urdf: floating joint 'free' is read as free/x, free/y, free/z, free/yaw, free/pitch, free/roll; "
         "between samples each goes by itself",
     )
-
-
-def test_every_kind_ends_at_the_child():
-    for kind, parts in COMPOUND.items():
-        chain = chained(kind, "j", "a", "b", np.eye(4))
-        assert [one.name for one in chain] == [f"j/{part}" for part in parts]
-        assert (chain[0].parent, chain[-1].child) == ("a", "b")
-        assert [one.parent for one in chain[1:]] == [one.child for one in chain[:-1]]
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from clearance.formats.robot.request import RobotRequest
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind
 from tests.formats.making_case import changed, load_small
-from tests.formats.making_mjcf import BALL, load_mjcf, mjcf, tetrahedron_stl, write_mjcf
+from tests.formats.making_mjcf import BALL, load_mjcf, mjcf, write_mjcf
 
 ARM = mjcf(
     f'<body name="upper" pos="0 0 0.1"><joint name="shoulder" axis="0 0 1" range="-90 90"/>{BALL}'
@@ -122,21 +122,6 @@ def test_pairs_that_are_excluded_are_not_measured_and_told(tmp_path):
         why = {(one.link, one.obstacle): one.reason for one in left_out}
         told = "excused: <exclude> in the model"
         assert (why.get(("c", "b")) == told) == (n_links == 1)
-
-
-def test_meshes_are_read_from_their_files_with_all_their_faces(tmp_path):
-    text = mjcf(
-        '<body><geom type="mesh" mesh="a"/></body>',
-        '<compiler meshdir="m"/><asset><mesh file="a.stl" scale="2 1 1"/></asset>',
-    )
-    (tmp_path / "m").mkdir()
-    (tmp_path / "m" / "a.stl").write_bytes(tetrahedron_stl())
-    files = InputFiles(tmp_path)
-    loaded = read_robot(RobotRequest(write_mjcf(tmp_path, text)), MeshStore(files))
-    (body,) = loaded.bodies
-    assert (body.name, body.origin) == ("body1", "m/a.stl")
-    assert body.shape.vertices[:, 0].max() == 2.0 and body.shape.n_faces == 4
-    assert [source.path for source in files.sources] == ["m/a.stl", "toy.xml"]
 
 
 def test_a_hollow_mesh_stays_hollow(tmp_path):

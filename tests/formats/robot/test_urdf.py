@@ -41,20 +41,6 @@ def test_an_arm_has_its_links_joints_and_bodies(tmp_path):
     assert arm.notes == ("arm.urdf: 1 link without any shape: tip",)
 
 
-def test_several_elements_of_a_link_are_one_body_in_the_link_frame(tmp_path):
-    parts = [
-        collision('<box size="2 4 6"/>', '<origin xyz="10 0 0" rpy="0 0 1.5707963267948966"/>'),
-        collision('<mesh filename="upper.stl" scale="1 1 -2"/>', '<origin xyz="0 0 5"/>'),
-        collision('<mesh filename="upper.stl" scale="0.5"/>'),
-        "<visual><geometry><sphere radius='100'/></geometry></visual>",
-    ]
-    body = load_urdf(tmp_path, robot(link("".join(parts)))).bodies[0]
-    assert signed_volume(body.shape) == pytest.approx(48 + 2 + 0.125)
-    assert body.shape.bounds[1] == pytest.approx([12, 1, 6])
-    assert body.shape.bounds[0] == pytest.approx([-0.5, -1, -3])
-    assert body.origin == "box, upper.stl, upper.stl"
-
-
 @pytest.mark.parametrize(
     ("shape", "size", "volume"),
     [
@@ -75,50 +61,6 @@ def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, s
     assert (extent >= size).all()
     assert extent == pytest.approx(size, abs=2 * 1.01e-4)
     assert volume <= signed_volume(body.shape) * (1 + 1e-15) <= volume * 1.002
-
-
-def test_visual_geometry_when_asked(tmp_path):
-    elements = (
-        collision('<box size="1 1 1"/>')
-        + "<visual><geometry><box size='2 2 2'/></geometry></visual>"
-    )
-    assert signed_volume(load_urdf(tmp_path, robot(link(elements))).bodies[0].shape) == 1
-    shape = load_urdf(tmp_path, robot(link(elements)), geometry="visual").bodies[0].shape
-    assert signed_volume(shape) == 8
-
-
-def test_origins_turn_by_roll_pitch_yaw_about_fixed_axes(tmp_path):
-    origin = '<origin xyz="1 2 3" rpy="0.3 -0.4 0.5"/>'
-    arm = load_urdf(
-        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", origin))
-    )
-
-    def turn(axis, angle):
-        i, k = [(1, 2), (2, 0), (0, 1)][axis]
-        matrix = np.eye(3)
-        matrix[i, i] = matrix[k, k] = np.cos(angle)
-        matrix[i, k], matrix[k, i] = -np.sin(angle), np.sin(angle)
-        return matrix
-
-    pose = arm.joints[0].parent_from_joint
-    assert pose[:3, 3].tolist() == [1, 2, 3]
-    expected = turn(2, 0.5) @ turn(1, -0.4) @ turn(0, 0.3)
-    assert pose[:3, :3] == pytest.approx(expected, abs=1e-15)
-
-
-def test_links_come_parents_first_whatever_the_file_says(tmp_path):
-    arm = load_urdf(
-        tmp_path,
-        robot(
-            link("", "c"),
-            link("", "b"),
-            link("", "a"),
-            joint("bc", "b", "c"),
-            joint("ab", "a", "b"),
-        ),
-    )
-    assert arm.link_names == ("a", "b", "c")
-    assert [j.name for j in arm.joints] == ["ab", "bc"]
 
 
 SLIDE = '<axis xyz="1 0 0"/><limit lower="0" upper="9"/>'
