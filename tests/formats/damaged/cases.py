@@ -86,7 +86,7 @@ def findings() -> bytes:
     found = Finding(
         16 * "0", "clearance", "default", "tip", "post", 0, "violated", 0.035, 0.034, 0.04, 0.06, 2.5, None, 132,
         True,
-        2.0, 3.0, 129, 135, (0.1, 0.2, 0.3), (0.1, 0.2, 0.4), {"shoulder": 0.5}, "", waived,
+        2.0, 3.0, 129, 135, (0.1, 0.2, 0.3), (0.1, 0.2, 0.4), {"shoulder": 0.5}, "", waived=waived,
     )  # fmt: skip
     return findings_text(FindingList("small", "", 0, measured, (doubt,), (found,))).encode()
 
