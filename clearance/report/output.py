@@ -58,6 +58,24 @@ class Drawings(NamedTuple):
     earlier: Sequence[EarlierBody] = ()
 
 
+def page_text(
+    model: ReportModel,
+    drawn: Drawings,
+    kept: MeasuredRows = IN_MEMORY,
+    comparison: Comparison | None = None,
+) -> str:
+    """`report.html`.
+
+    Args:
+        kept: where the record's rows are. comparison: with a baseline.
+    """
+    findings = model.finding_list.findings
+    content = PageContent(summary_of(model), model.verdict, drawn.pictures, findings, comparison)
+    curves = pair_curves(model.record, model.details.minima, kept)
+    more = PageCurves(curves, [*more_curves(model.record)])
+    return page_of(content, drawn.replay, more, drawn.earlier)
+
+
 def write(
     model: ReportModel,
     drawn: Drawings,
@@ -80,15 +98,12 @@ def write(
     Raises:
         Unwritable: `folder` cannot be written.
     """
-    record, summary = model.record, summary_of(model)
-    findings = model.finding_list.findings
-    content = PageContent(summary, model.verdict, drawn.pictures, findings, comparison)
-    curves = PageCurves(pair_curves(record, model.details.minima, kept), [*more_curves(record)])
+    record = model.record
     texts = {
         MOMENTS: moments_text(model),
         findings_file.FILE_NAME: findings_file.findings_text(model.finding_list),
-        "report.html": page_of(content, drawn.replay, curves, drawn.earlier),
-        LAST: json_text(summary),
+        "report.html": page_text(model, drawn, kept, comparison),
+        LAST: json_text(summary_of(model)),
     }
 
     def fill(place: Path) -> None:

@@ -11,7 +11,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, Unavailable
+from clearance.extras import is_installed, require
 from clearance.record.certificate import Certificate
 from clearance.record.moment import Moment
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from clearance.findings.verdict import Verdict
     from clearance.record.levels import Event
     from clearance.report.model import ReportModel
+    from clearance.report.notebook import ShownPage
+    from clearance.report.output import Drawings
     from clearance.run.question import Question
     from clearance.run.session import RunSession
 
@@ -213,15 +216,45 @@ class Run:
         Raises:
             BadInput: no path. Unwritable: nothing is left half-written.
         """
-        from clearance.report.output import Drawings, write
+        from clearance.report.output import write
 
         if not isinstance(folder, str | PathLike) or not str(folder):
             raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
+        write(self.report, self._drawn(earlier), folder, self.rows, comparison)
+        return Path(folder)
+
+    def _drawn(self, earlier: Run | None = None) -> Drawings:
+        from clearance.report.output import Drawings
+
         replay = self.session.replay(self.rows)
         before = [] if earlier is None else earlier.session.earlier_motion(replay)
-        drawn = Drawings(replay, self.session.pictures, before)
-        write(self.report, drawn, folder, self.rows, comparison)
-        return Path(folder)
+        return Drawings(replay, self.session.pictures, before)
+
+    def show(self, height: int = 800) -> ShownPage:
+        """The page of the report, with verdict, curve and replay: a notebook shows it, else the browser opens it.
+
+        Args:
+            height: in a notebook [pixels].
+
+        Raises:
+            Unavailable: a library of the extra `report` is missing.
+        """
+        require("report", "the page")
+        from clearance.report.notebook import shown_page
+        from clearance.report.output import page_text
+
+        return shown_page(page_text(self.report, self._drawn(), self.rows), height)
+
+    def to_pandas(self) -> Any:
+        """`steps` as a `pandas.DataFrame`.
+
+        Raises:
+            Unavailable: pandas or pyarrow is not installed.
+        """
+        if not is_installed("pandas"):
+            valid = "pip install pandas; `steps` needs none"
+            raise Unavailable("to_pandas needs pandas, which is not installed", valid=valid)
+        return self.steps.to_pandas()
 
 
 def _measured_columns(sides: tuple[str, str], moment: Moment) -> dict[str, Any]:

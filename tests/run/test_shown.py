@@ -1,0 +1,75 @@
+"""A run in a notebook, and without one: the page of its report, and its steps as a table of pandas."""
+
+import html
+import re
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+import clearance as cl
+from clearance import extras
+from clearance.errors import BadDimension, Unavailable
+from tests.report.browser import chromium, executable
+
+
+@pytest.fixture(scope="module")
+def run():
+    return cl.check("scenes/box_box/case.yaml")
+
+
+@pytest.fixture(scope="module")
+def page(run, tmp_path_factory):
+    return (run.save(tmp_path_factory.mktemp("report")) / "report.html").read_text()
+
+
+@pytest.fixture
+def kernel(monkeypatch):
+    """A kernel of Jupyter, as far as it is asked."""
+    shell = SimpleNamespace(kernel=None)
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setattr("webbrowser.open", None)
+
+
+def test_a_notebook_shows_the_page_of_the_report(run, page, kernel):
+    told = run.show(height=600)._repr_html_()
+    assert html.unescape(re.fullmatch(r'<iframe srcdoc="([^"]*)" .*</iframe>', told)[1]) == page
+    assert 'height="600"' in told
+    with pytest.raises(BadDimension):
+        run.show(height=0)
+
+
+@pytest.mark.parametrize("shell", [None, SimpleNamespace()])
+def test_without_a_notebook_the_browser_opens_it(run, page, shell, monkeypatch, tmp_path):
+    opened = []
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setattr("webbrowser.open", lambda url, new: opened.append(url))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    shown = run.show()
+    assert opened == [shown.path.as_uri()] and str(shown.path) in repr(shown)
+    assert shown.path.read_text() == page
+
+
+def test_pandas_is_named_where_it_is_missing(run, monkeypatch):
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    with pytest.raises(Unavailable, match=r"to_pandas needs pandas, .*; pip install pandas"):
+        run.to_pandas()
+
+
+def test_steps_as_a_table_of_pandas(run):
+    pytest.importorskip("pandas")
+    table = run.to_pandas()
+    assert list(table.columns) == run.steps.column_names
+    assert table["clearance"].tolist() == run.steps["clearance"].to_pylist()
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_the_page_plays_within_a_notebook(run, kernel, tmp_path):
+    path = tmp_path / "cell.html"
+    path.write_text(f"<html><body>{run.show()._repr_html_()}</body></html>")
+    with chromium() as tab:
+        inside = "document.querySelector('iframe')?.contentWindow"
+        tab.open(path.as_uri(), f"{inside}?.clearance")
+        assert tab.run(f"{inside}.document.querySelectorAll('canvas').length") > 0
+        assert not tab.errors
