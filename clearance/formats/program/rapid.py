@@ -6,6 +6,7 @@ Source: ABB, Technical reference manual, RAPID instructions, functions and data 
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -83,11 +84,12 @@ def _with_zones(
     moves: list[ControllerMove | ControllerWait], zones: dict[int, tuple[float, float]]
 ) -> list[ControllerMove | ControllerWait]:
     """Moves with the radius of their zone: that of the tool's point; where the tool turns before or after the
-    larger one of its orientation.
+    larger one of its orientation. A wait turns nothing.
     """
     found = list(moves)
     for i, (point, turn) in zones.items():
-        one, around = moves[i], [*moves[max(0, i - 1) : i], *moves[i : i + 2]]
+        before = (move for move in reversed(moves[:i]) if isinstance(move, ControllerMove))
+        one, around = moves[i], [*islice(before, 1), *moves[i : i + 2]]
         turns = [
             move.to.pose[:3, :3]
             if isinstance(move, ControllerMove) and isinstance(move.to, PoseTarget)

@@ -94,6 +94,9 @@ def test_a_zone_is_that_of_the_point_unless_the_tool_turns():
         )
     ]
     assert sizes == [0.0, 0.0003, 0.001, 0.2, 0.0, 0.008, 0.0]
+    lines = [f"MoveL [[{i},0,0],[1,0,0,0],[0,0,0,0],{NONE}],v5,z20,tool0;" for i in range(3)]
+    _, _, after_wait, _ = moves_of("\n".join([lines[0], "WaitTime 1;", *lines[1:]]))
+    assert after_wait.zone == 0.02  # the tool does not turn while it waits
 
 
 def test_flags_of_a_configuration_are_ranges_of_axes():
