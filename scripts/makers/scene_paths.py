@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from scripts.makers import door, handover, turntable, welding
+from scripts.makers import door, handover, palletising, turntable, welding
 from scripts.makers.paths import (
     Arm,
     JointTable,
@@ -131,5 +131,8 @@ TABLES: dict[str, Callable[[], dict[str, Table]]] = {
 }
 """Scene name to the function that makes its tables, by file name."""
 
-PROGRAMS: dict[str, Callable[[], dict[str, str]]] = {"welding_cell": welding.programs}
+PROGRAMS: dict[str, Callable[[], dict[str, str]]] = {
+    "welding_cell": welding.programs,
+    "palletising_cell": palletising.programs,
+}
 """The same of the programs of robots, as texts."""

@@ -21,7 +21,7 @@ def make(root: Path, name: str) -> None:
     folder = root / "scenes" / name
     for mesh_name, shape in MESHES.get(name, {}).items():
         write_stl(folder / "meshes" / f"{mesh_name}.stl", shape())
-    for file_name, table in TABLES[name]().items():
+    for file_name, table in TABLES.get(name, dict)().items():
         write_table(folder / file_name, table)
     for file_name, text in PROGRAMS.get(name, dict)().items():
         (folder / file_name).write_text(text, encoding="utf-8")
@@ -29,8 +29,8 @@ def make(root: Path, name: str) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(TABLES))
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(TABLES | PROGRAMS))
     parser.add_argument("--out", type=Path, default=Path(__file__).parents[2])
     arguments = parser.parse_args()
-    for scene in arguments.scenes or TABLES:
+    for scene in arguments.scenes or TABLES | PROGRAMS:
         make(arguments.out, scene)

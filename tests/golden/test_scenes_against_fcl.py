@@ -19,6 +19,7 @@ VERDICTS = {  # the statuses that occur, as scenes/README.md promises
     "turntable_cell": {"clear", "near"},
     "door_and_arm": {"clear", "near"},
     "welding_cell": {"clear", "near"},
+    "palletising_cell": {"clear", "near"},
 }
 
 

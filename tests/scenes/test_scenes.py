@@ -77,7 +77,8 @@ def remade(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_all_scenes_are_there() -> None:
     names = {scene.name for scene in SCENES}
     assert names >= {"box_box", "box_pipe", "iiwa_pipe_rack", "panda_shelf", "hot_cell"}
-    assert names >= {"dual_arm_handover", "turntable_cell", "door_and_arm", "welding_cell"}
+    assert names >= {"dual_arm_handover", "turntable_cell", "door_and_arm"}
+    assert names >= {"welding_cell", "palletising_cell"}
     assert all(case_of(scene)["name"] == scene.name for scene in SCENES)
 
 
@@ -130,8 +131,11 @@ def test_urdf_is_remade_byte_for_byte(remade: Path) -> None:
     assert (remade / path).read_bytes() == (ROOT / path).read_bytes()
 
 
+PROGRAMS = [*ROOT.glob("scenes/*/weld.yaml"), *ROOT.glob("scenes/*/*.mod")]
+
+
 @pytest.mark.cold
-@pytest.mark.parametrize("path", sorted(ROOT.glob("scenes/*/weld.yaml")), ids=name_of)
+@pytest.mark.parametrize("path", PROGRAMS, ids=name_of)
 def test_programs_are_remade_byte_for_byte(path: Path, remade: Path) -> None:
     assert (remade / path.relative_to(ROOT)).read_bytes() == path.read_bytes()
 
