@@ -1,4 +1,4 @@
-"""What a case comes to, as one row: the verdict, the moment that stands worst, a curve, and what was read.
+"""What a case comes to, as one row: the verdict, the most critical moment, a curve, and what was read.
 
 Not for: measuring (`measuring`), and rows on disk (`store`).
 """

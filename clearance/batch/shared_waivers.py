@@ -102,7 +102,7 @@ def _why_not(items: Sequence[Item], waiver: Waiver) -> str:
     if all(item.trajectory for item in items) and not any(matches(n, waiver.case) for n in names):
         return f"no case is called {waiver.case!r}; {nearest_name(waiver.case, names)}"
     return _unknown_name(items, waiver) or (
-        "what it is of keeps to its rule in all cases, or is not there, or a later waiver is of it"
+        "in every case its pairs keep their limits without it, are not there, or a later waiver covers them"
     )
 
 

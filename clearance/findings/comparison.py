@@ -189,7 +189,10 @@ def _measured_otherwise(before: MeasurementConditions, now: MeasurementCondition
     for what in ("method", "motion", "basis", "certify_gap"):
         one, other = getattr(before, what), getattr(now, what)
         if one != other:
-            return f"{what.replace('_', ' ')} was {one}, and is {other}"
+            was, now = (
+                f"{v * 1000:g} mm" if what == "certify_gap" and v else v for v in (one, other)
+            )
+            return f"{what.replace('_', ' ')} was {was}, and is {now}"
     if before.clock_slack != now.clock_slack:
         return f"clock slack was {slack_text(before)}, and is {slack_text(now)}"
     if before.need != now.need and not {before.need, now.need} <= _ALIKE:

@@ -62,7 +62,7 @@ class Judgement:
         findings: of all rules, the worst first. uses: of each waiver that is of this case.
         rest: what the rules come to without the pairs that are waived.
         n_of_others: waivers that are of other cases. is_rest: the pairs that are not waived; None where all are.
-        worst: the moment that stands worst of what decides the verdict.
+        worst: the most critical moment of what decides the verdict.
         worst_of: the same by rule; empty where no waiver is of this case.
     """
 
@@ -111,7 +111,7 @@ def judgement_of(session: Session) -> Judgement:
 
 
 def _with_worst(session: Session, judgement: Judgement) -> Judgement:
-    """The judgement with the moments that stand worst of what decides the verdict."""
+    """The judgement with the most critical moments of what decides the verdict."""
     by_rule: dict[str, list[RuleAnswer]] = {}
     for answer in judgement.judging:
         by_rule.setdefault(answer.name, []).append(answer)
@@ -198,7 +198,7 @@ class _WaivedRun:
         """Why nothing needs a waiver: what it names is not there, or keeps its rule."""
 
         told = unknown_name(self.session.record, self.waivers[i])
-        return told or "what it is of keeps to its rule, or a later waiver is of it"
+        return told or "its pairs keep their limits without it, or a later waiver covers them"
 
 
 def _unless_shared(waiver: Waiver, why: str) -> str:
@@ -225,10 +225,10 @@ def _fault(waiver: Waiver, failing: Finding, undecided: str) -> str:
     """Why a waiver does not cover a finding; `undecided` says why its level may be neither proven nor passed."""
     level = f"{waiver.at_least * 1000:g} mm"
     if failing.status == Status.CONTACT:
-        return f"{waiver} is of no contact"
+        return f"{waiver} does not cover contact"
     if failing.clearance is not None and failing.clearance < waiver.at_least:
-        return f"{waiver} is of at least {level}, and less occurs"
-    return f"{waiver} is of at least {level}, and that is not proven; {undecided}"
+        return f"{waiver} allows {level} or more, and less occurs"
+    return f"{waiver} allows {level} or more, which is not proven; {undecided}"
 
 
 def unknown_name(record: Record, waiver: Waiver) -> str:

@@ -79,7 +79,7 @@ def _of_waiver(record: Record, use: WaiverUse, one: RuleBudget) -> Finding:
     a, b = use.waiver.between
     named = _named(record, one.rule, one.limits)
     name = FindingName(record.case.name, WAIVED_TOLERANCES, one.rule, (a, b))
-    told = f"{use.waiver} is of at least {use.waiver.at_least * 1000:g} mm"
+    told = f"{use.waiver} allows {use.waiver.at_least * 1000:g} mm or more"
     return replace(named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=told)
 
 

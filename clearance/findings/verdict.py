@@ -21,7 +21,14 @@ from clearance.findings.doubts import (
     open_suspects,
     unproven_motion,
 )
-from clearance.findings.finding import CLEARANCE, NOT_PROVEN, PROFILE, UNPROVEN, Finding
+from clearance.findings.finding import (
+    CLEARANCE,
+    NOT_PROVEN,
+    PROFILE,
+    UNPROVEN,
+    WAIVED_TOLERANCES,
+    Finding,
+)
 from clearance.findings.finding_text import coded_line, waived_lines
 from clearance.findings.judgement import Judgement
 from clearance.findings.of_budget import tolerance_lines
@@ -53,8 +60,9 @@ from clearance.world.rules import DEFAULT
 MOTION, SAMPLES, POSE = "motion", "samples", "pose"
 """What a verdict rests on: a proof for the continuous motion, the samples of the trajectory only, or one pose."""
 
-KEPT, ACCEPTED = "kept", "accepted"
-"""What tolerances make of limits: proven to be kept with them, or not, which may pass; else `NOT_PROVEN`."""
+FAIL, KEPT, ACCEPTED = "fail", "kept", "accepted"
+"""What tolerances make of limits: proven to be kept with them, or not, which may pass; else `NOT_PROVEN`, and the
+headline says "fail"."""
 
 _PASSING = (Status.CLEAR, Status.NEAR)
 
@@ -79,13 +87,14 @@ class Verdict:
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
         broken: rules of the case that are broken, beside its limits of clearance.
-        nearest: the moment of least clearance of all, in one line, where that is not the one that stands worst.
+        nearest: the moment of least clearance of all, in one line, where that is not the most critical one.
         clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
             for one clock and all of the run.
         waived: what is below a limit and waived, one line each. n_waivers: how many waivers that takes.
         waiver_faults: what is wrong with waivers, one line each.
         tolerances: what they make of limits that are kept as measured: "kept", "not proven", or "accepted" where
             that is so and may pass; empty without any.
+        left: what they leave of the worst limit that is not proven with them, in a few words.
         with_tolerances: what they leave, one line each.
         at_level: that the worst is at a limit but for rounding; empty where none is.
     """
@@ -106,6 +115,7 @@ class Verdict:
     n_waivers: int = 0
     waiver_faults: tuple[str, ...] = ()
     tolerances: str = ""
+    left: str = ""
     with_tolerances: tuple[str, ...] = ()
     at_level: str = ""
     self_clearance: tuple[str, ...] = ()
@@ -138,13 +148,14 @@ class Verdict:
 
     def text(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
-        text = shown(self.measured)
+        text, passing = shown(self.measured), self.measured in _PASSING
+        if passing and self.tolerances not in ("", KEPT):
+            decision = shown(ACCEPTED if self.tolerances == ACCEPTED else FAIL)
+            text, passing = f"{decision}: limit not proven with tolerances ({self.left})", False
         if self.n_waivers:
             text += f" with {count(self.n_waivers, 'waiver')}"
-        passing = self.measured in _PASSING
-        if passing and self.tolerances:
-            text = _with_tolerances(text, self.tolerances, shown(NOT_PROVEN))
-            passing = self.tolerances == KEPT
+        if self.tolerances == KEPT:
+            text += " with tolerances"
         if self.unproven_motion:
             text = f"{shown(NOT_PROVEN)} on part of the motion, {text} as measured"
         if self.basis == SAMPLES:
@@ -163,12 +174,19 @@ def _when(case: Case) -> str:
     return ", ".join(filter(None, told))
 
 
-def _with_tolerances(text: str, tolerances: str, not_proven: str) -> str:
-    """What is so as measured, and what is with tolerances."""
-    if tolerances == KEPT:
-        return f"{text} with tolerances"
-    accepted = " (accepted)" if tolerances == ACCEPTED else ""
-    return f"{not_proven} with tolerances{accepted}, {text} without"
+def _left(of_tolerances: Sequence[Finding]) -> str:
+    """The worst limit that is not proven with tolerances: proven, required and nominal; empty where all are."""
+    if not of_tolerances:
+        return ""
+    worst = min(of_tolerances, key=lambda finding: finding.standing)
+    proven = "nothing proven"
+    if worst.proven is not None:
+        proven = f"{mm(worst.proven)} mm proven" if worst.proven > 0.0 else "contact not ruled out"
+    required = f", {limit_mm(worst.fail)} mm required"
+    if worst.kind == WAIVED_TOLERANCES:
+        required = ", the level of a waiver required"
+    nominal = "" if worst.clearance is None else f"; nominal {mm(worst.clearance)} mm"
+    return f"{proven}{required}{nominal}"
 
 
 def verdict_of(
@@ -223,6 +241,7 @@ def verdict_of(
         n_waivers=0 if judgement is None else len(judgement.covering),
         waiver_faults=waiver_faults,
         tolerances=_tolerances(record.case, measured, of_tolerances),
+        left=_left(of_tolerances),
         with_tolerances=tolerance_lines(record),
         at_level=_at_level(judging),
     )
@@ -288,14 +307,14 @@ def _judged_by(moment: Moment) -> str:
 
 
 def _occurring(record: Record, worst: Moment | None) -> str | None:
-    """The moment that stands worst of what decides, if it is below a limit."""
+    """The most critical moment of what decides, if it is below a limit."""
     if worst is None or record.status_of(worst) == Status.CLEAR:
         return None
     return _of_kind(moment_line(record, worst), CLEARANCE)
 
 
 def _nearest(record: Record) -> str | None:
-    """The moment of least clearance, where another stands worse."""
+    """The moment of least clearance, where another is more critical."""
     nearest = record.nearest
     return None if nearest is record.worst else moment_line(record, nearest)
 

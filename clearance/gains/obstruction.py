@@ -33,6 +33,9 @@ ON_ITS_WAY = "its path leads there whatever the delay"
 TOO_LATE = "no delay that was looked at gives more"
 
 
+SHOWN = 5e-7
+"""[m] Half of the last digit of a clearance in words."""
+
 HOPELESS = (NOT_MOVED, KEPT_STILL, TOO_FAR, HOWEVER_SLOW, AT_REST, ON_ITS_WAY)
 """With these no change of the kind, however large, makes every rule hold."""
 
@@ -58,7 +61,10 @@ class Obstruction:
         if self.clearance < 0.0:
             far = f"{-self.clearance * 1e3:.3f} mm deep in each other"
         told = f"{self.body_a} and {self.body_b} are {far} at {self.time:.3f} s"
-        return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
+        needed = f"{self.wanted * 1e3:.6g} mm"
+        if abs(self.clearance - self.wanted) < SHOWN:
+            return f"{told}, equal to the {needed} that are needed but for rounding, and {self.why}"
+        return f"{told}, {needed} are needed, and {self.why}"
 
 
 def blocked_by(
@@ -114,7 +120,7 @@ def worst_pair(state: State, why: str) -> Obstruction | None:
 
 
 def unproven(record: Record, margin: float) -> Obstruction:
-    """The moment that stands worst in a run whose steps keep what is wanted, and that is not proven."""
+    """The most critical moment in a run whose steps keep what is wanted, and that is not proven."""
     moment = record.worst
     wanted = record.rule(moment.rule).limits.fail + margin
     return Obstruction(

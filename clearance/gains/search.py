@@ -36,7 +36,7 @@ PATIENCE, LESS = 6, 0.9
 """A search ends where so many steps have left more than this share of what was missing."""
 
 BLIND = 8
-"""Steps from contact to contact that are taken whatever comes of them: depths jump where the way out does."""
+"""Steps from contact to contact that are taken whatever comes of them: depths jump where their vectors do."""
 
 MOST_PROOFS = 12
 """Times that the motion between the steps may ask for more."""

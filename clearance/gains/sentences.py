@@ -176,13 +176,13 @@ def bound_text(gain: Gain) -> str:
     factor, unit = size_unit(gain)
     bound = f"{_down(gain.lower_bound * factor)} {unit}{_counted(gain)}"
     if not gain.kept:
-        return f"whatever is enough, less than {bound} cannot do"
+        return f"at least {bound} is needed"
     if gain.lower_bound >= gain.size * (1.0 - TIGHT):
-        return f"less than {bound} cannot do: no change of this kind is smaller by 0.1 %"
-    return f"less than {bound} cannot do; {_LOCAL}"
+        return f"at least {bound} is needed; this change is within 0.1 % of the least"
+    return f"at least {bound} is needed; {_LOCAL}"
 
 
-_LOCAL = "this is the smallest found, by a search that is local"
+_LOCAL = "this change is the smallest that a local search found"
 
 
 def _counted(gain: Gain) -> str:
@@ -227,7 +227,7 @@ def _by_margin(gain: Gain) -> str:
 
 
 def _worst(run: Run) -> str:
-    """The moment that stands worst, its limit, and the verdict."""
+    """The most critical moment, its limit, and the verdict."""
     worst = run.record.worst
     fail = run.record.rule(worst.rule).limits.fail
     far = "touch" if worst.touches else f"{mm(worst.clearance)} mm"

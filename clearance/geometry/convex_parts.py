@@ -140,7 +140,7 @@ def _clearly_concave(body: Polyhedron, points: np.ndarray, volume: float) -> Con
 
 def _uncut(outer: Polytope, solid: Any) -> ConvexParts:
     """A closed concave body between its outer part and its own mesh."""
-    note = f"concave: depth is bounded by the region shared and by the distance after a way out; {VOLUMES}"
+    note = f"concave: depth is bounded by the region shared and by the distance after a separation; {VOLUMES}"
     return ConvexParts((outer,), (), solid, True, note, rough=True)
 
 

@@ -61,7 +61,7 @@ class CommonPoint:
     Args:
         relation: "overlap" (the point is strictly inside all), "touch" or "apart".
         point: (3,) [m], None when apart.
-        depth: [-] the t reached, 1 at a body's centroid; about 0 when touching, below 0 when apart.
+        level: [-] not a length: 1 if the point is a body's centroid, about 0 when touching, below 0 when separate.
         certificate: the faces that forbid an inner point; None on overlap.
         n_faces: faces (for GJK: support points) visited; passes: rounds over all bodies.
         warm: the basis: what a next call on the same bodies, moved, may begin with.
@@ -69,7 +69,7 @@ class CommonPoint:
 
     relation: str
     point: np.ndarray | None
-    depth: float
+    level: float
     certificate: SeparationCertificate | None
     n_faces: int
     passes: int
@@ -167,19 +167,19 @@ def _judged(
     n_faces: int,
     passes: int,
 ) -> CommonPoint:
-    shares, names, depth = block[SHARES].tolist(), face_names.tolist(), float(block[SOLUTION, T])
+    shares, names, level = block[SHARES].tolist(), face_names.tolist(), float(block[SOLUTION, T])
     point, warm = block[SOLUTION, :T] + origin, tuple(names) if min(names) >= 0 else ()
-    if depth > PLAINLY * sum(shares) * sum([body.size for body in bodies]):
-        return CommonPoint("overlap", point, depth, None, n_faces, passes, warm)
+    if level > PLAINLY * sum(shares) * sum([body.size for body in bodies]):
+        return CommonPoint("overlap", point, level, None, n_faces, passes, warm)
     most = 1e-9 * max(shares)
     real = [j for j in range(4) if names[j] >= 0 and shares[j] > most]
     limit = ROUNDING * max((bodies[names[j] >> 32].size for j in real), default=0.0) * sum(shares)
-    if depth > limit:
-        return CommonPoint("overlap", point, depth, None, n_faces, passes, warm)
+    if level > limit:
+        return CommonPoint("overlap", point, level, None, n_faces, passes, warm)
     proof = _certificate(len(bodies), block, face_names, real)
-    if depth >= -limit:
-        return CommonPoint("touch", point, depth, proof, n_faces, passes, warm)
-    return CommonPoint("apart", None, depth, proof, n_faces, passes, warm)
+    if level >= -limit:
+        return CommonPoint("touch", point, level, proof, n_faces, passes, warm)
+    return CommonPoint("apart", None, level, proof, n_faces, passes, warm)
 
 
 def _certificate(

@@ -245,7 +245,9 @@ def require_inputs(case: Case, receipt: Receipt) -> None:
             if path not in known or path not in read:
                 problem = f"was {'no' if path in read else 'an'} input of the run"
             raise BadSyntax(
-                f"it {problem}", where=shown(path), valid="the files that the receipt was made of"
+                f"it {problem}",
+                where=shown(path),
+                valid="the input files as they were for the receipt",
             )
 
 
@@ -260,7 +262,7 @@ def _require_data(data: CaseData, receipt: Receipt) -> None:
             other = other_maker(receipt)
             raise BadSyntax(
                 f"it is of other numbers than those of case {data.name!r}{other and '; made by '}{other}",
-                valid="the case that the receipt was made of, with its tolerances",
+                valid="the case and the tolerances for which the receipt was written",
             )
         if receipt.claims.shape != (len(data.rules), data.n_intervals):
             raise BadSyntax(DAMAGED, valid="claims of every rule and interval")

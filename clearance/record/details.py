@@ -19,7 +19,7 @@ class RunDetails:
     Attributes:
         minima: the least clearance of each pair, over the motion where that is certified, least first.
         n_pairs: by rule, the number of pairs with a least clearance at the steps.
-        worst: by rule, the moment that stands worst of what it judges, in contact the deepest.
+        worst: by rule, the most critical moment of what it judges, in contact the deepest.
         intervals, events, not_listed: the times below each level, when each is entered and left, and the number of
             those that are left out.
         sensitivity: the slopes of the clearance at the worst moment.

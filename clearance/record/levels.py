@@ -15,7 +15,7 @@ class Interval:
     Attributes:
         first_step, last_step: both inside; the one before it where no step is.
         start, end: [s] before and after, the motion is proven to be above the level; of steps first and last.
-        worst_step: the first step that stands worst, or the one before that moment; worst_time [s], clearance
+        worst_step: the first most critical step, or the one before that moment; worst_time [s], clearance
             [m], the two bodies (link, obstacle) and the rule that judges them are of that moment.
         between: that moment is between two steps.
     """

@@ -133,8 +133,8 @@ class CommandedCourse:
     """The clearances of what was commanded, beside those of what was done.
 
     Attributes:
-        times: (n,) [s]. clearances: (n,) [m] of the pair that stands worst at each step; NaN where there is none.
-        worst: the step that stands worst.
+        times: (n,) [s]. clearances: (n,) [m] of the most critical pair at each step; NaN where there is none.
+        worst: the most critical step.
     """
 
     times: np.ndarray
@@ -190,7 +190,7 @@ class Record(Samples):
 
     Attributes:
         motions: one for each of `case.robots`.
-        table: of `rows`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst
+        table: of `rows`, one row a step: step, time, clearance [m] (less padding, of the most critical pair
             against its rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" |
             "contact", none where a bound does not decide); of one robot among obstacles that stand, link,
             obstacle, link_x … obstacle_z as well, which come first; with several rules nearest_clearance,
@@ -204,7 +204,7 @@ class Record(Samples):
         tally: counters by name (pairs, queries, nodes, polygons, …).
         rules: what each rule comes to; one, "default", where the case has no rules.
         timeline: when what moves how. pairs: all that were measured at some time, each once.
-        worst_sample: the step that stands worst against what judges it; without rules, the first of least
+        worst_sample: the most critical step; without rules, the first of least
             clearance. In contact it is the deepest, as far as depth is known.
         worst: the same of the whole motion, between two steps if a certificate has found a lesser moment there.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".

@@ -98,7 +98,7 @@ class Replay:
 
     Attributes:
         rules: what frames are held against.
-        i_worst: the frame of the moment that stands worst against its rule.
+        i_worst: the frame of the most critical moment.
         n_steps: number of steps of the record; those of `steps` that are not `between` are frames.
         shapes: vertices (n, 3) float32 [m] and triangles (m, 3) int32 of each different shape.
         poses: for each body (frames, 7) or, where it stands still, (1, 7) float32: xyz [m] and

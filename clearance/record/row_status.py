@@ -35,7 +35,7 @@ class RowStatus:
 
     @cached_property
     def rule_between(self) -> np.ndarray:
-        """(n,) the place among the rules of the one that the motion to the next step stands worst against, and of
+        """(n,) the place among the rules of the most critical one in the motion to the next step, and of
         those alike of the least margin above its fail limit."""
         rules = self.record.rules
         if len(rules) == 1 or not self.between.any():

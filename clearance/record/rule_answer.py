@@ -72,7 +72,7 @@ class NearRows:
 
 
 def standing_worst(moments: Iterable[tuple[RuleAnswer, Moment | None]]) -> Moment | None:
-    """Of moments, each with the rule that judges it, the one that stands worst, the first of those alike."""
+    """Of moments, each with the rule that judges it, the most critical one, the first of those alike."""
     standing = [
         (rule.standing_of(moment), i, moment)
         for i, (rule, moment) in enumerate(moments)
@@ -82,5 +82,5 @@ def standing_worst(moments: Iterable[tuple[RuleAnswer, Moment | None]]) -> Momen
 
 
 def worst_of(rules: Iterable[RuleAnswer]) -> Moment | None:
-    """The moment that stands worst of some rules; None where none is known."""
+    """The most critical moment of some rules; None where none is known."""
     return standing_worst((rule, rule.worst) for rule in rules)

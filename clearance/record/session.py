@@ -42,7 +42,7 @@ class Session(Protocol):
         """(k, 2) [s] start and end of each stretch in which the pairs of a rule are below a level [m]."""
 
     def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
-        """The moment that stands worst, as if there were no other rules."""
+        """The most critical moment, as if there were no other rules."""
 
     def of_pairs(
         self, is_meant: PairTest, need: str | None = None, levels: tuple[float, ...] = ()

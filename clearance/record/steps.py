@@ -30,7 +30,7 @@ class RunAnswer:
 
     Attributes:
         rules: what each rule comes to, in the order of the case; at least one.
-        found: of each step the row that stands worst. rule: (n,) the place in `rules` of what judged it, or None
+        found: of each step the most critical row. rule: (n,) the place in `rules` of what judged it, or None
             where there is one rule.
         nearest: of each step the nearest pair of all, whatever judges it; `found` where there is one rule.
         certificate: over all rules; None where nothing is proven.

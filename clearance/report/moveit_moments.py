@@ -25,7 +25,7 @@ from clearance.report.topics.cell import paddings_of
 from clearance.report.topics.pairs import PairJudge
 from clearance.world.case import Case
 
-FORMAT = "clearance-moments-1"
+FORMAT = "clearance-moments-2"
 
 MOST = 200
 """Entries; those that stand best are left out and counted."""
@@ -195,11 +195,12 @@ class _Names:
 
 
 def _overlap(record: Record, entry: _Entry) -> dict[str, Any]:
-    """How deep two bodies overlap, where that has been worked out: the first goes that far that way."""
+    """Penetration depth of two bodies, where it is computed, and the separation vector of the first."""
     for row in record.worked_out:
         found, pair = row.known, (row.step, row.link, row.obstacle)
         if found is not None and pair == (entry.step, *entry.bodies) and not entry.between:
-            return {"depth": found.penetration, "way_out": _vector(found.direction)}
+            vector = found.penetration * found.direction
+            return {"depth": found.penetration, "separation_vector": _vector(vector)}
     return {}
 
 
@@ -225,8 +226,8 @@ FILE_NAME = "worst_moments.yaml"
 
 _HEAD = """\
 # The worst moments of a run: metres, radians, seconds, points in the world of the case; bodies and states as
-# MoveIt names them. First what stands worst, then each pair and rule that comes near or below a limit, as many
-# as a file holds: n_left_out are not listed.
+# MoveIt names them. First the most critical moment, then each pair and rule that comes near or below a limit,
+# as many as a file holds: n_left_out are not listed.
 """
 
 

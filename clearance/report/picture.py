@@ -232,7 +232,7 @@ def _grid(still: Still) -> np.ndarray:
 
 
 def _draw_overlap(image: np.ndarray, screen: Screen, still: Still) -> None:
-    """The region that two bodies share, through all that is before it, and the way out of it as an arrow."""
+    """The region that two bodies share, through all that is before it, and the separation vector as an arrow."""
     if still.region is None or still.way_out is None:
         return
     vertices, triangles = still.region

@@ -94,7 +94,7 @@ class Still:
 
 
 def still_of(replay: Replay) -> Still:
-    """The moment of a replay that stands worst against its rule."""
+    """The most critical moment of a replay."""
     frame = replay.i_worst
     seen = [i for i in range(len(replay.bodies)) if _at(replay.shown[i], frame)]
     colour = rgb(COLOURS[str(STATUSES[int(replay.status[frame])])])
@@ -231,7 +231,7 @@ def at_gap(still: Still) -> Camera:
 
 
 def _look(still: Still, target: np.ndarray, distance: float) -> Camera:
-    """From the side from which fewest boxes hide the line, and it, or the way out, is least foreshortened."""
+    """From the side where fewest boxes hide the line, or the separation vector, and it is least foreshortened."""
     line = still.line[1] - still.line[0] if still.way_out is None else still.way_out[1]
     length = np.linalg.norm(line)
     line = line / length if length > 0.0 else line

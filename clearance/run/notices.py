@@ -43,7 +43,7 @@ def _nothing_measured(phase: Phase) -> Notice:
 def _without_depth(found: Sequence[SectionAnswer]) -> Iterator[Notice]:
     """Contact of pairs that no one time has: none of what is said of contact is worked out."""
     if any((one.found.clearance <= 0.0).any() for one in found if not one.section.tied):
-        text = "contact of bodies whose clocks are not tied has no depth, volume or way out here"
+        text = "contact of bodies whose clocks are not tied has no depth, volume or separation vector here"
         yield Notice(Severity.WARNING, "contact", text)
 
 
@@ -57,7 +57,8 @@ def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterato
                 clouds = (body for body in pairs[i] if body.body_in(case).is_cloud)
                 names |= {body.name_in(case): None for body in clouds}
     if names:
-        text = f"contact with {listed([*names], 6)} has no depth, volume or way out here: clouds of points"
+        told = "has no depth, volume or separation vector here: clouds of points"
+        text = f"contact with {listed([*names], 6)} {told}"
         yield Notice(Severity.WARNING, "contact", text)
 
 

@@ -101,7 +101,7 @@ class QuestionOptions:
             "paper", which proves nothing, the verdict is of the samples only, and says so.
         certify_gap: [m] how far that bound may be below a distance that occurs; no finer than rounding allows
             (`tolerance.FINEST_CERTIFY_GAP`), with a warning.
-        contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
+        contact: of which overlaps depth, volume and separation vector are computed, once they are looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
             No status depends on it; the worst moment of bodies in contact is the deepest that is worked out.
         body_gaps: tell which gaps between what moves and what stands are of a width that parts of a person may be

@@ -77,7 +77,7 @@ class MeasuringSession(MeasuredRun):
         return RuleStretches(self.measured(rule), level).spans
 
     def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
-        """The moment that stands worst, in contact the deepest, as if there were no other rules."""
+        """The most critical moment, in contact the deepest, as if there were no other rules."""
         return self._worst.among([self.measured(rule) for rule in rules])
 
     @cached_property

@@ -52,7 +52,7 @@ TABLE = {
     ),
     "no case needs it, and its bodies are there": (
         waiver() + waiver("[ground, wall]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
-        "waivers     waiver ground - wall (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
+        "waivers     waiver ground - wall (waivers.yaml: waivers[1]) is not needed: in every case its pairs keep",
     ),
     "of no body": (
         waiver() + waiver("[slider, wal]"), 1, "UNUSED WAIVER", "no body is called 'wal'; did you mean 'wall'?",
@@ -61,12 +61,13 @@ TABLE = {
         waiver() + waiver(rule="defalt"), 1, "UNUSED WAIVER",
         "no rule is called 'defalt'; did you mean 'default'?",
     ),
-    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
+    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "allows 45 mm or more, and less occurs"),
     "of a case": (
         waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers",
     ),
     "of another case": (
-        waiver() + waiver(case="t000"), 1, "UNUSED WAIVER", "waivers[1]) is not needed: what it is of keeps",
+        waiver() + waiver(case="t000"), 1, "UNUSED WAIVER",
+        "waivers[1]) is not needed: in every case its pairs keep",
     ),
     "of no case": (
         waiver() + waiver(case="t02"), 1, "UNUSED WAIVER", "no case is called 't02'; did you mean 't002'?",
@@ -198,7 +199,7 @@ CELL_TABLE = {
         "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: no body is called 'floor'",
     ),
     "of no motion": (waiver() + waiver(case="t02"), 1, "UNUSED WAIVER", "did you mean 't002'?"),
-    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
+    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "allows 45 mm or more, and less occurs"),
 }  # fmt: skip
 
 

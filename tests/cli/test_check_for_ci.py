@@ -166,7 +166,7 @@ def test_the_hook_fails_where_tolerances_leave_a_limit_unproven(place, capsys):
     write_gates(place / "loose", CLEAR, own)
     assert run(["pre-commit", "loose/case.yaml"]) == 1
     told = capsys.readouterr().out
-    assert "NOT PROVEN with tolerances" in told and "box - gate_a" in told
+    assert "FAIL: limit not proven with tolerances" in told and "box - gate_a" in told
     write_gates(place / "tight", CLEAR, own.replace("0.046", "0.04"))
     assert run(["pre-commit", "tight/case.yaml"]) == 0
 

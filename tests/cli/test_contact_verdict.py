@@ -30,8 +30,8 @@ def test_the_verdict_names_the_deepest_contact(folder, capsys):
     assert run(["check", str(folder / "case.yaml")]) == 1
     told = capsys.readouterr().out
     assert told.startswith("CONTACT")
-    line = "step 2, slider in wall: 50.00 mm deep, 2000 cm³ shared; way out of the link (-1.0000, "
-    assert line in told
+    line = "step 2, slider in wall: 50.00 mm deep, 2000 cm³ shared; separation vector of the link"
+    assert f"{line} (-50.00, 0.00, 0.00) mm" in told
 
 
 def test_what_is_told_of_contacts_is_asked_for(folder, capsys):

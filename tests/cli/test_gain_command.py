@@ -26,7 +26,7 @@ def test_a_change_that_is_enough_is_told_and_written(slot, tmp_path, capsys):
     assert code == 0
     assert "before    tool and left: 19.99 mm" in text
     assert "changed   obstacle left moved 20.00 mm: x 0, y +20.00, z 0" in text
-    assert "bound     less than 19.99 mm cannot do" in text
+    assert "bound     at least 19.99 mm is needed; this change is within 0.1 % of the least" in text
     assert run(["check", str(out / "case.yaml")]) == 0
 
 
@@ -69,7 +69,7 @@ def test_a_slow_down_is_told(tmp_path, capsys):
     path = write_cell(tmp_path, CROSSING)
     options = ("--kind", "timing", "--robot", "other", "--slow-down", "--out", tmp_path / "out")
     code, text, _ = said(capsys, path, *options)
-    assert code == 0 and " % longer for its path: 0." in text and "bound     less than " in text
+    assert code == 0 and " % longer for its path: 0." in text and "bound     at least " in text
     assert "takes longer" in (tmp_path / "out" / "gain.html").read_text()
     assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
 

@@ -93,6 +93,12 @@ def test_what_is_measured_in_another_way_is_not_comparable(changed, why, before,
     assert {row.change for row in comparison.rows} == {FindingChange.NOT_COMPARABLE}
 
 
+def test_another_gap_of_the_certificate_is_told_in_millimetres(before):
+    measured = dataclasses.replace(before.measured, certify_gap=1e-3)
+    coarser = dataclasses.replace(before, measured=measured)
+    assert compared(before, coarser).whole == "certify gap was 0.1 mm, and is 1 mm"
+
+
 def test_other_limits_are_not_comparable(before, tmp_path):
     now = found(tmp_path / "now", BEFORE, limits="{fail: 0.006, warn: 0.02}")
     (row,) = compared(before, now).rows

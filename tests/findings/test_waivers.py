@@ -50,7 +50,7 @@ TABLE = {
     "not needed for a near miss": (A_WARNS, [waiver()], UNUSED_WAIVER, 1, 0, [], "is not needed"),
     "worse than it": (NEAR_A, [waiver(at_least=0.0035)], VIOLATED, 1, 0, [], "less occurs"),
     "exactly it": (NEAR_A, [waiver(at_least=0.003)], CLEAR, 0, 1, [A], ""),
-    "contact": (TOUCHES, [waiver(at_least=0.0)], CONTACT, 1, 0, [], "of no contact"),
+    "contact": (TOUCHES, [waiver(at_least=0.0)], CONTACT, 1, 0, [], "does not cover contact"),
     "another is worse": (NEAR_BOTH, [waiver()], VIOLATED, 1, 1, [A], "box - gate_b"),
     "both covered": (NEAR_BOTH, [waiver(), waiver(B)], CLEAR, 0, 2, [A, B], ""),
     "one for both": (NEAR_BOTH, [waiver("gate_*")], CLEAR, 0, 1, [A, B], ""),
@@ -109,7 +109,7 @@ def test_a_level_that_is_seen_to_be_kept_and_not_proven_to_be_covers_nothing(tmp
     run = checked(tmp_path, NEAR_A, waiver(at_least=0.00299))
     (finding,) = run.findings
     assert finding.proven < 0.00299 < finding.clearance and finding.waived is None
-    assert run.verdict.status == VIOLATED and "that is not proven" in run.verdict.reasons[-1]
+    assert run.verdict.status == VIOLATED and "which is not proven" in run.verdict.reasons[-1]
 
 
 TEXT = """

@@ -9,6 +9,7 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.obstruction import Obstruction
 from clearance.gains.page import motion_curve
 from clearance.gains.sentences import lines_of
 from clearance.gains.shortfalls import proven
@@ -118,6 +119,13 @@ def test_what_nothing_moves_is_said_at_once():
     assert "left" in str(found.blocked) and "nothing of this change moves them" in str(
         found.blocked
     )
+
+
+def test_a_clearance_that_shows_the_digits_of_what_is_needed_says_that_it_is_rounding():
+    near, far = (str(Obstruction("a", "b", 1.0, 0.005 - d, 0.005, "stays")) for d in (1e-9, 1e-6))
+    start = "a and b are {} mm apart at 1.000 s, {}, and stays"
+    assert near == start.format("5.000", "equal to the 5 mm that are needed but for rounding")
+    assert far == start.format("4.999", "5 mm are needed")
 
 
 def test_a_moment_that_is_kept_and_violated_is_said_at_once():

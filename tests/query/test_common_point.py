@@ -37,7 +37,7 @@ def test_the_deepest_point_is_strictly_inside_all(m):
         met = common_point(bodies)
         if met.relation == "overlap":
             levels = [(b.offsets_about(met.point) / b.face_widths).min() for b in bodies]
-            assert min(levels) == pytest.approx(met.depth, rel=1e-9)
+            assert min(levels) == pytest.approx(met.level, rel=1e-9)
         else:
             assert certificate_is_right(bodies, met.certificate)
 
@@ -90,8 +90,8 @@ def test_along_a_trajectory_a_warm_start_gives_the_same_answer_with_less_work(m)
         ]
         assert met.relation == cold.relation == common_point(moved).relation
         if met.relation == "overlap":
-            assert met.depth == pytest.approx(cold.depth, abs=1e-12)
-            assert cold.depth == pytest.approx(common_point(moved).depth, abs=1e-12)
+            assert met.level == pytest.approx(cold.level, abs=1e-12)
+            assert cold.level == pytest.approx(common_point(moved).level, abs=1e-12)
             assert min(b.offsets_about(met.point).min() for b in moved) > 0.0
         warm = met.warm
         work[0] += cold.n_faces

@@ -130,6 +130,6 @@ def test_the_deepest_point_is_that_of_the_linear_programme(n):
         best = linprog([0, 0, 0, -1], A_ub=rows, b_ub=bounds, bounds=[(None, None)] * 4)
         met = common_point(bodies)
         if met.relation == "overlap":
-            assert met.depth == pytest.approx(best.x[3], rel=1e-7)
+            assert met.level == pytest.approx(best.x[3], rel=1e-7)
         else:
             assert best.x[3] < 1e-9

@@ -40,7 +40,7 @@ def test_contact_that_was_not_worked_out_is_said():
     summary = summary_of(record())
     assert summary["contact"] is None and summary["status_counts"]["contact"]
     (section,) = sections(content_of(record()))
-    assert "were not worked out" in section.blocks[0].content
+    assert "were not computed" in section.blocks[0].content
 
 
 def test_a_bound_is_worded_as_one():
@@ -93,6 +93,13 @@ def red(pixels):
     return (r > 170) & (g < 90) & (b < 90)
 
 
+LINES = """[...document.querySelectorAll('td')].filter((cell) => cell.textContent === 'gripper').map((cell) => {
+  const range = document.createRange();
+  range.selectNodeContents(cell);
+  return new Set([...range.getClientRects()].map((part) => Math.round(part.top))).size; })"""
+"""The number of lines that the name of a link has in each table of the page."""
+
+
 @pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
@@ -107,6 +114,8 @@ def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
             page.settle()
             counts[step] = int(red(page.pixels("#pane")).sum())
         state = page.run("window.clearance.state()")
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance", width=420)
+        assert set(page.run(LINES)) == {1}
         assert page.errors == []
     assert counts[0] == 0 and counts[run().deepest.step] > 400
     here = [row.known for row in run().contacts if row.step == run().deepest.step]

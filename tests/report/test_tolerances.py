@@ -44,7 +44,11 @@ OPEN = with_budget(NEAR, 0.0025)
 ACCEPTED = with_budget(NEAR, 0.0025, ok=True)
 NO_ANSWER = dataclasses.replace(OPEN, budget=None)
 BROKEN = with_budget(record(limits=Limits(fail=0.01, warn=0.06)))
-WITHOUT = "NEAR without, looked at the samples only"
+NOT_RULED_OUT = (
+    "limit not proven with tolerances (contact not ruled out, 0 mm required; nominal 0.376 mm)"
+)
+NOTHING = "limit not proven with tolerances (nothing proven, 0 mm required)"
+SAMPLES = ", looked at the samples only"
 SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
 
 
@@ -52,11 +56,11 @@ SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
     ("one", "status", "exit_code", "text"),
     [
         (KEPT, "near", 0, "NEAR with tolerances at the samples only"),
-        (OPEN, "not proven", 1, f"NOT PROVEN with tolerances, {WITHOUT}"),
-        (ACCEPTED, "not proven", 0, f"NOT PROVEN with tolerances (accepted), {WITHOUT}"),
-        (NO_ANSWER, "not proven", 1, f"NOT PROVEN with tolerances, {WITHOUT}"),
+        (OPEN, "not proven", 1, f"FAIL: {NOT_RULED_OUT}{SAMPLES}"),
+        (ACCEPTED, "not proven", 0, f"ACCEPTED: {NOT_RULED_OUT}{SAMPLES}"),
+        (NO_ANSWER, "not proven", 1, f"FAIL: {NOTHING}{SAMPLES}"),
         (BROKEN, "contact", 1, "CONTACT, looked at the samples only"),
-        (SUSPECT, "suspect", 2, f"SUSPECT (would be NOT PROVEN with tolerances, {WITHOUT})"),
+        (SUSPECT, "suspect", 2, f"SUSPECT (would be FAIL: {NOT_RULED_OUT}{SAMPLES})"),
     ],
 )  # fmt: skip
 def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):

@@ -116,7 +116,7 @@ class Replay {
     this.material = material;
   }
 
-  // The region that two bodies share, seen through both of them, and the way out of the first.
+  // The region that two bodies share, seen through both of them, and the separation vector of the first.
   contact(contact, i) {
     const geometry = new this.three.BufferGeometry();
     geometry.setAttribute("position", new this.three.BufferAttribute(decode(contact.vertices, Float32Array), 3));
@@ -282,7 +282,7 @@ class Replay {
     this.look(ends[0].clone().add(ends[1]).multiplyScalar(0.5), Math.max(6 * ends[0].distanceTo(ends[1]), this.size / 12));
   }
 
-  // From whichever side shows the line, or in contact the way out, least hidden and most from its side.
+  // From whichever side shows the line, or in contact the separation vector, least hidden and most from its side.
   look(target, distance) {
     const line = new this.three.Vector3().fromArray(this.ends, 3).sub(new this.three.Vector3().fromArray(this.ends)).normalize();
     const contact = this.data.contacts.find((one) => one.frame === this.frame);

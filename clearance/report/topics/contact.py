@@ -60,18 +60,21 @@ def _told(row: StepContact) -> dict[str, Any]:
 
 
 def lines(model: ReportModel) -> Iterator[Line]:
-    """The deepest overlap: where, how deep, which way out of the link."""
+    """The deepest overlap: where, how deep, and the separation vector of the link."""
     found = contact_of(model.record)
     if found is None:
         return
     told = found["deepest"]
     text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
     of_link = model.record.sides[:2] == LINK_AND_OBSTACLE
-    yield "deepest", f"{text}; way out of {'the link' if of_link else told['link']} ({_way(told)})"
+    whose = "the link" if of_link else told["link"]
+    yield "deepest", f"{text}; separation vector of {whose} ({_vector(told)}) mm"
 
 
-def _way(contact: dict[str, Any]) -> str:
-    return ", ".join(f"{value:.4f}" for value in contact["direction"])
+def _vector(contact: dict[str, Any]) -> str:
+    """The separation vector [mm]."""
+    length = contact["penetration"] * 1000.0
+    return ", ".join(f"{round(value * length, 2) + 0.0:.2f}" for value in contact["direction"])
 
 
 def sections(content: PageContent) -> Iterator[Section]:
@@ -85,8 +88,8 @@ def sections(content: PageContent) -> Iterator[Section]:
     deepest = found["deepest"]
     moved = "the link" if summary["sides"][0] == "link" else deepest["link"]
     told = (
-        f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest way out "
-        f"found moves {moved} by {depth_mm(deepest['penetration'])} mm along ({_way(deepest)})."
+        f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest separation "
+        f"vector found moves {moved} by ({_vector(deepest)}) mm, {depth_mm(deepest['penetration'])} mm in all."
     )
     at = f"Deepest at {time_of(deepest)}, "
     first = Paragraph([at, step_link(deepest["step"]), told])
@@ -100,8 +103,8 @@ def sections(content: PageContent) -> Iterator[Section]:
 
 
 _NOT_WORKED_OUT = (
-    "Depth, volume and way out were not worked out: the run did not ask for them (--contact none), or bodies "
-    "meet between the samples only."
+    "Depth, volume and separation vector were not computed: the run did not ask for them (--contact none), or "
+    "bodies meet between the samples only."
 )
 
 
@@ -122,14 +125,14 @@ def _meaning(pairs: Sequence[dict[str, Any]]) -> str:
     told = (
         "Of each pair the deepest of the steps that are worked out: one of every event, its deepest as far as "
         "hulls or shared volumes tell, unless more was asked for. At these the replay shows the common region in "
-        "red and the way out of the first body as an arrow of fixed length. "
+        "red and the separation vector of the first body as an arrow of fixed length. "
     )
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
         return f"{told}Depth and volume are exact to the rounding of float64."
     return (
         f"{told}Depth and volume that are not exact are upper bounds, with the lower bound beside them: "
-        "what stands for bodies that are not convex is told in How sure, and a way out of closed bodies is "
-        "confirmed by their own distance after it."
+        "what stands for bodies that are not convex is told in How sure, and a separation vector of closed bodies "
+        "is confirmed by their own distance after it."
     )
 
 

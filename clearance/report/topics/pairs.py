@@ -1,6 +1,6 @@
 """The least clearance of every pair, grouped by what is carried, moves or stands; and the pairs left out.
 
-A cell is coloured by the rule that judges its pair; of a pair that several judge it shows how it stands worst.
+A cell has the colour of the rule that judges its pair; of several rules it shows the most critical status.
 """
 
 from __future__ import annotations

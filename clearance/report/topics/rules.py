@@ -1,4 +1,4 @@
-"""The rules of a case: limits, when they hold, the moment that stands worst.
+"""The rules of a case: limits, when they hold, the most critical moment.
 
 Not for: judging (`simulate.answers.run_answer`).
 """

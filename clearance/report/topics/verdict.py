@@ -8,7 +8,7 @@ from typing import Any
 from clearance.findings.doubts import NOTE, doubts_of
 from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.of_budget import NOT_WORKED_OUT
-from clearance.findings.verdict import ACCEPTED, UNUSED_WAIVER, Verdict
+from clearance.findings.verdict import ACCEPTED, FAIL, UNUSED_WAIVER, Verdict
 from clearance.record.wording import count, least_proven, limits_text, mm
 from clearance.report.blocks import Bullets, Cell, Content, Header, Inline, capital
 from clearance.report.model import PageContent, ReportModel
@@ -24,6 +24,8 @@ _TITLES = {
     "suspect": "suspect input",
     UNUSED_WAIVER: UNUSED_WAIVER,
     NOT_PROVEN: NOT_PROVEN,
+    FAIL: FAIL,
+    ACCEPTED: ACCEPTED,
 }
 
 _EXTENTS = {
@@ -90,7 +92,7 @@ def _suspect(notice: Notice) -> str:
 
 
 def header(content: PageContent) -> Header:
-    """Name, verdict, what puts it in doubt, the moment that stands worst, limits."""
+    """Name, verdict, what puts it in doubt, the most critical moment, limits."""
     summary, verdict = content.summary, content.verdict
     signed = summary["sign_off"] or {}
     facts = [
@@ -116,7 +118,7 @@ def badge_text(verdict: Verdict) -> str:
 
 def _worst_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:
     worst = summary["worst"]
-    name = "Least clearance" if summary["nearer"] is None else "Worst against its rule"
+    name = "Least clearance" if summary["nearer"] is None else "Most critical"
     near: Content = [Inline(mm(worst["clearance"]), element="strong"), " mm"]
     if worst["touches"]:
         name, near = "Deepest contact", Inline(depth_of(worst), element="strong")
@@ -137,7 +139,7 @@ def _limit_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:
 
 
 def _headline(summary: dict[str, Any], verdict: Verdict) -> list[Content | Cell]:
-    """What stands worst against which rule, and what is nearest if that is something else; where there are
+    """What is most critical by which rule, and what is nearest if that is something else; where there are
     rules."""
     if len(summary["rules"]) == 1:
         return []

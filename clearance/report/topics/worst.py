@@ -1,4 +1,4 @@
-"""The moment that stands worst: joints, witness points, and what its clearance changes by."""
+"""The most critical moment: joints, witness points, and what its clearance changes by."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def sections(content: PageContent) -> Iterator[Section]:
 
 
 def _nearest(summary: dict[str, Any]) -> list[Paragraph]:
-    """The least clearance of all, where something else stands worse against its rule."""
+    """The least clearance of all, where something else is more critical."""
     if summary["nearer"] is None:
         return []
     nearest = summary["nearest"]

@@ -125,7 +125,7 @@ def _approach(
 
 
 def _with_depths(approach: Approach, touching: np.ndarray, *, bounded: bool) -> Approach:
-    """The approach with depth and way out at some of the steps in contact; the others are dropped."""
+    """The approach with depth and separation vector at some of the steps in contact; the others are dropped."""
     chosen = touching[np.unique(np.linspace(0, len(touching) - 1, MOST_DEPTHS).astype(int))]
     case, pair = approach.case, approach.pair
     overlaps = Overlaps(*(body.shape_in(case) for body in pair), bounded=bounded)
@@ -158,7 +158,7 @@ class BodyOverlap(NamedTuple):
     """How two bodies that touch are parted.
 
     Attributes:
-        depth: [m] of the way out that was found. at_least: [m] no shorter way parts them.
+        depth: [m] of the separation vector that was found. at_least: [m] no shorter way parts them.
         direction: (3,) unit vector, world: that in which b leaves a. point: (3,) [m] in both, world.
     """
 
@@ -179,8 +179,8 @@ class Overlaps:
         self.shapes, self.bounded = (a, b), bounded
 
     def at(self, pose_a: np.ndarray, pose_b: np.ndarray) -> BodyOverlap | None:
-        """That at two poses (4, 4) [m]; None where they are separate, or no way out is known: the middle of a ball
-        is inside a solid."""
+        """That at two poses (4, 4) [m]; None where they are separate, or no separation vector is known: the middle
+        of a ball is inside a solid."""
         if any(isinstance(shape, PointCloud) for shape in self.shapes):
             return self._of_balls(pose_a, pose_b)
         from clearance.query.contact import contact

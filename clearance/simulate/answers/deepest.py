@@ -13,7 +13,7 @@ from clearance.simulate.answers.rule_pairs import MeasuredRule
 
 @dataclass(frozen=True, eq=False)
 class WorstMoments:
-    """The moments of a run that stand worst against what judges them.
+    """The most critical moments of a run.
 
     Attributes:
         contacts: those of the run. between: whether depth is computed between the steps too.
@@ -23,20 +23,20 @@ class WorstMoments:
     between: bool
 
     def at_steps(self, rules: Sequence[MeasuredRule]) -> Moment:
-        """The step that stands worst; without rules, the first of least clearance."""
+        """The most critical step; without rules, the first of least clearance."""
         worst = standing_worst((rule, rule.worst_sample) for rule in rules)
         assert worst is not None
         return self._deepest_of(rules, worst)
 
     def of_motion(self, rules: Sequence[MeasuredRule], sample: Moment) -> Moment:
-        """The moment of the motion that stands worst; `sample` is `at_steps`."""
+        """The most critical moment of the motion; `sample` is `at_steps`."""
         worst = worst_of(rules)
         assert worst is not None
         known = sample if worst.touches and sample.depth else worst
         return self._deeper_between(rules, known)
 
     def among(self, rules: Sequence[MeasuredRule]) -> Moment | None:
-        """The moment that stands worst, as if there were no other rules than some, or than some of their pairs."""
+        """The most critical moment, as if there were no other rules than some, or than some of their pairs."""
         worst = worst_of(rules)
         if worst is None:
             return None

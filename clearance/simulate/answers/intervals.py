@@ -211,7 +211,7 @@ class _Levels:
         )
 
     def _worst(self, steps: slice) -> int:
-        """The first of some rows that stands worst, and of those alike is nearest to the fail limit."""
+        """The first most critical of some rows, and of those alike is nearest to the fail limit."""
         margin = self.rows.margin[steps]
         if len(self.run.record.rules) > 1:
             codes = status_codes_of(self.run.record.rows.at(steps))

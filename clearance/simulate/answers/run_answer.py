@@ -1,6 +1,6 @@
 """What the sections of a run come to together: for each rule, and for each step over all rules.
 
-Of a step the row is that of the pair that stands worst against its own rule, and of those alike the one nearest
+Of a step the row is that of the most critical pair, and of those alike the one nearest
 to its fail limit; without rules that is the nearest pair of all. Not for: measuring (`measure`, `certify`).
 """
 
@@ -61,7 +61,7 @@ def judged(
 
 
 def _over_rules(rules: Sequence[MeasuredRule], n_steps: int) -> RunAnswer:
-    """Of each step the rule that stands worst."""
+    """Of each step the most critical rule."""
     plain = [rule.answer for rule in rules]
     if len(rules) == 1:
         (only,) = plain
@@ -308,7 +308,7 @@ def _least_proof(layers: Sequence[_Layer], n_steps: int) -> ProvenMotion:
 
 
 def _worst_rule(rules: Sequence[RuleAnswer], n_steps: int) -> np.ndarray:
-    """(n,) of each step the rule whose row stands worst, then nearest to its fail limit; the first of those
+    """(n,) of each step the rule of the most critical row, then nearest to its fail limit; the first of those
     alike.
     """
     every = slice(0, n_steps)

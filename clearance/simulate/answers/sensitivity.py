@@ -35,7 +35,7 @@ LEAST = 1e-5
 
 
 def sensitivity_of(run: MeasuredRun) -> Sensitivity:
-    """That of the moment which stands worst."""
+    """That of the most critical moment."""
     moment = run.record.worst
     if moment.touches:
         return Sensitivity(why_not="the bodies are in contact")

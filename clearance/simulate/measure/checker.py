@@ -216,9 +216,13 @@ class Checker:
 
     def _by_name(self, given: Mapping[str, float]) -> list[float]:
         if set(given) != set(self.joint_names):
-            missing = sorted(set(self.joint_names) ^ set(given))
+            unknown, missing = (
+                set(given) - set(self.joint_names),
+                set(self.joint_names) - set(given),
+            )
+            told = (("unknown", unknown), ("missing", missing))
             raise BadInput(
-                f"missing or unknown joints: {', '.join(missing)}",
+                "; ".join(f"{what}: {', '.join(sorted(names))}" for what, names in told if names),
                 where="configuration",
                 valid=self._wanted(1),
             )

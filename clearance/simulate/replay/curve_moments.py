@@ -61,7 +61,7 @@ def _dips(rules: Sequence[MeasuredRule]) -> Iterator[Moment]:
 
 
 def _first(worst: dict[int, tuple[float, ProvenMotion]]) -> dict[int, tuple[float, ProvenMotion]]:
-    """Those of some steps that stand worst, the worst first."""
+    """The most critical of some steps, the worst first."""
     return {step: worst[step] for step in sorted(worst, key=lambda one: worst[one][0])[:MOST_DIPS]}
 
 

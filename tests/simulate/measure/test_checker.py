@@ -144,7 +144,7 @@ def test_what_cannot_be_told_is_said():
         ("zero", BadShape, "'zero'"),
         ([0.0, float("nan")], NotFinite, "NaN"),
         ([0.0, 1e300], NotFinite, "beyond any reach"),
-        ({"nobody": 0.0}, BadInput, "nobody"),
+        ({"nobody": 0.0, "j0": 0.0}, BadInput, "unknown: nobody; missing: j1;"),
     ],
 )
 def test_bad_configurations_are_refused(given, fault, told):

@@ -94,7 +94,9 @@ def test_contact_with_a_cloud_is_said_to_have_no_depth():
     case = case_of(scan(gap=0.0), way(15))
     run = cl.check(case)
     told = [notice.text for notice in run.record.notices if notice.kind == "contact"]
-    assert told == ["contact with scan has no depth, volume or way out here: clouds of points"]
+    assert told == [
+        "contact with scan has no depth, volume or separation vector here: clouds of points"
+    ]
     assert not len(run.record.contacts)
     block = cl.Obstacle(cl.Body("block", cl.box([0.2, 0.2, 0.2])))
     both = cl.check(replace(case, obstacles=(*case.obstacles, block))).record

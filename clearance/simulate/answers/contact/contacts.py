@@ -58,8 +58,8 @@ def contacts_of(
 
     Args:
         pairs: those of the run. times: (n,) [s] of its steps.
-        work_out: of which rows depth, volume and way out are found: the deepest moment of each of the "events",
-            "every" one, or "none".
+        work_out: of which rows depth, volume and separation vector are found: the deepest moment of each of the
+            "events", "every" one, or "none".
         progress: called with how many of how many.
     """
     parts = [

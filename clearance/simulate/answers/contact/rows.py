@@ -21,7 +21,7 @@ class ContactFinder(Protocol):
     """What finds overlaps.
 
     Attributes:
-        work_out: of which rows depth, volume and way out are worked out: "none", "events" or "every".
+        work_out: of which rows depth, volume and separation vector are worked out: "none", "events" or "every".
     """
 
     work_out: str
