@@ -136,6 +136,7 @@ class Certified(Keys):
     allowed_gap: float
     greatest_gap: float
     not_measured: list[Span]
+    not_proven: list[Span]
     is_pose: bool
     tally: dict[str, int]
 
