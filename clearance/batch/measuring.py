@@ -192,8 +192,8 @@ def conditions_of(item: Item, case: Case) -> tuple[Source, ...]:
     may end on one, variables that name folders in which files of it lie, and those that its xacro files ask for.
     """
     day = [Source(DAY, item.options.day.isoformat(), 0)] if case.waivers else []
-    named = variables_of([one.read_from for one in case.sources])
-    named = list(dict.fromkeys([*named, *variables_asked(case.sources)]))
+    of_files = variables_of([one.read_from for one in case.sources])
+    named = list(dict.fromkeys([*of_files, *variables_asked(case.sources)]))
     return (*day, *(Source(variable_mark(name), value_digest(name), 0) for name in named))
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from typing import Any
 
 from clearance.findings.doubts import NOT_CHECKED, WARNING, Doubt
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
@@ -187,17 +188,19 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
 def _measured_otherwise(before: MeasurementConditions, now: MeasurementConditions) -> str:
     """Why nothing of two runs is comparable; empty where something is."""
     for what in ("method", "motion", "basis", "certify_gap"):
-        one, other = getattr(before, what), getattr(now, what)
+        one, other = (_condition_text(what, getattr(found, what)) for found in (before, now))
         if one != other:
-            was, now = (
-                f"{v * 1000:g} mm" if what == "certify_gap" and v else v for v in (one, other)
-            )
-            return f"{what.replace('_', ' ')} was {was}, and is {now}"
+            return f"{what.replace('_', ' ')} was {one}, and is {other}"
     if before.clock_slack != now.clock_slack:
         return f"clock slack was {slack_text(before)}, and is {slack_text(now)}"
     if before.need != now.need and not {before.need, now.need} <= _ALIKE:
         return f"need was {before.need}, and is {now.need}"
     return ""
+
+
+def _condition_text(what: str, value: Any) -> str:
+    """A condition; a length in millimetres."""
+    return f"{value * 1000:g} mm" if what == "certify_gap" and value is not None else str(value)
 
 
 _Key = tuple[str, str, tuple[str, ...], int]
