@@ -39,6 +39,24 @@ class _NamesParamType(click.ParamType):
         return names
 
 
+class _StartParamType(click.ParamType):
+    """Positions of joints, or the name of a state."""
+
+    name = "start"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> dict[str, float] | str:
+        """The positions by joint, or the name."""
+        if "=" not in value:
+            return str(value)
+        pairs = [one.partition("=") for one in value.split(",")]
+        try:
+            return {name.strip(): float(number) for name, _, number in pairs}
+        except ValueError:
+            self.fail(f"{value!r} is given; joint_1=0.5,joint_2=0, or a state", param, ctx)
+
+
 def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     for option in XACRO_OPTIONS:
         command = option(command)
@@ -82,6 +100,23 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     metavar="A,B,…",
     help="Without a trajectory: states of the SRDF, or keyframes of MJCF, between which the joints go straight.",
 )
+@click.option(
+    "--program", metavar="FILE", help="Robot program, ours or a controller's, for a trajectory."
+)
+@click.option("--entry", metavar="NAME", help="The procedure of the program that runs.")
+@click.option("--flange", metavar="LINK", help="The controller's flange.  [default: tool0]")
+@click.option(
+    "--skip",
+    multiple=True,
+    metavar="NAME",
+    help="Instruction of the program to leave out, which moves nothing; may be given again.",
+)
+@click.option(
+    "--start",
+    type=_StartParamType(),
+    metavar="JOINT=VALUE,…|STATE",
+    help="Joints at the program's beginning [rad or m], or a state of the SRDF.",
+)
 @click.option("--scene", metavar="FILE", help="YAML, SDF, or a scene of MoveIt.")
 @INCLUDE_OPTION
 @click.option("--srdf", metavar="FILE", help="Asks for self-clearance, and excuses pairs of it.")
@@ -119,6 +154,11 @@ def new(
     joints: list[str] | None,
     columns: tuple[tuple[str, str], ...] | None,
     states: list[str] | None,
+    program: str | None,
+    entry: str | None,
+    flange: str | None,
+    skip: tuple[str, ...],
+    start: dict[str, float] | str | None,
     scene: str | None,
     includes: tuple[tuple[str, str], ...],
     srdf: str | None,
@@ -160,9 +200,18 @@ def new(
         "joints": joints,
         "columns": dict(columns or ()),
     }
+    of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip]}
     asked = _given(motion)
     if asked and (states or trajectory is None):
         raise click.UsageError(_only_one(states, [*asked]))
+    if moves := _given({**of_program, "start": start}):
+        if program is None:
+            raise click.UsageError(
+                f"{_option_of(moves)} is of a program; --program FILE is missing"
+            )
+        if asked or states:
+            raise click.UsageError("both --program and another motion; one of them")
+        asked = _given({"program": _given(of_program), "start_state": start})
     given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
     made = _proposing(new_case(given, out_dir))
     _write(made, out_dir, force)
@@ -175,6 +224,12 @@ def new(
 def _given(keys: dict[str, Any]) -> dict[str, Any]:
     """What is given of them."""
     return {key: value for key, value in keys.items() if value not in (None, False, [], {})}
+
+
+def _option_of(keys: dict[str, Any]) -> str:
+    """The option that gives the first of some keys of a program."""
+    (first, *_) = keys
+    return f"--{'flange' if first == 'link' else first}"
 
 
 def _only_one(states: list[str] | None, keys: list[str]) -> str:

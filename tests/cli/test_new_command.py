@@ -20,6 +20,7 @@ from tests.formats.making_messages import ROS2
 from tests.formats.making_moveit import FIRST, MESSAGE
 from tests.formats.making_octree import data_of, octree
 from tests.formats.making_sdf import collision, link, model, sdf, world
+from tests.programs.arms import FILES
 
 ARM = TWO_JOINTS.replace(
     '<link name="tip"/>',
@@ -99,6 +100,40 @@ def direct(scene, trajectory):
     case |= {"trajectory": trajectory} | ({} if scene is None else {"scene": scene})
     Path("out/direct.yaml").write_text(json.dumps(case))
     return "out/direct.yaml"
+
+
+SCRIPT = "movej([{},0,0,0,0,0])\ngrip()\nmovej([0.1,0,0,0,0,0])\n"
+
+
+@pytest.mark.slow
+def test_a_program_stays_the_file_that_it_is(capsys):
+    Path("cell/move.script").write_text(SCRIPT.format(0.0))
+    words = [
+        "--program",
+        "cell/move.script",
+        "--skip",
+        "grip",
+        "--flange",
+        "tool_tip",
+        "--scene",
+        "cell/cell.scene",
+    ]
+    start = ["--start", ",".join(f"joint_{i}={0.2 if i == 1 else 0}" for i in range(1, 7))]
+    assert new(*words, *start, robot=str(FILES["heron6"])) == 0
+    one = load_case("out/case.yaml").robots[0].trajectory
+    assert one.positions[0, 0] == 0.2 and one.positions[-1, 0] == 0.1 and not one.has_way_in
+    Path("cell/move.script").write_text(SCRIPT.format(0.4))
+    assert new(*words, "--force", robot=str(FILES["heron6"])) == 0
+    two = load_case("out/case.yaml").robots[0].trajectory
+    assert two.positions[0, 0] == 0.4 and two.has_way_in
+    told = capsys.readouterr().out
+    assert "trajectory from ../cell/move.script" in told or "from cell/move.script" in told
+    for more, what in (
+        (["--skip", "grip"], "--skip is of a program; --program FILE is missing"),
+        ([*words, "--trajectory", "cell/path.csv"], "both --program and another motion"),
+        ([*words, "--start", "joint_1=x"], "joint_1=0.5,joint_2=0, or a state"),
+    ):
+        assert new(*more, robot=str(FILES["heron6"])) == 2 and what in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

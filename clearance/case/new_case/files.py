@@ -91,7 +91,7 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
     )
     text = _text(given, robot, scene, motion, folder, files)
     contents = {CASE: text_of(text).encode(), **scene.contents}
-    name = text.trajectory["file"]
+    name = text.trajectory.get("file")
     if name in (TRAJECTORY, MESSAGE):
         contents[name] = written(trajectory, name).content
     try:
@@ -124,8 +124,8 @@ class _Motion(NamedTuple):
 
 
 def _notes_of(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> list[str]:
-    """The notes on the trajectory's file, which begin with its name."""
-    if given.trajectory is None:
+    """The notes on the trajectory's file, which begin with its name; a program is read anew with each check."""
+    if given.trajectory is None or "program" in given.trajectory:
         return []
     begins = f"{files.shown(Path(given.trajectory['file']))}: "
     return [note for note in robot.notes if note.startswith(begins)]
@@ -135,13 +135,13 @@ def _motion(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> tuple[
     """What the robot does, and where that is from."""
     if robot.placed.trajectory is not None and given.trajectory is not None:
         topic = given.trajectory.get("topic")
-        shown = files.shown(Path(given.trajectory["file"]))
+        shown = files.shown(Path(given.motion_file or ""))
         return robot.placed.trajectory, shown + (f", topic {topic}" if topic else "")
     if not given.states:
         raise MissingKey(
             "nothing moves: no trajectory is given",
             valid="--trajectory FILE (a CSV of two rows will do: time and the joints), "
-            "or --srdf FILE and --states home,ready",
+            "--program FILE, or --srdf FILE and --states home,ready",
         )
     with at("states"):
         known = _states(given, robot, files)
@@ -176,7 +176,7 @@ def _text(
     files: InputFiles,
 ) -> CaseText:
     """What the case file says."""
-    named = (given.keys["urdf"], (given.trajectory or {}).get("file"), given.scene, given.srdf)
+    named = (given.keys["urdf"], given.motion_file, given.scene, given.srdf)
     resting = robot.resting(motion.trajectory)
     states = [] if given.rest or not resting else names_of(_states(given, robot, files).states)
     return CaseText(
@@ -201,8 +201,12 @@ def _text(
 
 def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path) -> dict[str, Any]:
     """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes, or
-    that it comes to its first sample from elsewhere.
+    that it comes to its first sample from elsewhere. A program stays the file that it is.
     """
+    if "program" in (given.trajectory or {}):
+        keys = dict(given.trajectory or {})
+        program = {**keys["program"], "file": path_from(folder, keys["program"]["file"])}
+        return {**keys, "program": program if len(program) > 1 else program["file"]}
     if (trajectory.holes or trajectory.has_way_in) and given.trajectory is not None:
         keys = dict(given.trajectory)
         return {**keys, "file": path_from(folder, keys["file"])}

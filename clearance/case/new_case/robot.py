@@ -43,9 +43,9 @@ class NewCaseRequest:
 
     Attributes:
         keys: of a robot in a case file, but for its trajectory and joints.
-        trajectory: keys of a trajectory. states: to move between where there is none.
-        rest: states for the joints that the motion leaves alone. scene: a file. includes: of it, as in a
-            case.
+        trajectory: keys of a trajectory; of a program, those of its file.
+        states: to move between where there is none. rest: states for the joints that the motion leaves alone.
+        scene: a file. includes: of it, as in a case.
     """
 
     keys: Mapping[str, Any]
@@ -54,6 +54,12 @@ class NewCaseRequest:
     rest: Sequence[str] = ()
     scene: str | None = None
     includes: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def motion_file(self) -> str | None:
+        """The file of the trajectory, or of the program in its place."""
+        keys = self.trajectory or {}
+        return keys["program"]["file"] if "program" in keys else keys.get("file")
 
     @property
     def srdf(self) -> str | None:

@@ -64,7 +64,7 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield from (f"  {line}" for line in _robot(case))
     yield from _scene(case)
     yield from (f"# {shown(note)}" for note in case.motion_notes)
-    path = case.trajectory["file"] if len(case.trajectory) == 1 else case.trajectory
+    path = case.trajectory["file"] if [*case.trajectory] == ["file"] else case.trajectory
     yield f"trajectory: {flow(path)}  # {shown(case.motion)}"
     for key, why in case.motion_keys:
         yield f"# trajectory: {flow(case.trajectory)[:-1]}, {key}}}  # {shown(why)}"

@@ -47,6 +47,12 @@ class AxisMap:
         if sorted(numbers.values()) != list(range(1, len(own) + 1)):
             told = ", ".join(f"{name}: {number}" for name, number in numbers.items())
             raise BadProgram(f"the axes are {told}", valid=f"each of 1 to {len(own)} once")
+        for joint in joints:
+            if joint.kind is JointKind.PRISMATIC and joint.name in numbers:
+                told = f"joint {joint.name!r} slides, and axes are read as angles"
+                raise BadProgram(
+                    told, valid=f"axes: {{{joint.name}: {{axis: E1}}}}, if it is external"
+                )
         if len(set(external.values())) != len(external):
             raise BadProgram("an external axis is there twice", valid="each once")
         return cls(joints, {name: rules.get(name, Axis()) for name in names}, numbers, external)

@@ -307,7 +307,7 @@ class _Conversion:
             yield "speeds of axes are shares of the slowest joint's greatest speed"
         ends = [one.to for one in self._moves if isinstance(one.to, PoseTarget)]
         if unchecked := dict.fromkeys(one.unchecked for one in ends if one.unchecked):
-            yield f"of configurations not checked: {listed([*unchecked])}"
+            yield f"configurations are not checked for {listed([*unchecked])}"
         if self.compared[0] >= 0.0:
             way, turn = self.compared[0] * 1e3, np.degrees(self.compared[1])
             yield f"poses with axes beside them agree with the robot within {way:.2g} mm and {turn:.2g} degrees"

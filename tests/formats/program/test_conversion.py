@@ -22,7 +22,7 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import pose_from_rpy
 from clearance.world.robot import Joint, JointKind
-from tests.programs.arms import FILES
+from tests.programs.arms import arm
 
 QUARTER = math.pi / 2
 AXES = AxisTarget((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), name="home")
@@ -38,7 +38,7 @@ def at(x: float, y: float, z: float) -> np.ndarray:
 
 def made(*moves, start=(), robot=None, **asked):
     asked = validated(ProgramFile, {"file": "weld.mod", "link": "tool_tip", **asked}, "program")
-    robot = robot or cl.load_urdf(FILES["heron6"])
+    robot = robot or arm("heron6").robot
     return converted(ControllerProgram(moves), asked, robot, dict(start))
 
 
@@ -85,7 +85,7 @@ def test_controllers_stop_where_no_way_follows():
 
 
 def test_a_link_called_base_is_the_controllers():
-    robot = cl.load_urdf(FILES["heron6"])
+    robot = arm("heron6").robot
     turned = np.diag([-1.0, -1.0, 1.0, 1.0])
     joint = Joint("b", JointKind.FIXED, "base_link", "base", turned)
     robot = replace(robot, link_names=(*robot.link_names, "base"), joints=(*robot.joints, joint))
@@ -170,7 +170,7 @@ def test_a_line_may_keep_the_tool_as_it_is():
 
 
 def test_a_controller_whose_base_is_not_the_root_asks_for_it():
-    robot = cl.load_urdf(FILES["heron6"])
+    robot = arm("heron6").robot
     asked = validated(ProgramFile, {"file": "a.ls", "link": "tool_tip"}, "program")
     line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
     assert converted(ControllerProgram((HOME,), base="at axis 2"), asked, robot, {}).program.moves
@@ -196,6 +196,11 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
             "line 3: a corner zone before another tool",
         ),
         ([ControllerWait(3, 1.0)], {}, "nothing moves"),
+        (
+            [HOME],
+            {"link": "finger_left"},
+            "axes: joint 'finger_joint' slides, and axes are read as",
+        ),
     ],
 )
 def test_what_has_no_meaning_for_the_robot_is_refused_with_its_line(moves, asked, told):
