@@ -111,11 +111,12 @@ class Unpacked:
 
 
 def is_zip(path: Path) -> bool:
-    """True for a file that is a zip, or is called so."""
-    if not path.is_file():
+    """True for a file that is a zip, or is called so; False for what cannot be read."""
+    try:
+        with regular_file(path) as file:
+            return path.suffix.lower() == ".zip" or file.read(4) == b"PK\3\4"
+    except (OSError, ValueError):
         return False
-    with path.open("rb") as file:
-        return path.suffix.lower() == ".zip" or file.read(4) == b"PK\3\4"
 
 
 @contextmanager

@@ -26,6 +26,9 @@ from clearance.formats.files.mesh_paths import is_package, variables_of
 from clearance.formats.robot.urdf.xacro_file import variables_asked
 from clearance.world.case import LOOKUP, Source
 
+LONGEST_TEXT = 2**26
+"""[bytes] No longer file names others."""
+
 BEGIN = (1980, 1, 1, 0, 0, 0)
 """The time of all files in a zip."""
 
@@ -149,7 +152,8 @@ def _is_named(root: str, files: Iterable[str]) -> bool:
     """True if one of the files may name another by its place on this machine."""
     if root == os.path.abspath(os.sep):
         return True
-    return any(os.fsencode(root) in Path(one).read_bytes() for one in files)
+    texts = (Path(one) for one in files if os.path.getsize(one) <= LONGEST_TEXT)
+    return any(os.fsencode(root) in one.read_bytes() for one in texts)
 
 
 def _package_folders(files: Iterable[str], sources: Iterable[Source]) -> list[str]:

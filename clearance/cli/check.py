@@ -93,7 +93,7 @@ def check(
         )
     from clearance.cli.watch import watch
 
-    watch(checked, outputs.out)
+    watch(checked, outputs.out, quiet=quiet)
 
 
 class PrintedOutput(NamedTuple):
@@ -192,7 +192,7 @@ def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
-    elif printed.brief:
+    elif printed.brief and not printed.quiet:
         from clearance.report.terminal import print_answer
         from clearance.report.topics import verdict
 

@@ -38,7 +38,7 @@ setInterval(() => {
 """
 
 
-def watch(check_once: Callable[[], object], out: Path | None) -> NoReturn:
+def watch(check_once: Callable[[], object], out: Path | None, *, quiet: bool) -> NoReturn:
     """Checks, and checks again at every change of a file that was read; returns never, but is interrupted.
 
     Args:
@@ -52,7 +52,8 @@ def watch(check_once: Callable[[], object], out: Path | None) -> NoReturn:
             before = dict(opened)
             if is_bad:  # a file that is missing may come
                 before |= {one.parent: state_of(one.parent) for one in opened}
-            click.echo(f"watching {len(opened)} files; Ctrl-C ends it", err=True)
+            if not quiet:
+                click.echo(f"watching {len(opened)} files; Ctrl-C ends it", err=True)
             with doing(lambda: ""):
                 wait_for_change(before)
     finally:

@@ -106,7 +106,7 @@ def test_the_page_loads_itself_anew(tmp_path):
     page.write_text("<html><body><p>one</p></body></html>")
     watch.publish(tmp_path)
     with chromium() as tab:
-        tab.open(page.as_uri(), "document.querySelector('p').textContent === 'one'")
+        tab.open(page.as_uri(), "document.querySelector('p')?.textContent === 'one'")
         page.write_text("<html><body><p>two</p></body></html>")
         watch.publish(tmp_path)
-        tab.wait("document.querySelector('p').textContent === 'two'")
+        tab.wait("document.querySelector('p')?.textContent === 'two'")
