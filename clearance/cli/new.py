@@ -200,18 +200,8 @@ def new(
         "joints": joints,
         "columns": dict(columns or ()),
     }
-    of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip]}
-    asked = _given(motion)
-    if asked and (states or trajectory is None):
-        raise click.UsageError(_only_one(states, [*asked]))
-    if moves := _given({**of_program, "start": start}):
-        if program is None:
-            raise click.UsageError(
-                f"{_option_of(moves)} is of a program; --program FILE is missing"
-            )
-        if asked or states:
-            raise click.UsageError("both --program and another motion; one of them")
-        asked = _given({"program": _given(of_program), "start_state": start})
+    of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
+    asked = _motion(_given(motion), _given(of_program), states)
     given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
     made = _proposing(new_case(given, out_dir))
     _write(made, out_dir, force)
@@ -226,10 +216,25 @@ def _given(keys: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in keys.items() if value not in (None, False, [], {})}
 
 
-def _option_of(keys: dict[str, Any]) -> str:
-    """The option that gives the first of some keys of a program."""
-    (first, *_) = keys
-    return f"--{'flange' if first == 'link' else first}"
+def _motion(
+    table: dict[str, Any], program: dict[str, Any], states: list[str] | None
+) -> dict[str, Any]:
+    """The keys of the trajectory, from those of a table or of a program.
+
+    Raises:
+        UsageError: several motions, or none that a key is of.
+    """
+    if table and (states or "file" not in table):
+        raise click.UsageError(_only_one(states, [*table]))
+    if not program:
+        return table
+    if "file" not in program:
+        option = next(iter(program)).replace("link", "flange")
+        raise click.UsageError(f"--{option} is of a program; --program FILE is missing")
+    if table or states:
+        raise click.UsageError("both --program and another motion; one of them")
+    start = program.pop("start", None)
+    return _given({"program": program, "start_state": start})
 
 
 def _only_one(states: list[str] | None, keys: list[str]) -> str:
