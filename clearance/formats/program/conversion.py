@@ -76,8 +76,9 @@ def converted(
         isinstance(one, ControllerMove) and isinstance(one.to, PoseTarget) for one in read.moves
     )
     made = _Conversion(read, ControlledArm(asked, robot, read.base if has_poses else ""))
-    named = list(made.moves())
     own, starts_anywhere = made.start(start)
+    made.begins_at_first = starts_anywhere
+    named = list(made.moves())
     tool = {"link": made.arm.link, **pose_written(made.first_tool)}
     program = {
         "tool": tool,
@@ -97,7 +98,8 @@ class _Conversion:
 
     Attributes:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
-        others: where external axes are that no joint follows.
+        others: where external axes are that no joint follows. begins_at_first: the tool begins where the first
+            move ends.
     """
 
     read: ControllerProgram
@@ -105,6 +107,7 @@ class _Conversion:
     notes: list[str] = field(default_factory=list)
     compared: tuple[float, float] = (-1.0, 0.0)
     others: dict[str, float] = field(default_factory=dict)
+    begins_at_first: bool = False
     _before: ControllerMove | None = None
 
     @cached_property
@@ -137,9 +140,9 @@ class _Conversion:
         if given:
             return dict(given), False
         first = self._moves[0]
-        if first.kind == "ptp" and isinstance(first.to, AxisTarget):
-            return self.arm.axes.joints_of(first.to), True
         with at(place_of(first)):
+            if first.kind == "ptp" and isinstance(first.to, AxisTarget):
+                return self.arm.axes.joints_of(first.to), True
             raise MissingKey(
                 "the first move ends at a pose, and the joints at its beginning are unknown",
                 valid="trajectory: {program: …, start_state: {joint: …}}",
@@ -170,6 +173,8 @@ class _Conversion:
         """
         if not isinstance(other, ControllerMove):
             return "no move follows at once"
+        if self.begins_at_first and one is self._moves[0]:
+            return "it begins there"
         if not np.array_equal(one.tool, other.tool):
             with at(place_of(one)):
                 raise BadProgram("a corner zone before another tool", valid="a stop there")

@@ -78,7 +78,7 @@ def unknown_word(call: Call) -> BadProgram:
     return BadProgram(
         f"{call.name!r} is no known instruction, and may move the robot",
         where=str(call.line),
-        valid=f"a file beside that has it, or skip: [{call.name}] if it moves nothing",
+        valid=f"a file beside that has it, or skip: [{call.name}] if it neither moves nor sets tool or frame",
     )
 
 

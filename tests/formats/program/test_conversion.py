@@ -163,6 +163,19 @@ def test_an_external_axis_that_moves_needs_a_joint():
         made(HOME, one, moved)
 
 
+def test_a_corner_where_the_tool_begins_is_none():
+    first, line = (
+        replace(HOME, zone=0.01),
+        ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4)),
+    )
+    found = made(first, line)
+    assert found.program.moves[0].ptp.zone == 0.0 and any(
+        "it begins there" in note for note in found.notes
+    )
+    start = {f"joint_{i}": 0.0 for i in range(1, 7)}
+    assert made(first, line, start=start).program.moves[0].ptp.zone == 0.01
+
+
 def test_a_line_may_keep_the_tool_as_it_is():
     line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
     assert made(HOME, line).program.moves[1].lin.to.turns
