@@ -186,7 +186,7 @@ class _Fanuc:
             raise BadProgram(
                 f"{name} has no {', '.join(untaught or missing)}", valid="a taught position"
             )
-        tool = self._frame(name, "UTOOL", one.tool, line, run, not is_joints)
+        tool = self._frame(name, "UTOOL", one.tool, line, run, kind != "ptp" or not is_joints)
         values = {key: float(value) for key, value in one.values.items() if value is not None}
         if is_joints:
             self.has_joints = True
@@ -222,6 +222,10 @@ class _Fanuc:
             return np.asarray(given[key].matrix())
         if not needed:
             return np.eye(4)
+        if index is None:
+            raise BadProgram(
+                f"{name}: no {kind}_NUM is set before", valid=f"{kind}_NUM=1 before it"
+            )
         told = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
         raise MissingKey(
             f"{name}: {told}",
@@ -232,18 +236,18 @@ class _Fanuc:
         """[m] The radius of the corner at a motion's end.
 
         Raises:
-            MissingKey: its length is not in the file.
+            MissingKey: its length is not in the file: what CNT cuts depends on speed and load, and CR may be the
+                radius of the arc.
         """
         if end == "FINE":
             return 0.0
-        if (length := re.fullmatch(r"CR(\d+\.?\d*)", end)) is not None:
-            return float(length[1]) * MM
-        for key in (end, "CNT"):
-            if key in self.asked.zones and end.startswith("CNT"):
+        kind = end[: len("CNT")] if end.startswith("CNT") else end[: len("CR")]
+        for key in (end, kind):
+            if key in self.asked.zones:
                 return self.asked.zones[key]
         raise MissingKey(
-            f"{end} is no length",
-            valid=f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or of all as CNT",
+            f"{end} does not say where the corner begins",
+            valid=f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or {kind} of all",
         )
 
     def _speed(self, kind: str, unit: str, value: Any, line: Line) -> dict[str, Any]:

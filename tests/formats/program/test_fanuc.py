@@ -59,14 +59,14 @@ def test_motions_in_frames_and_by_axes_become_moves_with_their_lines():
         + """  !a remark ;
 J P[1:HOME] 50% FINE    ;
 L P[2] 250mm/sec CNT50 ACC100    ;
-L P[3] 300cm/min CR10 TB .10sec,CALL GRIP ;
+L P[3] 300cm/min CNT100 TB .10sec,CALL GRIP ;
 DO[1:gun]=ON ;
 C P[2]
 : P[4] 100mm/sec FINE    ;
 WAIT   1.50(sec) ;
 """
     )
-    found = program(body, zones={"CNT50": 0.02})
+    found = program(body, zones={"CNT50": 0.02, "CNT": 0.01})
     home, line, next_, arc, wait = found.moves
     # J3 is against the horizontal: the third axis has turned by J3 + J2
     degrees = [10.0, 20.0, 15.0, 0.0, -45.0, 30.0]
@@ -130,7 +130,12 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
         (L2 + " Offset,PR[1] ;", "line 8: OFFSET is not read, and may move the target or the way"),
         (
             FRAMES + "L P[2] 100mm/sec CNT100 ;",
-            "line 8: CNT100 is no length; program: {zones: {CNT100: 0.05}}",
+            "line 8: CNT100 does not say where the corner begins; program: {zones: {CNT100: 0.05}}",
+        ),
+        (FRAMES + "L P[2] 100mm/sec CR10 ;", "or CR of all"),
+        (
+            FRAMES + "L P[1] 100mm/sec FINE ;",
+            "line 8: P[1] was taught in UTOOL 2, and UTOOL_NUM is 1",
         ),
         (FRAMES + "L P[2] 0mm/sec FINE ;", "line 8: a speed of 0 mm/sec; more than 0"),
         (
