@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,6 +27,7 @@ from clearance.formats.program.controller_program import (
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Expression, Name, Unknown, number
 from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, SPLINE, WAIT
+from clearance.formats.program.krl_files import files_of
 from clearance.formats.program.krl_settings import (
     FUNCTIONS,
     HELD,
@@ -34,11 +35,11 @@ from clearance.formats.program.krl_settings import (
     first_variables,
     key_of,
 )
-from clearance.formats.program.krl_text import module_of
 from clearance.formats.program.krl_values import (
     FRAME,
     MM,
     Aggregate,
+    as_real,
     frame_of,
     is_number,
     matrix_of,
@@ -66,23 +67,17 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         BadInput: with the file and the line.
     """
     with at(asked.shown):
-        modules = [module_of(asked.data, asked.shown)]
-        modules += [module_of(data, shown, shown) for shown, data in asked.beside.items()]
-        routines = {
-            name: one for module in reversed(modules) for name, one in module.routines.items()
-        }
-        if not modules[0].routines:
-            raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
+        files = files_of(asked)
         language = _Krl(asked.asked)
         skip = frozenset(name.upper() for name in asked.asked.skip)
-        run = Execution(language, routines, skip, first_variables(asked.asked, routines))
-        for module in modules[::-1]:
-            run.run(module.declared)
-        run.run(routines[_entry(list(modules[0].routines), asked.asked.entry)].body)
+        variables = first_variables(asked.asked, files.routines)
+        run = Execution(language, files.routines, skip, variables)
+        run.run(files.declared)
+        run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
         return ControllerProgram(tuple(run.moves), (*run.notes, *language.notes()))
 
 
-def _entry(names: list[str], asked: str | None) -> str:
+def _entry(names: Sequence[str], asked: str | None) -> str:
     """The procedure that runs: the one that is asked for, or the first."""
     if asked is None or asked.upper() in names:
         return names[0] if asked is None else asked.upper()
@@ -147,12 +142,14 @@ class _Krl:
     def with_part(self, value: Any, by: Any, new: Any) -> None:
         if not isinstance(value, dict):
             raise TypeError
-        value[key_of(by)] = new
+        key = key_of(by)
+        value[key] = as_real(new) if _is_real(str(key)) else new
 
     def result_of(self, call: Call, run: Execution) -> Any:
         """The value of an aggregate, or of a function that inline forms call."""
         if call.name == AGGREGATE:
-            return {name: run.evaluated(one) for name, one in call.named.items()}
+            found = {name: run.evaluated(one) for name, one in call.named.items()}
+            return {key: as_real(one) if _is_real(key) else one for key, one in found.items()}
         if call.name not in FUNCTIONS:
             return Unknown(f"{call.name}() at {call.line}")
         args = [run.evaluated(one) for one in call.args]
@@ -210,8 +207,9 @@ class _Krl:
             if kind == "circ"
             else None
         )
-        run.add(self._made(call, kind, to, via, settings))
-        self._reached(to, settings)
+        move = self._made(call, kind, to, via, settings)
+        run.add(move)
+        self._reached(move, settings)
         run.variables.update(kept)
 
     def _made(
@@ -259,7 +257,7 @@ class _Krl:
         """(4, 4) `base_from_tool` [m] before a move, in the frames that hold for it."""
         if self.pose is None:
             raise BadProgram(
-                "where the tool is before this move is said by axes, and this move counts from there",
+                "the tool's pose before this move is not known, and this move counts from it",
                 valid="X, Y, Z, A, B and C, or a move to a pose before it",
             )
         return (
@@ -302,12 +300,22 @@ class _Krl:
             raise BadProgram(told, valid="A, B and C, or none of them")
         return placed
 
-    def _reached(self, to: Target, settings: Settings) -> None:
-        """Keeps where a move ends."""
-        if isinstance(to, AxisTarget):
-            self.pose, self.axes = None, dict(zip(AXES, np.degrees(to.axes).tolist(), strict=True))
-        else:
-            self.pose, self.axes = to.pose @ inverse(settings.frame("$TOOL", "tools")), None
+    def _reached(self, move: ControllerMove, settings: Settings) -> None:
+        """Keeps where a move ends; on an arc that takes the tool along, its rotation is not known."""
+        before, self.pose, self.axes = self.pose, None, None
+        if isinstance(move.to, AxisTarget):
+            self.axes = dict(zip(AXES, np.degrees(move.to.axes).tolist(), strict=True))
+        elif move.orientation == "to":
+            self.pose = move.to.pose @ inverse(move.tool)
+        elif move.orientation == "constant" and before is not None:
+            pose = before @ move.tool
+            pose[:3, 3] = move.to.pose[:3, 3]
+            self.pose = pose @ inverse(move.tool)
+
+
+def _is_real(key: str) -> bool:
+    """True for a part of a position, which is never an integer."""
+    return key in FRAME or re.fullmatch("[AE][1-6]", key) is not None
 
 
 def _configuration(given: Aggregate) -> tuple[str, dict[int, tuple[float, float]]]:

@@ -6,7 +6,7 @@ Not for: what instructions do (`krl`).
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,10 +27,10 @@ from clearance.formats.program.krl_expressions import (
     SPLINE,
     TYPES,
     WAIT,
-    WORD,
     Expressions,
     parameters_of,
 )
+from clearance.formats.program.krl_values import as_integer, as_real
 from clearance.formats.program.statements import (
     BREAK,
     RETURN,
@@ -45,7 +45,7 @@ from clearance.formats.program.statements import (
     While,
     assigned,
 )
-from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token, text_of, tokens_of
+from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 
 _Branch = tuple[Expression | None, tuple[Statement, ...]]
 
@@ -54,38 +54,37 @@ _ENDS = ("END", "ENDFCT", "DEF", "DEFFCT")
 
 @dataclass(frozen=True)
 class Module:
-    """A file: its routines by name in capitals, in order, and what stands outside of them."""
+    """A file.
+
+    Attributes:
+        routines: by name in capitals, in order. public: those that others may call. declared: what stands outside.
+    """
 
     routines: dict[str, Routine]
+    public: frozenset[str]
     declared: tuple[Statement, ...]
 
 
-def module_of(data: bytes, shown: str, file: str = "") -> Module:
+def module_of(lines: Sequence[list[Token]], types: dict[str, str]) -> Module:
     """The statements of a file.
 
     Args:
-        file: as of a `Line`.
+        lines: the words of each, with its end. types: of the variables of all files, INT and REAL; those of this
+            one are added.
 
     Raises:
         BadSyntax: a block or a procedure without its end, a move that cannot be read: with the line.
     """
-    return _Reader(list(_lines(text_of(data, shown), file))).module()
-
-
-def _lines(text: str, file: str) -> Iterator[list[Token]]:
-    """The words of each line that has any, and its end; heads (`&ACCESS`) are left out."""
-    for number, row in enumerate(text.split("\n"), 1):
-        words = [] if row.lstrip().startswith("&") else tokens_of(row, WORD)[:-1]
-        line = Line(number, file)
-        if words:
-            yield [*(Token(one.kind, one.text, line) for one in words), Token(NEWLINE, "\n", line)]
+    return _Reader(list(lines), types).module()
 
 
 class _Reader:
     """Reads the lines of a file."""
 
-    def __init__(self, lines: list[list[Token]]) -> None:
+    def __init__(self, lines: list[list[Token]], types: dict[str, str]) -> None:
         self._lines, self._at = lines, 0
+        self._types, self._own = types, dict[str, str]()
+        self._public = set[str]()
 
     def module(self) -> Module:
         """All of it."""
@@ -96,31 +95,27 @@ class _Reader:
                 routines.setdefault(routine.name.upper(), routine)
             else:
                 declared += self._body(("DEF", "DEFFCT"), within_routine=False)
-        return Module(routines, tuple(declared))
-
-    @property
-    def _words(self) -> list[Token]:
-        return self._lines[self._at]
+        public = frozenset(self._public) | frozenset([*routines][:1])
+        return Module(routines, public, tuple(declared))
 
     @property
     def _word(self) -> str:
-        return self._words[0].text.upper()
+        return self._lines[self._at][0].text.upper()
 
     @property
     def _second(self) -> str:
         """The word after GLOBAL."""
-        return self._words[1].text.upper() if self._word == "GLOBAL" else ""
+        return self._lines[self._at][1].text.upper() if self._word == "GLOBAL" else ""
 
     def _taken(self) -> Expressions:
         """The words of the next line, which is then behind."""
-        words = self._words
         self._at += 1
-        return Expressions(Cursor(words, folds=True), GRAMMAR)
+        return Expressions(Cursor(self._lines[self._at - 1], folds=True), GRAMMAR)
 
     def _routine(self) -> Routine:
         """A procedure or a function, at whose head this is."""
         cursor = self._taken().cursor
-        cursor.accept("GLOBAL")
+        is_public = cursor.accept("GLOBAL")
         head = cursor.expect("DEF", "DEFFCT")
         end = "END" if head.text.upper() == "DEF" else "ENDFCT"
         names = list[Token]()
@@ -129,6 +124,8 @@ class _Reader:
             if names[-1].kind == NEWLINE:
                 cursor.refuse("'('")
         parameters, returned = parameters_of(cursor)
+        self._own = {}
+        self._public.update([names[-1].text.upper()] if is_public else [])
         body = [one for one in self._body(_ENDS) if _declared(one) not in parameters]
         if self._at >= len(self._lines) or self._word != end:
             raise BadSyntax(
@@ -163,7 +160,7 @@ class _Reader:
 
     def _statement(self, within_routine: bool) -> list[Statement]:
         """The statements of the next line, and of the block that begins there."""
-        word, line = self._word, self._words[0].line
+        word, line = self._word, self._lines[self._at][0].line
         if (block := self._block(word, line)) is not None:
             return [block]
         read = self._taken()
@@ -178,9 +175,12 @@ class _Reader:
         try:
             return self._simple(word, line, read)
         except BadSyntax:
-            braces = any(one.text == "{" for one in self._lines[self._at - 1])
-            if word in (*MOVES, "WAIT") or braces:
+            marks = {one.text for one in self._lines[self._at - 1]}
+            if word in (*MOVES, "WAIT") or "{" in marks:
                 raise
+            if "=" in marks and "(" not in marks:
+                unread = Constant(Unknown(f"{word} is given what is not read"))
+                return [Assign(line, Name(word, line), unread)]
             return [Unreadable(line, word)] if within_routine else []
 
     def _block(self, word: str, line: Line) -> Statement | None:
@@ -219,7 +219,7 @@ class _Reader:
             return [Do(line, _move(word, line, read))]
         target = read.expression()
         if cursor.accept("="):
-            return [_assign(line, target, read)]
+            return [self._assign(line, target, read)]
         _require_end(cursor)
         call = target if isinstance(target, Call) else Call(word, (), {}, line)
         return [Do(line, call)]
@@ -230,7 +230,7 @@ class _Reader:
         is_global = False
         while cursor.is_at("DECL", "GLOBAL", "CONST"):
             is_global |= cursor.take().text.upper() == "GLOBAL"
-        cursor.take()  # the type
+        kind = cursor.take().text.upper()
         while cursor.next.kind == "name":
             name = Name(GRAMMAR.folded(cursor.take().text), cursor.next.line)
             is_array = cursor.is_at("[")
@@ -239,14 +239,32 @@ class _Reader:
                     while cursor.next.kind != NEWLINE and not cursor.accept("]"):
                         cursor.take()
             own = within_routine and not is_global
+            (self._own if own else self._types)[name.name] = kind
             if cursor.accept("="):
-                found.append(Assign(name.line, name, read.expression(), own))
+                value = self._of_type(name, read.expression())
+                found.append(Assign(name.line, name, value, own, is_global))
             else:
                 start: Any = {} if is_array else Unknown(f"{name.name} is given no value")
-                found.append(Assign(name.line, name, Constant(start), own))
+                found.append(Assign(name.line, name, Constant(start), own, is_global))
             if not cursor.accept(","):
                 break
         return found
+
+    def _of_type(self, target: Expression, value: Expression) -> Expression:
+        """A value as a variable of its type takes it."""
+        name = assigned(target)
+        kind = "" if name is None else self._own.get(name.name) or self._types.get(name.name, "")
+        act = {"INT": as_integer, "REAL": as_real}.get(kind)
+        return value if act is None or name is None else Operation(act, (value,), name.line)
+
+    def _assign(self, line: Line, target: Expression, read: Expressions) -> Statement:
+        """A value for a variable, or for an output, which moves nothing."""
+        name = assigned(target)
+        if name is not None and name.name in ("$OUT", "$ANOUT"):
+            return Do(line, Call("$OUT", (), {}, line))
+        value = read.expression()
+        _require_end(read.cursor)
+        return Assign(line, target, self._of_type(target, value))
 
     def _wait(self, line: Line, read: Expressions) -> Statement:
         cursor = read.cursor
@@ -294,7 +312,8 @@ class _Reader:
         cursor.expect("TO")
         last = read.expression()
         step = read.expression() if cursor.accept("STEP") else None
-        body = tuple(self._until(line, "FOR", "ENDFOR"))
+        whole = Assign(line, name, Operation(as_integer, (name,), line))
+        body = (whole, *self._until(line, "FOR", "ENDFOR"))
         self._at += 1
         return For(line, "FOR", name, first, last, step, body)
 
@@ -351,17 +370,6 @@ def _move(word: str, line: Line, read: Expressions) -> Call:
             )
         named[word_after] = Constant(True)
     return Call(word, tuple(targets), named, line)
-
-
-def _assign(line: Line, target: Expression, read: Expressions) -> Statement:
-    """A value for a variable; one that cannot be read is not known."""
-    cursor = read.cursor
-    name = assigned(target)
-    if name is not None and name.name in ("$OUT", "$ANOUT"):
-        return Do(line, Call("$OUT", (), {}, line))
-    value = read.expression()
-    _require_end(cursor)
-    return Assign(line, target, value)
 
 
 def _declared(one: Statement) -> str:

@@ -59,14 +59,20 @@ def composed(one: Any, other: Any) -> Aggregate:
     return {**other, **frame_of(product)}
 
 
-def quotient(one: float, other: float) -> float | Unknown:
-    """A quotient; that of whole numbers is whole where both are integers of KRL, and real where one is not."""
-    value = one / other
-    if isinstance(one, int) and isinstance(other, int):
-        return math.trunc(value)
-    if one == round(one) and other == round(other) and value != round(value):
-        return Unknown("a quotient of whole numbers whose types are not known")
-    return value
+def quotient(one: float, other: float) -> float:
+    """A quotient; that of two integers is one too."""
+    whole = isinstance(one, int) and isinstance(other, int)
+    return math.trunc(one / other) if whole else one / other
+
+
+def as_integer(value: Any) -> Any:
+    """A value as an INT takes it: the nearest whole number, of two the greater."""
+    return math.floor(value + 0.5) if is_number(value) else value
+
+
+def as_real(value: Any) -> Any:
+    """A value as a REAL takes it."""
+    return float(value) if is_number(value) else value
 
 
 def why(value: object) -> str:

@@ -166,7 +166,7 @@ FANUC = b"""/PROG  WELD
    2:  UTOOL_NUM=0 ;
    3:J P[1:HOME] 50% FINE    ;
    4:  FOR R[1]=1 TO 2 ;
-   5:L P[2] 250mm/sec CR5    ;
+   5:L P[2] 250mm/sec FINE    ;
    6:  ENDFOR ;
    7:C P[2]
     :  P[3] 100mm/sec FINE    ;

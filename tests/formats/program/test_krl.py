@@ -123,6 +123,36 @@ def test_arcs_turn_as_their_types_say_and_a_line_may_keep_the_tool():
     assert plain.via.pose[:3, 3] == pytest.approx([0.49, 0.01, 0.3])
 
 
+def test_a_move_after_a_kept_rotation_counts_from_the_tool_as_it_is():
+    body = (
+        FRAMES
+        + f"""LIN {{X 0, Y 0, Z 0, {DOWN}}}
+$ORI_TYPE=#CONSTANT
+LIN {{X 9, Y 0, Z 0, A 0, B 90, C 0}}
+LIN_REL {{Z 10}} #TOOL"""
+    )
+    # the tool still looks down, along the robot's -z
+    assert place(moves_of(body)[-1]) == pytest.approx([0.5, 0.009, 0.29])
+    circle = f"$CIRC_TYPE=#PATH\nCIRC {{X 4, Y 4, Z 0}}, {{X 8, Y 0, Z 0, {DOWN}}}"
+    with pytest.raises(cl.ClearanceError, match="the tool's pose before this move is not known"):
+        moves_of(body.replace("LIN {X 9, Y 0, Z 0, A 0, B 90, C 0}", circle))
+
+
+def test_whole_numbers_round_and_divide_as_such():
+    points = POINTS.replace("ENDDAT", "DECL INT n=7\nDECL REAL half=2.0\nENDDAT")
+    body = f"""INT m
+E6POS p
+m = 2.5
+FOR i=1 TO 1
+p = {{X 0, Y n/half, Z m, {DOWN}}}
+p.X = 9
+LIN {{X p.X/2, Y p.Y, Z n/m-i/2, {DOWN}}}
+ENDFOR"""
+    (move,) = program(FRAMES + body, points).moves
+    # m is 3; of integers 7/3 is 2 and 1/2 is 0; parts of positions are real: 9/2 is 4.5, 7/2.0 is 3.5
+    assert place(move) == pytest.approx([0.5 - 0.0035, 0.0045, 0.302])
+
+
 def test_turns_of_a_joint_move_become_ranges_of_axes():
     body = (
         FRAMES
@@ -176,7 +206,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         (FRAMES + "$VEL.CP=0\nLIN XP1", "line 10: $VEL.CP is 0; more than 0"),
         (
             FRAMES + "PTP XHOME\nLIN {Z 500}",
-            "line 10: where the tool is before this move is said by axes",
+            "line 10: the tool's pose before this move is not known",
         ),
         (
             FRAMES + LINE + "\nLIN_REL {A 10}",
@@ -204,6 +234,19 @@ def test_what_the_files_do_not_decide_is_refused_with_its_line(body, told):
     with pytest.raises(cl.ClearanceError) as caught:
         read("weld.src", text, {"weld.dat": POINTS.encode()})
     assert str(caught.value).startswith("weld.src: ") and told in str(caught.value)
+
+
+def test_each_module_has_points_and_procedures_of_its_own():
+    points = "DEFDAT pick\nDECL E6POS XP1={X 7.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 180.0}\nDECL GLOBAL INT N=3\nENDDAT\n"
+    pick = "DEF pick()\nstitch()\nEND\nDEF stitch()\nLIN XP1\nEND\n"
+    body = FRAMES + "XP1.X=20.0\npick()\nstitch()\nLIN_REL {Y N}\nEND\nDEF stitch()\nLIN XP1"
+    beside = {"weld.dat": POINTS, "sub/pick.src": pick, "sub/pick.dat": points}
+    beside = {name: text.encode() for name, text in beside.items()}
+    found = read("weld.src", f"{HEAD}{body}\nEND\n", beside).moves
+    # x of the base is the robot's y
+    assert [place(move)[1] for move in found] == pytest.approx([0.007, 0.02, 0.02])
+    assert [(move.file, move.line) for move in found] == [("sub/pick.src", 5), ("", 15), ("", 12)]
+    assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
 
 
 def test_a_move_is_never_left_out():
