@@ -7,12 +7,10 @@ something, numbers are finite, shapes are solids, times increase.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-
-import numpy as np
 
 from clearance.case.allow import (
     allowances_of,
@@ -28,6 +26,7 @@ from clearance.case.packed import require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
+from clearance.case.standing import Rider, standing_frames
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
 from clearance.formats.files.input_files import InputFiles, resolved
@@ -129,7 +128,9 @@ def with_trajectory_file(
                 valid="no trajectory there, or another robot",
             )
         entry = entry._replace(trajectory=given, trajectory_field="trajectory")
-        standing = {one.name: one.world_from_body for one in cell.case.obstacles if not _rides(one)}
+        others = [one for i, one in enumerate(cell.case.robots) if i != i_robot]
+        carried = {one.part for one in cell.case.carries}
+        standing = standing_frames(others, (_rider(one, carried) for one in cell.case.obstacles))
         placed, notes = in_motion(
             entry, cell.case.robots[i_robot], cell.path.parent, files, standing
         )
@@ -166,7 +167,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     entries = given.entries()
     reader = RobotReader(path.parent, meshes)
     with at(path.name):
-        moving = [reader.moving(entry, _standing(given)) for entry in entries]
+        moving = _moving(reader, entries, given)
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
@@ -262,14 +263,31 @@ def _notices(given: schema.Case) -> list[Notice]:
     return [*angle_notices(bases), *obstacle_notices(obstacles), *scale_notices(scales)]
 
 
-def _standing(given: schema.Case) -> dict[str, np.ndarray]:
-    """(4, 4) `world_from_obstacle` [m] of the obstacles that stand in the world, by name."""
-    found = (one for one in given.scene.obstacles if one.on is None and one.moves is None)
-    return {one.name: one.pose.matrix() for one in found}
+def _moving(
+    reader: RobotReader, entries: Sequence[schema.RobotEntry], given: schema.Case
+) -> list[tuple[PlacedRobot, tuple[str, ...]]]:
+    """The robots as they move, those with programs last, since their frames may be on the others."""
+    has_program = [
+        one.trajectory is not None and one.trajectory.program is not None for one in entries
+    ]
+    found = {i: reader.moving(one, {}) for i, one in enumerate(entries) if not has_program[i]}
+    carried = {one.part for one in given.carry}
+    riders = (
+        Rider(one.name, one.on, one.pose.matrix(), one.moves is not None or one.name in carried)
+        for one in given.scene.obstacles
+    )
+    standing = standing_frames([placed for placed, _ in found.values()], riders)
+    for i, one in enumerate(entries):
+        if has_program[i]:
+            found[i] = reader.moving(one, standing)
+    return [found[i] for i in range(len(entries))]
 
 
-def _rides(obstacle: Obstacle) -> bool:
-    return obstacle.mount is not None or obstacle.moves is not None
+def _rider(obstacle: Obstacle, carried: Container[str]) -> Rider:
+    mount, moves = obstacle.mount, obstacle.moves is not None or obstacle.name in carried
+    if mount is None:
+        return Rider(obstacle.name, None, obstacle.world_from_body, moves)
+    return Rider(obstacle.name, mount.on, mount.pose, moves)
 
 
 def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:

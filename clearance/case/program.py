@@ -24,6 +24,7 @@ from clearance.geometry.pose import inverse
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
 from clearance.world.case import PlacedRobot
+from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Robot
 
 
@@ -33,13 +34,13 @@ def program_motion(
     placed: PlacedRobot,
     folder: Path,
     files: InputFiles,
-    standing: Mapping[str, np.ndarray],
+    standing: Mapping[str, np.ndarray | None],
 ) -> ReadTrajectory:
     """The motion of a program that a case names or holds, and a line each on what was assumed.
 
     Args:
         start: joints at its beginning that the case gives [rad or m]. folder: against which paths are looked up.
-        standing: (4, 4) `world_from_obstacle` [m] of the obstacles that stand, by name.
+        standing: what `standing_frames` finds.
 
     Raises:
         BadInput: with the place in the file.
@@ -51,8 +52,8 @@ def program_motion(
         shown, read = _read(asked.program_file, placed.robot, start, folder, files)
     given = read.program
     with at(shown):
-        frames = _Frames(given, placed, standing)
         own = {**given.start, **start}
+        frames = _Frames(given, placed, standing, own)
         moves = tuple(_moves(read, frames))
         program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
         found = motion_of(placed.robot, program)
@@ -112,9 +113,13 @@ class _Frames:
     """The frames of a program, seen from the robot's root."""
 
     def __init__(
-        self, given: schema.Program, placed: PlacedRobot, standing: Mapping[str, np.ndarray]
+        self,
+        given: schema.Program,
+        placed: PlacedRobot,
+        standing: Mapping[str, np.ndarray | None],
+        start: Mapping[str, float],
     ) -> None:
-        self._given, self._placed, self._standing = given, placed, standing
+        self._given, self._placed, self._standing, self._start = given, placed, standing, start
         self.used = set[str]()
 
     def root_from(self, name: str, within: tuple[str, ...] = ()) -> np.ndarray:
@@ -135,6 +140,9 @@ class _Frames:
             frame = self._given.frames[name]
             with at(f"frames.{name}"):
                 return np.asarray(self.root_from(frame.on, (*within, name)) @ frame.matrix())
+        own = name.removeprefix(f"{self._placed.robot.name}/")
+        if own in self._placed.robot.link_names and name not in self._standing:
+            return self._root_from_link(own)
         if self._placed.mount is not None:
             raise BadProgram(
                 f"the robot stands on {self._placed.mount.on!r}, so that where {name!r} is for it may change",
@@ -142,11 +150,39 @@ class _Frames:
             )
         if name == schema.WORLD:
             return inverse(self._placed.world_from_base)
-        if name in self._standing:
-            self.used.add(name)
-            return inverse(self._placed.world_from_base) @ self._standing[name]
         known = (*self._given.frames, schema.WORLD, schema.BASE, *self._standing)
-        raise BadProgram(f"{name!r} is not there, or moves", valid=nearest_name(name, known))
+        if name not in self._standing:
+            raise BadProgram(f"{name!r} is not there", valid=nearest_name(name, known))
+        world_from_frame = self._standing[name]
+        if world_from_frame is None:
+            valid = "a frame on what stands as long as the case runs"
+            raise BadProgram(
+                f"{name!r} moves, so that where a target on it is may change", valid=valid
+            )
+        self.used.add(name)
+        return np.asarray(inverse(self._placed.world_from_base) @ world_from_frame)
+
+    def _root_from_link(self, link: str) -> np.ndarray:
+        """(4, 4) a link of the robot itself that the arm does not move, as on an external axis that stays.
+
+        Raises:
+            BadProgram: it moves with the arm, or nobody says where a joint above it is.
+        """
+        robot = self._placed.robot
+        root = robot.link_names[0]
+        chain = chain_between(robot, root, link)
+        names, tool = [joint.name for joint in chain.masters], self._given.tool.link
+        arm = chain_between(robot, root, tool).masters if tool in robot.link_names else ()
+        moved = [joint.name for joint in arm if joint.name in names]
+        if moved:
+            told = f"link {link!r} moves with joint {moved[0]!r} of the arm"
+            raise BadProgram(told, valid="a frame on what the arm does not move")
+        missing = [name for name in names if name not in self._start]
+        if missing:
+            told = f"nobody says where joint {missing[0]!r} below link {link!r} is"
+            raise BadProgram(told, where="start", valid="its position")
+        at_rest = np.array([[self._start[name] for name in names]])
+        return np.asarray(chain.frames(at_rest)[0, -1])
 
     def pose(self, target: schema.Target) -> np.ndarray:
         """(4, 4) `root_from_tool` [m]."""

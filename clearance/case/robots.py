@@ -48,7 +48,7 @@ class RobotReader:
         self.notes: list[str] = []
 
     def moving(
-        self, entry: schema.RobotEntry, standing: Mapping[str, np.ndarray]
+        self, entry: schema.RobotEntry, standing: Mapping[str, np.ndarray | None]
     ) -> tuple[PlacedRobot, tuple[str, ...]]:
         """The robot of an entry as `in_motion` gives it.
 
@@ -146,13 +146,13 @@ def in_motion(
     placed: PlacedRobot,
     folder: Path,
     files: InputFiles,
-    standing: Mapping[str, np.ndarray],
+    standing: Mapping[str, np.ndarray | None],
 ) -> tuple[PlacedRobot, tuple[str, ...]]:
     """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
 
     Args:
         placed: as it stands. folder: against which paths are looked up.
-        standing: (4, 4) `world_from_obstacle` [m] of the obstacles that stand, for the frames of a program.
+        standing: what `standing_frames` finds, for the frames of a program.
 
     Raises:
         BadInput: with the field and the file.
@@ -184,7 +184,7 @@ def _programmed(
     placed: PlacedRobot,
     folder: Path,
     files: InputFiles,
-    standing: Mapping[str, np.ndarray],
+    standing: Mapping[str, np.ndarray | None],
 ) -> ReadTrajectory:
     """The motion of the entry's program, from the start that the entry gives."""
     from clearance.case.program import program_motion

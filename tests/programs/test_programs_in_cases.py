@@ -26,6 +26,9 @@ from tests.programs.arms import FILES, arm, turned
 JOINTS = ("joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6")
 START = dict(zip(JOINTS, (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2), strict=True))
 BASE = (1.0, -0.5, 0.2)
+TURNTABLE = FILES["heron6"].parents[1] / "turntable" / "turntable.urdf"
+PLATE = 0.5
+"""[m] The height of its plate's frame."""
 
 
 def tool_at(joints: dict[str, float]) -> np.ndarray:
@@ -435,3 +438,51 @@ def test_a_stretch_near_a_singularity_is_measured_and_not_proven(tmp_path):
     assert "at every moment that is proven" in certified
     samples = cl.check(near_singular(tmp_path), certify=False)
     assert samples.passed and any(told in warning for warning in samples.verdict.warnings)
+
+
+def beside_a_turntable(folder: Path, moves: list, rows: str = "", **more) -> Path:
+    """A case of a program beside a turntable that stands at 0.5 rad, or follows rows of a table."""
+    content = yaml.safe_load(case(folder, moves, [far()], **more).read_text())
+    table = {"name": "turntable", "urdf": str(TURNTABLE), "base": {"xyz": [2.0, 0.0, 0.0]}}
+    if rows:
+        (folder / "turn.csv").write_text(f"time,turn\n{rows}")
+        table["trajectory"] = "turn.csv"
+    else:
+        table["joints"] = {"turn": 0.5}
+    arm_of = {"name": "arm", **content.pop("robot"), "trajectory": content.pop("trajectory")}
+    part = {"name": "part", "box": {"size": [0.1, 0.1, 0.1]}, "on": "turntable/plate"}
+    content["robots"] = [arm_of, table]
+    content["scene"]["obstacles"].append(part | {"pose": {"xyz": [0.1, 0.0, 0.3]}})
+    (folder / "case.yaml").write_text(yaml.safe_dump(content))
+    return folder / "case.yaml"
+
+
+@pytest.mark.parametrize("rows", ["", "0,0.5\n9,0.5\n"])
+def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
+    start = tool_at(START)[:3, 3] + np.array(BASE)
+    turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])
+    to = (start + [0.0, 0.1, 0.0]) - [2.0, 0.0, PLATE]
+    local = [*(turn.T @ to[:2] - [0.1, 0.0]).tolist(), float(to[2] - 0.3)]
+    move = {"lin": {"to": {"frame": "jig", "xyz": local}}}
+    frames = {"jig": {"on": "part"}}
+    path = beside_a_turntable(tmp_path, [move], rows, frames=frames)
+    found = cl.load_case(path).robots[0].trajectory
+    world = {"lin": {"to": {"xyz": (start + [0.0, 0.1, 0.0]).tolist()}}}
+    same = cl.load_case(case(tmp_path, [world], [far()])).robots[0].trajectory
+    assert np.abs(found.positions - same.positions).max() < 1e-9 and found.frames == ("part",)
+
+
+@pytest.mark.parametrize(
+    ("on", "told"),
+    [
+        ("turntable/plate", "'turntable/plate' moves, so that"),
+        ("part", "'part' moves, so that"),
+        ("arm/forearm", "link 'forearm' moves with joint"),
+        ("turntable/late", "'turntable/late' is not there; did you mean 'turntable/plate'"),
+    ],
+)
+def test_a_frame_on_a_link_that_moves_is_refused(tmp_path, on, told):
+    move = {"lin": {"to": {"frame": "jig", "xyz": [0.0, 0.0, 0.0]}}}
+    path = beside_a_turntable(tmp_path, [move], "0,0.5\n9,0.6\n", frames={"jig": {"on": on}})
+    with pytest.raises(cl.ClearanceError, match=told):
+        cl.load_case(path)

@@ -32,7 +32,7 @@ class Tool(Pose):
 
 
 class Frame(Pose):
-    """A work frame: its pose on `world`, `base`, another frame or an obstacle that stands."""
+    """A work frame: its pose on `world`, `base`, another frame, or an obstacle or link that stands."""
 
     on: Name = WORLD
 
