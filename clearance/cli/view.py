@@ -3,29 +3,44 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
+if TYPE_CHECKING:
+    from clearance.record.replay import Replay
+
 
 @click.command()
-@click.argument("folder", metavar="DIR|ZIP|STORE", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="DIR|CASE.yaml|ZIP|STORE", type=click.Path(path_type=Path))
 @click.argument("case", metavar="[CASE]", required=False)
 def view(folder: Path, case: str | None) -> None:
     """Shows the replay of a report folder in the browser: robot, scene and connecting line.
 
-    DIR is what `clearance check --out DIR` has written, or the zip that `clearance pack` made of
-    it. With STORE, which `clearance batch` has
-    written, and the name of a CASE in it, that case's full report is written, and where it is.
+    DIR is what `clearance check --out DIR` has written. A case file is checked first. ZIP is what
+    `clearance pack` made of either. With STORE, which `clearance batch` has written, and the name
+    of a CASE in it, that case's full report is written, and where it is.
     """
     if case is not None:
         _write_case(folder, case)
         return
-    from clearance.case.packed import require_entry, unpacked
+    from clearance.case.packed import unpacked
     from clearance.progress import doing
     from clearance.view import show
 
-    with unpacked(folder) as packed, doing(lambda: ""):
-        show(folder if packed is None else require_entry(packed, "report"))
+    with unpacked(folder) as packed:
+        place = folder if packed is None else packed.entry
+        shown = _checked(folder) if place.is_file() else place
+        with doing(lambda: ""):
+            show(shown)
+
+
+def _checked(case_file: Path) -> Replay:
+    """The replay of a case, which is checked."""
+    from clearance.run import check
+
+    run = check(case_file)
+    return run.session.replay(run.rows)
 
 
 def _write_case(place: Path, name: str) -> None:
