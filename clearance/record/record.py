@@ -164,7 +164,7 @@ class Samples:
             return IN_MEMORY.table("table", self.table.n_steps, self.table.batches())
         return self.table
 
-    @property
+    @cached_property
     def steps(self) -> pa.Table:
         """The same as a table of pyarrow, null where a number is NaN.
 
