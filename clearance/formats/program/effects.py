@@ -5,11 +5,11 @@ Not for: running them (`execution`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from clearance.errors import BadProgram
-from clearance.formats.program.expressions import Call, names_in
+from clearance.formats.program.expressions import Call, Expression, calls_in
 from clearance.formats.program.statements import (
     STOP,
     Assign,
@@ -29,11 +29,12 @@ class Effects:
     """What the statements of a program may do.
 
     Attributes:
-        moves: whether a word of the language can move the robot; None where it is not known. skip: words that are
-            left out.
+        moves: whether a word of the language decides where the robot goes; None where it is not known.
+        writes: the arguments of a call that the language gives a value. skip: words that are left out.
     """
 
     moves: Callable[[str], bool | None]
+    writes: Callable[[Call], Iterable[Expression]]
     routines: Mapping[str, Routine]
     skip: frozenset[str]
 
@@ -43,34 +44,57 @@ class Effects:
             leaves = isinstance(one, Leave) and one.what != STOP and not entered
             if leaves or (isinstance(one, Unreadable) and one.word not in self.skip):
                 yield f"{one.word} at {one.line}"  # type: ignore[union-attr]
-            for name in called_in(one):
-                if name in self.skip or name in entered:
+            for call in _calls_of(one):
+                if call.name in self.skip or call.name in entered:
                     continue
-                if name in self.routines:
-                    yield from self.deciding(self.routines[name].body, (*entered, name))
-                elif self.moves(name) is not False:
-                    yield f"{name} at {one.line}"
+                if call.name in self.routines:
+                    inner = self.routines[call.name].body
+                    yield from self.deciding(inner, (*entered, call.name))
+                elif self.moves(call.name) is not False:
+                    yield f"{call.name} at {one.line}"
 
     def is_still(self, routine: Routine) -> bool:
         """True if nothing in a routine moves the robot."""
         return next(self.deciding(routine.body, (routine.name,)), None) is None
 
-    def assigned_in(
-        self, bodies: Sequence[tuple[Statement, ...]], entered: tuple[str, ...] = ()
+    def changed_in(
+        self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()
     ) -> Iterator[tuple[str, Line]]:
-        """The variables that bodies may give a value, and where."""
+        """The variables that bodies may give a value, and where; of routines those that they do not have alone."""
         for one in (one for body in bodies for one in within(body)):
-            name = assigned(one.target) if isinstance(one, Assign) else None
-            if name is not None:
-                yield name.name, one.line
-            for called in called_in(one):
-                if called in self.routines and called not in entered:
-                    yield from self.assigned_in([self.routines[called].body], (*entered, called))
+            targets = [one.target] if isinstance(one, Assign) else []
+            for call in _calls_of(one):
+                if call.name not in self.routines:
+                    targets += self.writes(call)
+                elif call.name not in entered:
+                    targets += given_back(self.routines[call.name], call)
+                    yield from self._changed_by(self.routines[call.name], (*entered, call.name))
+            for name in (assigned(target) for target in targets):
+                if name is not None:
+                    yield name.name, one.line
+
+    def _changed_by(self, routine: Routine, entered: tuple[str, ...]) -> Iterator[tuple[str, Line]]:
+        own = {*routine.parameters}
+        for one in within(routine.body):
+            if isinstance(one, Assign) and one.is_own and (name := assigned(one.target)):
+                own.add(name.name)
+        for name_, line in self.changed_in([routine.body], entered):
+            if name_ not in own:
+                yield name_, line
 
 
-def called_in(one: Statement) -> list[str]:
-    """The functions and instructions that a statement itself names, in order."""
-    return sorted({name for part in expressions_of(one) for name in names_in(part)})
+def given_back(routine: Routine, call: Call) -> list[Expression]:
+    """The arguments of a call that are the caller's own variables, which the routine may change."""
+    given = {**dict(zip(routine.parameters, call.args, strict=False)), **call.named}
+    return [
+        given[name] for name in routine.parameters if name in routine.returned and name in given
+    ]
+
+
+def _calls_of(one: Statement) -> Iterator[Call]:
+    """The calls that a statement itself makes."""
+    for part in expressions_of(one):
+        yield from calls_in(part)
 
 
 def unknown_word(call: Call) -> BadProgram:

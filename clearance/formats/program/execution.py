@@ -7,7 +7,6 @@ refused with its line; what moves nothing may be left out. Not for: what instruc
 from __future__ import annotations
 
 import copy
-import operator
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -21,16 +20,15 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     Name,
-    Operation,
     Part,
     Unknown,
-    names_in,
+    is_constant,
     number,
-    numeric,
     value_of,
 )
 from clearance.formats.program.statements import (
     BREAK,
+    CONTINUE,
     RETURN,
     STOP,
     Assign,
@@ -65,6 +63,9 @@ class Language(Protocol):
 
     def moves(self, name: str) -> bool | None:
         """Whether an instruction or a function can move the robot; None where it is not known."""
+
+    def writes(self, call: Call) -> Iterable[Expression]:
+        """The arguments of an instruction or a function that it gives a value."""
 
     def instruct(self, call: Call, run: Execution) -> None:
         """Does what an instruction does: a move, a setting, or a wait."""
@@ -110,7 +111,8 @@ class Execution:
     @cached_property
     def effects(self) -> Effects:
         """What statements may do."""
-        return Effects(self.language.moves, self.routines, self.skip)
+        language = self.language
+        return Effects(language.moves, language.writes, self.routines, self.skip)
 
     def __post_init__(self) -> None:
         self.frames = [self.variables]
@@ -146,14 +148,17 @@ class Execution:
     def run(self, body: Iterable[Statement]) -> Leave | None:
         """Runs statements, and what they were left by."""
         for one in body:
-            self._n_run += 1
-            if self._n_run > MOST_STATEMENTS:
-                told = f"more than {MOST_STATEMENTS:,} statements are run"
-                raise BadProgram(told, where=str(one.line), valid="a loop that ends")
+            self._count(one.line)
             left = self._step(one)
             if left is not None:
                 return left
         return None
+
+    def _count(self, line: Line) -> None:
+        self._n_run += 1
+        if self._n_run > MOST_STATEMENTS:
+            told = f"more than {MOST_STATEMENTS:,} statements are run"
+            raise BadProgram(told, where=str(line), valid="a loop that ends")
 
     def _step(self, one: Statement) -> Leave | None:
         match one:
@@ -174,8 +179,6 @@ class Execution:
                     raise unreadable_word(one)
                 self.note("left out as asked", f"{one.word} ({one.line})")
         return None
-
-    # values
 
     def evaluated(self, one: Expression) -> Any:
         """The value of an expression, which nothing else changes."""
@@ -241,21 +244,21 @@ class Execution:
         own = self.frames[-1]
         return own if is_own or name in own or name not in self.variables else self.variables
 
-    def change(self, target: Expression, step: Expression, line: Line) -> None:
-        """Adds to a variable."""
-        self._assign(Assign(line, target, Operation(numeric(operator.add), (target, step), line)))
-
-    def forget_variables(self, given: Iterable[Expression], line: Line) -> None:
-        """Makes variables unknown that an instruction gives a value."""
-        names = (assigned(one) for one in given)
-        self._forget((name.name, line) for name in names if name is not None)
+    def forget_written(self, call: Call) -> None:
+        """Makes variables unknown that an instruction or a function of the language gives a value."""
+        for name in (assigned(one) for one in self.language.writes(call)):
+            if name is not None:
+                why = f"{name.name!r} is given a value by {call.name} at {call.line}"
+                self._place(name.name)[name.name] = Unknown(why)
 
     def _forget(self, changed: Iterable[tuple[str, Line]]) -> None:
         """Makes variables unknown that lines may have changed."""
         for name, line in changed:
             self._place(name)[name] = Unknown(f"{name!r} is given a value at {line}")
 
-    # routines
+    def enter(self, routine: Routine) -> None:
+        """Runs a routine that takes no arguments."""
+        self._called(routine, Call(routine.name, (), {}, routine.line))
 
     def _do(self, call: Call) -> Leave | None:
         if call.name in self.skip:
@@ -290,12 +293,9 @@ class Execution:
             value = self.evaluated(left.value)
         self.frames.pop()
         for name in routine.returned & given.keys():
-            target = given[name]
-            if assigned(target) is not None:
-                self._assign(Assign(call.line, target, Constant(frame[name])))
+            if assigned(given[name]) is not None:
+                self._assign(Assign(call.line, given[name], Constant(frame[name])))
         return value, left if left is not None and left.what == STOP else None
-
-    # what decides
 
     def _branch(self, one: If) -> Leave | None:
         for condition, body in one.branches:
@@ -319,23 +319,24 @@ class Execution:
             told = f"{one.word} decides on {culprit}, and is not known: {why.why}"
             raise BadProgram(told, where=str(one.line), valid="a condition that the file decides")
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
-        self._forget(self.effects.assigned_in(bodies))
+        self._forget(self.effects.changed_in(bodies))
 
     def _while(self, one: While) -> Leave | None:
         n_passes, before = 0, None
-        endless = not names_in(one.condition) and not isinstance(one.condition, Name | Part)
+        endless = is_constant(one.condition)
         while (one.at_end and not n_passes) or self._goes_on(one):
             if endless and n_passes and self._state() == before:
                 told = "an endless loop: two passes are measured, each further one is the same"
                 self.note(told, f"{one.word} ({one.line})")
                 return Leave(one.line, one.word, STOP)
             if endless and n_passes == MOST_PASSES:
-                raise BadProgram(
+                told, valid = (
                     "an endless loop that is never the same",
-                    where=str(one.line),
-                    valid="variables that do not change from pass to pass",
+                    "variables that stay the same",
                 )
+                raise BadProgram(told, where=str(one.line), valid=valid)
             before = self._state() if endless and n_passes else None
+            self._count(one.line)
             left = self.run(one.body)
             n_passes += 1
             if left is not None and left.what in (RETURN, STOP):
@@ -355,17 +356,16 @@ class Execution:
             return bool(value) != one.at_end
         culprit = next(self.effects.deciding(one.body), None)
         if culprit is not None or one.word not in self.skip:
-            told = (
-                f"{one.word} decides on {culprit}, and" if culprit else f"{one.word} waits for what"
+            told, valid = (
+                f"{one.word} decides on {culprit}, and",
+                "a condition that the file decides",
             )
-            raise BadProgram(
-                f"{told} is not known: {value.why}",
-                where=str(one.line),
-                valid="a condition that the file decides"
-                + ("" if culprit else f", or skip: [{one.word}] to leave such waits out"),
-            )
+            if culprit is None:
+                told, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
+            told = f"{told} is not known: {value.why}"
+            raise BadProgram(told, where=str(one.line), valid=valid)
         self.note("left out as asked", f"{one.word} ({one.line})")
-        self._forget(self.effects.assigned_in([one.body]))
+        self._forget(self.effects.changed_in([one.body]))
         return False
 
     def _for(self, one: For) -> Leave | None:
@@ -378,16 +378,20 @@ class Execution:
             step = number(self.evaluated(one.step), one.line, f"the step of {one.name.name!r}")
         if step == 0.0:
             raise BadProgram("a step of 0", where=str(one.line), valid="another")
-        place, at = self._place(one.name.name), first
-        while at <= last if step > 0.0 else at >= last:
-            place[one.name.name] = at
+        name, at = one.name.name, first
+        place = self.frames[-1] if one.is_own else self._place(name)
+        before = {key: place[key] for key in (name,) if key in place}
+        left = None
+        while left is None and (at <= last if step > 0.0 else at >= last):
+            self._count(one.line)
+            place[name] = at
             left = self.run(one.body)
-            if left is not None and left.what in (RETURN, STOP):
-                return left
-            if left is not None and left.what == BREAK:
-                break
+            left = None if left is not None and left.what == CONTINUE else left
             at += step
-        return None
+        if one.is_own:
+            place.pop(name, None)
+            place |= before
+        return left if left is not None and left.what in (RETURN, STOP) else None
 
     def _state(self) -> Any:
         """What decides how the program goes on."""

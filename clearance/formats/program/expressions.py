@@ -7,7 +7,7 @@ what functions mean (each language).
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -155,20 +155,32 @@ def number(value: Any, line: Line, what: str) -> float:
     return float(value)
 
 
-def names_in(one: Expression) -> set[str]:
-    """The names of all functions in an expression."""
+def calls_in(one: Expression) -> Iterator[Call]:
+    """All calls of functions in an expression, those within others too."""
+    if isinstance(one, Call):
+        yield one
+    for part in _parts(one):
+        yield from calls_in(part)
+
+
+def is_constant(one: Expression) -> bool:
+    """True for an expression of constants only."""
+    made_of = Constant | Items | Operation
+    return isinstance(one, made_of) and all(is_constant(part) for part in _parts(one))
+
+
+def _parts(one: Expression) -> tuple[Expression, ...]:
     match one:
         case Call():
-            parts = [*one.args, *one.named.values()]
-            return {one.name}.union(*(names_in(part) for part in parts))
+            return (*one.args, *one.named.values())
         case Items():
-            return set[str]().union(*(names_in(item) for item in one.items))
+            return one.items
         case Part():
-            return names_in(one.of) | (set() if isinstance(one.by, str) else names_in(one.by))
+            return (one.of,) if isinstance(one.by, str) else (one.of, one.by)
         case Operation():
-            return set[str]().union(*(names_in(item) for item in one.on))
+            return one.on
         case _:
-            return set()
+            return ()
 
 
 @dataclass(frozen=True)
@@ -295,7 +307,11 @@ class ExpressionReader:
         while True:
             line = self.cursor.next.line
             if self.cursor.accept("."):
-                by = self.cursor.expect_kind("name", "the name of a field").text
+                word = self.cursor.expect_kind("name", "the name of a field")
+                by = word.text
+                if self.cursor.is_at("(") and isinstance(found, Name):
+                    found = self.called(word._replace(text=f"{found.name}.{by}"))
+                    continue
                 found = Part(found, self._grammar.folded(by), line)
             elif self.cursor.accept(opens):
                 found = Part(found, self.expression(), line)

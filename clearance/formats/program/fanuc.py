@@ -26,7 +26,7 @@ from clearance.formats.program.controller_program import (
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Constant, Name, Unknown, number
+from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
 from clearance.formats.program.fanuc_text import MOVES, QUIET, WAIT, Motion, listing_of
 from clearance.formats.program.statements import For, Routine, within
@@ -100,6 +100,10 @@ class _Fanuc:
     def moves(self, name: str) -> bool | None:
         """Whether an instruction moves the robot; None for one that is not known."""
         return True if name in MOVES else False if name in QUIET or name == WAIT else None
+
+    def writes(self, call: Call) -> tuple[Expression, ...]:
+        """None: instructions that are passed over change no variables that are read."""
+        return ()
 
     def value_of(self, name: str, run: Execution) -> Any:
         """None, or what is known of an input, which only the controller has."""

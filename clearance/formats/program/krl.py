@@ -123,6 +123,10 @@ class _Krl:
             return True
         return False if name in QUIET or name in FUNCTIONS or name in (AGGREGATE, WAIT) else None
 
+    def writes(self, call: Call) -> tuple[Expression, ...]:
+        """None: instructions that are passed over change no variables that are read."""
+        return ()
+
     def value_of(self, name: str, run: Execution) -> Any:
         """What is assumed of the controller: it runs a program by itself."""
         if name in ("$T1", "$T2"):

@@ -53,7 +53,7 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         skip = frozenset(rules.folded(one) for one in given.skip)
         run = Execution(language, modules.routines, skip)
         language.declare(run)
-        run.run(modules.routines[_entry(modules, given.entry)].body)
+        run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
         return ControllerProgram(tuple(moves), (*run.notes, *language.assumed))
 

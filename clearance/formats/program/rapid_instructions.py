@@ -6,7 +6,6 @@ Source: ABB, Technical reference manual, RAPID instructions, functions and data 
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -28,7 +27,6 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     Name,
-    Operation,
     Part,
     Unknown,
     known,
@@ -50,13 +48,13 @@ from clearance.formats.program.rapid_data import (
 )
 from clearance.formats.program.rapid_text import Declaration, Modules
 from clearance.formats.program.rapid_words import (
-    CHANGES,
     MOVES,
     OTHER_MOVES,
     RESULTS,
     WAITS,
     WORDS,
     WRITES,
+    WRITES_ONE,
     MoveRule,
 )
 
@@ -97,8 +95,8 @@ class Rapid:
                 run.value_of(Name(name, one.line))
 
     def moves(self, name: str) -> bool | None:
-        """Whether an instruction can move the robot; None for one that is not known."""
-        if name in MOVES or name in OTHER_MOVES:
+        """Whether an instruction decides where the robot goes; None for one that is not known."""
+        if name in MOVES or name in OTHER_MOVES or name == "ConfJ":
             return True
         return False if name.lower() in WORDS or name == "%array" else None
 
@@ -185,23 +183,24 @@ class Rapid:
         run.pass_over(call.name, call.line)
         if call.name == "ConfJ":
             self.checks = "off" not in call.named
-        elif call.name in (*CHANGES, "Add", "Clear"):
-            target, *more = call.args
-            if call.name == "Clear":
-                more = [Operation(operator.neg, (target,), call.line)]
-            run.change(target, Constant(CHANGES[call.name]) if not more else more[0], call.line)
-        elif call.name in WRITES:
-            run.forget_variables([*call.args, *call.named.values()], call.line)
-        else:
-            run.forget_variables(
-                [one for key, one in call.named.items() if key in RESULTS], call.line
-            )
+        run.forget_written(call)
+
+    def writes(self, call: Call) -> list[Expression]:
+        """The arguments of an instruction or a function that it gives a value."""
+        if call.name in WRITES:
+            return [*call.args, *call.named.values()]
+        return [
+            *(call.args[i] for i in WRITES_ONE.get(call.name, ()) if i < len(call.args)),
+            *(one for key, one in call.named.items() if key in RESULTS),
+        ]
 
     def _connect(self, call: Call, run: Execution) -> None:
         trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
         if trap not in run.routines or not run.effects.is_still(run.routines[trap]):
             raise BadProgram(
-                f"trap {trap!r} moves the robot, or may", where=str(call.line), valid="none"
+                f"trap {trap!r} moves the robot, or may",
+                where=str(call.line),
+                valid="a trap that moves nothing",
             )
         run.note("traps that move nothing", f"{trap} ({call.line})")
 
@@ -216,6 +215,7 @@ class Rapid:
             args.append(named["dec"])
         for one in (*args, *named.values()):
             if isinstance(one, Unknown):
+                run.forget_written(call)
                 return one
         try:
             if call.name == "%array":
@@ -233,9 +233,8 @@ class Rapid:
             raise BadProgram(
                 f"{call.name} has no value for {given}", where=str(call.line)
             ) from None
+        run.forget_written(call)
         return Unknown(f"{call.name} at {call.line}")
-
-    # moves
 
     def _move(self, call: Call, rule: MoveRule, run: Execution) -> None:
         _require_plain(call, rule)

@@ -108,6 +108,18 @@ def grammar(spelling: dict[str, str]) -> Grammar:
     )
 
 
+CHANGES = ("Incr", "Decr", "Add", "Clear")
+"""Instructions that give a variable a value of its own."""
+
+
+def _changed(name: str, args: tuple[Expression, ...], line: Line) -> Assign:
+    """What an instruction gives its variable."""
+    target, *more = args
+    by: Expression = more[0] if more else Constant(-1.0 if name == "Decr" else 1.0)
+    value = Constant(0.0) if name == "Clear" else Operation(_sum, (target, by), line)
+    return Assign(line, target, value)
+
+
 @dataclass(frozen=True)
 class Declaration:
     """A datum with its first value; `sizes` are those of an array."""
@@ -332,6 +344,8 @@ class _Reader:
             return Assign(word.line, target, self._expressions.expression())
         name = self._name("a statement")
         args, named = self._expressions.arguments(";")
+        if name in CHANGES and args:
+            return _changed(name, args, word.line)
         return Do(word.line, Call(name, args, named, word.line))
 
     def _if(self, line: Line) -> Statement:
@@ -361,7 +375,7 @@ class _Reader:
         cursor.expect("DO")
         body = self._block()
         cursor.expect("ENDFOR")
-        return For(line, "for", name, first, last, step, body, turns_back=True)
+        return For(line, "for", name, first, last, step, body, turns_back=True, is_own=True)
 
     def _while(self, line: Line) -> Statement:
         condition = self._expressions.expression()

@@ -49,9 +49,6 @@ WAITS = frozenset(
 )
 """Waits for signals or other programs."""
 
-CHANGES = {"Incr": 1.0, "Decr": -1.0}
-"""Instructions that add to a variable, and how much."""
-
 STILL = frozenset(
     "WaitTime Stop Break TPWrite TPErase TPShow UIShow UIMsgBox Set Reset SetDO SetGO SetAO PulseDO InvertDO "
     "ClkStart ClkStop ClkReset AccSet VelSet ConfJ ConfL GripLoad IDelete ISignalDI ISignalDO ITimer IWatch "
@@ -70,6 +67,9 @@ WRITES = frozenset(
     "GetJointData GetTrapData BitSet BitClear ReadErrData SetDataVal TryInt".split()
 )
 """Instructions that move nothing and give variables a value that only the controller knows."""
+
+WRITES_ONE = {"StrToVal": (1,), "GetNextSym": (0, 1), "TestAndSet": (0,)}
+"""Functions that give arguments a value, and which of them."""
 
 UNKNOWN_VALUES = frozenset(
     "TestDI DOutput GOutput AOutput DInput GInput AInput ClkRead CTime CDate GetTime NumToStr ValToStr "

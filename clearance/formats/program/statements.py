@@ -51,7 +51,7 @@ class While:
 @dataclass(frozen=True)
 class For:
     """A body for each value of a variable from the first to the last; without a step by 1, towards the last if
-    `turns_back`.
+    `turns_back`. The loop alone has a variable that `is_own`.
     """
 
     line: Line
@@ -62,6 +62,7 @@ class For:
     step: Expression | None
     body: tuple[Statement, ...]
     turns_back: bool = False
+    is_own: bool = False
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ from clearance.formats.program.expressions import (
     known,
     number,
 )
+from clearance.formats.program.statements import Assign, Statement
 from clearance.formats.program.tokens import Line, text_of
 from clearance.formats.program.urscript_text import UrScript, script_of
 from clearance.geometry.pose import inverse, pose_from_rotation_vector
@@ -94,11 +95,16 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
         tool = asked.asked.tools.get(TCP)
         language = _UrScript(None if tool is None else tool.matrix())
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
-        run.run(script.body)
         entry = _entry(script, asked.asked.entry)
+        run.run(script.body if entry is None else _data(script.body))
         if entry is not None:
             run.run(script.routines[entry].body)
         return ControllerProgram(tuple(run.moves), tuple(run.notes))
+
+
+def _data(body: tuple[Statement, ...]) -> list[Statement]:
+    """The values of variables, without calls."""
+    return [one for one in body if isinstance(one, Assign)]
 
 
 def _entry(script: UrScript, asked: str | None) -> str | None:
@@ -139,8 +145,8 @@ class _UrScript:
         return (None if self.tool is None else self.tool.tolist(), self.last)
 
     def moves(self, name: str) -> bool | None:
-        """Whether a function can move the robot; None for one that is not known."""
-        if name in _PARAMETERS or name in _OTHER_MOVES:
+        """Whether a function decides where the robot goes; None for one that is not known."""
+        if name in _PARAMETERS or name in _OTHER_MOVES or name == "set_tcp":
             return True
         still = name in _STILL or name in _VALUES or name.startswith(_STILL_BEFORE)
         return False if still or name in ("sleep", "pose_trans", "get_inverse_kin") else None
@@ -148,6 +154,10 @@ class _UrScript:
     def value_of(self, name: str, _: Execution) -> Any:
         """None: all names but `True` and `False` are variables."""
         return {"pi": math.pi}.get(name)
+
+    def writes(self, _: Call) -> tuple[Expression, ...]:
+        """None: functions have values and change no variables."""
+        return ()
 
     def items(self, values: list[Any], kind: str) -> Any:
         """A list, or a pose."""
@@ -180,7 +190,9 @@ class _UrScript:
             name = call.args[0].value if isinstance(call.args[0], Constant) else ""
             if name not in run.routines or not run.effects.is_still(run.routines[name]):
                 raise BadProgram(
-                    f"thread {name!r} moves the robot, or may", where=str(call.line), valid="none"
+                    f"thread {name!r} moves the robot, or may",
+                    where=str(call.line),
+                    valid="a thread that moves nothing",
                 )
             run.note("threads that move nothing", f"{name} ({call.line})")
         elif self.moves(call.name):
@@ -229,6 +241,10 @@ class _UrScript:
         for name, value in (("a", acceleration), ("v", speed)):
             if not value > 0.0:
                 raise BadProgram(f"{name} is {value:g}", where=str(call.line), valid="more than 0")
+        if call.name == "movep":
+            run.note(
+                "r of movep is taken for the distance of its arc from the corner", f"{call.line}"
+            )
         if told.get("t", 0.0) > 0.0:
             run.note("times of moves (t) are not followed, but speeds", f"{call.line}")
         ends = [key for key in _TARGETS if key in given]

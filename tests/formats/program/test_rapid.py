@@ -183,6 +183,34 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
     assert FAULTS[body] in str(caught.value)
 
 
+UNDECIDED = {
+    "VAR num x:=1;\nIF di1=1 x:=2;": "'x' is given a value at line 4",
+    "VAR num x:=1;\nIF di1=1 Incr x;": "'x' is given a value at line 4",
+    'VAR num x:=1;\nTPReadNum x,"how far";': "'x' is given a value by TPReadNum at line 4",
+    'VAR num x:=1;\nIF di1=1 TPReadNum x,"how far";': "'x' is given a value at line 4",
+    "VAR num x:=1;\nIF di1=1 double x;": "'x' is given a value at line 4",
+    "VAR num x:=1;\nVAR bool ok;\nok:=found(x);": "'a' is given a value by StrToVal at line 12",
+    "VAR num x:=1;\nIF di1=1 ConfJ\\Off;": "decides on ConfJ",
+}
+
+
+@pytest.mark.parametrize("body", UNDECIDED)
+def test_what_only_the_controller_decides_is_never_taken_for_known(body):
+    line = f"\nMoveL [[x,0,0],[1,0,0,0],[0,0,0,0],{NONE}],v100,fine,tool0;"
+    more = "\nENDPROC\nPROC double(INOUT num a)\na:=a*2;\nENDPROC\nFUNC bool found(INOUT num a)\n"
+    more += 'RETURN StrToVal("1",a);\nENDFUNC\nPROC last()'
+    with pytest.raises(cl.ClearanceError) as caught:
+        moves_of(body + line + more)
+    assert UNDECIDED[body] in str(caught.value)
+
+
+def test_what_a_procedure_has_of_its_own_stays_there():
+    line = f"MoveL [[x,0,0],[1,0,0,0],[0,0,0,0],{NONE}],v100,fine,tool0;"
+    body = f"VAR num x:=7;\nFOR i FROM 1 TO 2 DO ENDFOR\nx:=x+i;\n{line}\ngo;\nENDPROC\nPROC go()\n{line}"
+    found = moves_of(body, "VAR num x:=5; VAR num i:=3;")
+    assert [round(place(one.to)[0]) for one in found] == [10, 5]
+
+
 STANDS = {
     "tooldata t:=[FALSE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]": ("t", "wobj0", "the tool stands"),
     'wobjdata w:=[TRUE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]]': ("tool0", "w", "the robot holds"),

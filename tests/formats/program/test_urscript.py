@@ -135,6 +135,7 @@ FAULTS = {
     "def f():\nf()\nend\nf()": "more than 40 routines call one another",
     "movej(1 / 0)": "this has no value",
     "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
+    "RPC = rpc_factory(1)\nRPC.grip(20)": "line 2: 'RPC.grip' is no known instruction",
     "while 1 == 1:\nx = [1]\nx[3] = 2\nend": "line 3: there is no part 3.0",
     "movej([0,0,0,0,0,1e999])": "a number of this earth",
     "a b": "line 1: 'b' is given; the end of the line is needed",
@@ -146,6 +147,29 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(text):
     with pytest.raises(cl.ClearanceError, match=r"^a\.script: ") as caught:
         moves_of(text)
     assert FAULTS[text] in str(caught.value)
+
+
+LINE = "movel(p[x, 0, 0, 0, 0, 0])"
+UNDECIDED = {
+    "a variable": "x = 1\nif get_digital_in(1):\nx = 2\nend\n" + LINE,
+    "by a function": "global x = 1\ndef f():\nx = 2\nend\nif get_digital_in(1):\nf()\nend\n" + LINE,
+    "the tool": "x = 1\nif get_digital_in(1):\nset_tcp(p[1,0,0,0,0,0])\nend\n" + LINE,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", UNDECIDED)
+def test_what_only_the_controller_decides_is_never_taken_for_known(case):
+    told = "is not known: 'x' is given a value at" if case != "the tool" else "decides on set_tcp"
+    with pytest.raises(cl.ClearanceError, match=told):
+        moves_of(TOOL + UNDECIDED[case])
+
+
+def test_a_loop_of_many_passes_ends():
+    assert len(moves_of("i = 0\nwhile i < 50:\ni = i + 1\n" + Q + "\nend")) == 50
+
+
+def test_the_function_that_is_asked_for_runs_once():
+    assert len(moves_of(f"def f():\n{Q}\nend\nf()", entry="f")) == 1
 
 
 def test_what_moves_nothing_is_left_out_by_name():
