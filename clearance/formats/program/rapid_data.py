@@ -119,14 +119,18 @@ def external_of(values: list[float]) -> dict[str, float]:
     return {f"E{i}": value for i, value in enumerate(values, 1) if abs(value) < NO_AXIS}
 
 
-def ranges_of(flags: list[float]) -> dict[int, tuple[float, float]]:
-    """Where axes are by the flags of a configuration: quarter turns of 1, 4 and 6, the sign of 5."""
+def ranges_of(flags: list[float], has_more: bool) -> dict[int, tuple[float, float]]:
+    """Where axes are by the flags of a configuration: quarter turns of 1, 4 and 6, the sign of 5.
+
+    Args:
+        has_more: external axes are there; one may be the seventh of an arm, whose `cfx` means something else.
+    """
     quarter = math.pi / 2.0
     found = {
         axis: (flag * quarter - _ROUNDING, (flag + 1.0) * quarter + _ROUNDING)
         for axis, flag in zip((1, 4, 6), flags, strict=False)
     }
-    if 0.0 <= flags[3] <= 7.0:
+    if not has_more and 0.0 <= flags[3] <= 7.0:
         found[5] = (-math.pi, _ROUNDING) if flags[3] % 2.0 else (-_ROUNDING, math.pi)
     return found
 

@@ -282,10 +282,9 @@ class Rapid:
         pose = placed @ pose_of([trans, rot])
         if MOVES[call.name].kind != "ptp" or not self.checks:
             return PoseTarget(pose, external_of(external), name=name)
+        more = external_of(external)
         unchecked = "whether the wrist is before axis 1 and the lower arm (cfx)"
-        return PoseTarget(
-            pose, external_of(external), ranges_of(flags), unchecked=unchecked, name=name
-        )
+        return PoseTarget(pose, more, ranges_of(flags, bool(more)), unchecked=unchecked, name=name)
 
 
 def _require_plain(call: Call, rule: MoveRule) -> None:
