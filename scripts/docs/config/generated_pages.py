@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[3]
 PICTURES = (
     "scenes/iiwa_pipe_rack/report.png",
     "scenes/welding_cell/welding.png",
+    "scenes/palletising_cell/palletising.png",
     "scenes/profiles/keep_in.svg",
     "scripts/bench/results/trajectory.svg",
     "scripts/bench/results/growth.svg",
