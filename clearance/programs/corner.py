@@ -17,8 +17,6 @@ that goes on without a jump is in these boxes everywhere. Not for: what that tak
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
@@ -33,7 +31,7 @@ PATH_ERROR = 1e-6
 """[rad or m] How far a joint may be off its cubic on lines and arcs; a robot of 1 m loses some 6 um of
 clearance."""
 
-CELLS = (4, 6, 8, 12)
+CELLS = (4, 6, 8, 12, 16, 20)
 """Into how many parts each range is cut, one after another, until boxes are proven."""
 
 MOST_CELLS = 50_000
@@ -48,77 +46,70 @@ def corner_of(
     Args:
         samples: of the nominal motion through it. start: [s] when it begins. radius: [m]. name: of its move.
     """
-    for n_cells in CELLS:
-        if np.prod(_shape(follower.stretch, samples, n_cells)) > MOST_CELLS:
-            break
-        found = _cells(follower, samples, n_cells)
-        if found is not None:
+    shapes = [_shape(follower.stretch, samples, n_cells) for n_cells in CELLS]
+    shapes = [shape for shape in shapes if np.prod(shape) <= MOST_CELLS]
+    if not shapes or not np.isfinite(_enclosed(follower, samples, shapes[-1], 3)[1].box).all():
+        return None
+    for shape in shapes:
+        spread, proven = _enclosed(follower, samples, shape)
+        if not np.isfinite(proven.box).all():
+            continue
+        reach = _to_neighbours(shape, spread, proven.box)
+        if proven.is_unique(follower.arm, reach).all():
             ends = start + samples.times[[0, -1]]
-            proven, spread = found
             cells = Cells(proven.middle, spread.joints, proven.variation.within, proven.box)
             links = links_off(follower.arm, cells)
             return CornerZone(name, float(ends[0]), float(ends[1]), radius, links)
     return None
 
 
-@dataclass(frozen=True, eq=False)
-class _Grid:
-    """The cells of all intervals.
+Shape = tuple[int, ...]
+"""How many intervals there are, and cells of s, of a' and of b'."""
 
-    Attributes:
-        shape: (intervals, cells of s, of a', of b'). spread: of each cell, in that order.
+
+def _enclosed(
+    follower: Follower, samples: PathSamples, shape: Shape, most: int | None = None
+) -> tuple[Spread, Enclosed]:
+    """The poses of all cells, in the order of the shape, and what is proven of joints for them.
+
+    Args:
+        most: of the cells across, so many along each range: the outer ones and those in the middle.
     """
-
-    shape: tuple[int, ...]
-    spread: Spread
-
-
-def _cells(
-    follower: Follower, samples: PathSamples, n_cells: int
-) -> tuple[Enclosed, Spread] | None:
-    """The boxes of all cells, if they are proven and joined."""
-    arm, stretch = follower.arm, follower.stretch
-    grid = _grid(follower, samples, n_cells)
-    n_each = int(np.prod(grid.shape[1:]))
-    given = Intervals(
-        *(np.repeat(part, n_each, axis=0) for part in samples.intervals[:3]),
-        *(np.repeat(part, n_each, axis=1) for part in samples.intervals[3:]),
+    ranges = [np.arange(shape[0])]
+    for count in shape[1:]:
+        ranges.append(np.unique(np.linspace(0, count - 1, most or count).astype(int)))
+    i, *cell = (axis.ravel() for axis in np.meshgrid(*ranges, indexing="ij"))
+    given = samples.intervals
+    spread = _spread(follower, given, shape, i, np.stack(cell, axis=1))
+    own = Intervals(
+        given.lengths[i], given.before[i], given.after[i], given.rates[:, i], given.strokes[:, i]
     )
-    found = enclosed(arm, stretch, given, follower.free, grid.spread)
-    if not np.isfinite(found.box).all():
-        return None
-    reach = _to_neighbours(grid, found.box)
-    return (found, grid.spread) if found.is_unique(arm, reach).all() else None
+    return spread, enclosed(follower.arm, follower.stretch, own, follower.free, spread)
 
 
-def _shape(stretch: Stretch, samples: PathSamples, n_cells: int) -> tuple[int, ...]:
-    """How many intervals there are, and cells of s, a' and b': one of a turn that is none."""
+def _shape(stretch: Stretch, samples: PathSamples, n_cells: int) -> Shape:
+    """One cell of a turn that is none."""
     turned = np.linalg.norm(stretch.turns, axis=1) > 0.0
     return (len(samples.shares) - 1, n_cells, *np.where(turned, n_cells, 1).tolist())
 
 
-def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
-    """The cells, and the cubics shifted to the joints that hold the pose in the middle of each."""
-    stretch = follower.stretch
+def _spread(
+    follower: Follower, given: Intervals, shape: Shape, i: np.ndarray, cell: np.ndarray
+) -> Spread:
+    """Cells (n, 3) of intervals (n,), and the cubics shifted to the joints that hold the pose in the middle of
+    each."""
+    stretch, counts = follower.stretch, np.array(shape[1:])
     sizes = np.linalg.norm(stretch.turns, axis=1)
-    shape = _shape(stretch, samples, n_cells)
-    counts = shape[1:]
-    i, *cell = (axis.ravel() for axis in np.indices(shape))
-    given = samples.intervals
     half = 0.5 * given.lengths[:, None]
     middle = given.strokes[0] + half * (given.strokes[1] + 0.5 * given.strokes[2] * half)
     moved = (
         np.abs(given.strokes[1] + given.strokes[2] * half) * half
         + np.abs(given.strokes[2]) * half**2
     )
-    at = np.stack([(own + 0.5) / count for own, count in zip(cell, counts, strict=True)], axis=1)
-    shifts = np.stack(
-        [0.5 * (at[:, 0] - 0.5), at[:, 1] - middle[i, 0], at[:, 2] - middle[i, 1]], axis=1
-    )
-    halves = np.stack(
-        [np.full(len(i), 0.25 / counts[0]), *(0.5 / counts[1 + k] + moved[i, k] for k in range(2))],
-        axis=1,
-    )
+    shifts, halves = (cell + 0.5) / counts, np.tile(0.5 / counts, (len(i), 1))
+    shifts[:, 0], halves[:, 0] = 0.5 * (shifts[:, 0] - 0.5), 0.5 * halves[:, 0]
+    shifts[:, 1:] -= middle[i]
+    halves[:, 1:] += moved[i]
     shifts[:, 1:][:, sizes == 0.0] = 0.0
     halves[:, 1:][:, sizes == 0.0] = 0.0
     near = 0.5 * (given.before + given.after) + 0.25 * half * (given.rates[0] - given.rates[1])
@@ -126,7 +117,7 @@ def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
     )
     solved = joints_at(follower.arm.tool, poses, near[i], follower.free)
-    return _Grid(shape, Spread(solved.positions - near[i], shifts, halves, _hull(stretch)))
+    return Spread(solved.positions - near[i], shifts, halves, _hull(stretch))
 
 
 def _hull(stretch: Stretch) -> float:
@@ -139,13 +130,13 @@ def _hull(stretch: Stretch) -> float:
     return sum(sags) + max(sags)
 
 
-def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
+def _to_neighbours(within: Shape, spread: Spread, box: np.ndarray) -> np.ndarray:
     """(n, k) how far the boxes of a cell's neighbours, and its own, reach from its cubic.
 
     That of the cell by which the zone is entered reaches to where the joints then are.
     """
-    shape = (*grid.shape, box.shape[1])
-    joints, own = grid.spread.joints.reshape(shape), box.reshape(shape)
+    shape = (*within, box.shape[1])
+    joints, own = spread.joints.reshape(shape), box.reshape(shape)
     reach = own.copy()
     for axis in range(4):
         first, second = (
@@ -155,6 +146,6 @@ def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
         between = np.abs(joints[first] - joints[second])
         reach[first] = np.maximum(reach[first], between + own[second])
         reach[second] = np.maximum(reach[second], between + own[first])
-    entered = 0, grid.shape[1] // 2, 0, 0
+    entered = 0, within[1] // 2, 0, 0
     reach[entered] = np.maximum(reach[entered], np.abs(joints[entered]) + PATH_ERROR)
     return reach.reshape(box.shape)

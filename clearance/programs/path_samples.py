@@ -13,6 +13,9 @@ from clearance.programs.following import Follower
 from clearance.programs.moves import STEP_TURN
 from clearance.programs.time_law import Piece
 
+LEAST_IN_CORNER = 8
+"""Intervals of a corner zone: with fewer, cells are wide along the path, however finely they are cut across."""
+
 
 @dataclass(frozen=True, eq=False)
 class PathSamples:
@@ -91,4 +94,5 @@ def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
     turned = np.linalg.norm(stretch.turns, axis=1).sum()
     length = sum(way.length for way in stretch.ways)
     steps = share * max(length / step, turned / STEP_TURN)
-    return max(1, int(np.ceil(steps - 1e-9)))  # rounding makes no step more
+    least = LEAST_IN_CORNER if stretch.is_corner else 1
+    return max(least, int(np.ceil(steps - 1e-9)))  # rounding makes no step more
