@@ -42,6 +42,14 @@ LARGEST = 2**32
 SMALL, MOST_SHRUNK = 2**26, 200
 """[bytes] Up to here anything may be packed as small as it will; beyond, to no less than one part in so many."""
 
+LONGEST_LIST = 2**24
+"""[bytes]"""
+
+METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+
+DAMAGE = (zipfile.BadZipFile, zlib.error, EOFError, UnicodeError, RuntimeError, OSError)
+"""What is raised on the way through a zip that is not in order."""
+
 REMEDY = "a file as `clearance pack` wrote it"
 
 Digest = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -148,8 +156,9 @@ def _unpacked(path: Path, sha256: str) -> Unpacked:
                 target = folder / name
                 target.parent.mkdir(parents=True, exist_ok=True)
                 _write(archive, name, digest, target)
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        raise BadPack(f"the zip is damaged or cut off ({error})", valid=REMEDY) from None
+    except DAMAGE as error:
+        fault = f"the zip is damaged or cut off, or cannot be unpacked ({error})"
+        raise BadPack(fault, valid=REMEDY) from None
     if not (folder / manifest.entry).exists():
         raise BadPack(f"there is no {manifest.entry!r} in it", valid=REMEDY)
     return Unpacked(path, manifest, folder)
@@ -175,7 +184,11 @@ def _manifest(archive: zipfile.ZipFile, n_bytes: int) -> Manifest:
         raise BadPack(
             f"{total} bytes in a zip of {n_bytes}", valid=f"at most {MOST_SHRUNK} times as many"
         )
-    text = archive.open(MANIFEST).read(LARGEST)
+    if members[MANIFEST].file_size > LONGEST_LIST:
+        raise BadPack("its list is too long", valid=f"at most {LONGEST_LIST} bytes")
+    if any(one.compress_type not in METHODS for one in members.values()):
+        raise BadPack("it is compressed in another way", valid=REMEDY)
+    text = archive.read(MANIFEST)
     manifest = validated(Manifest, parse_yaml(text, MANIFEST), MANIFEST)
     if sorted([*manifest.files, MANIFEST]) != sorted(one.filename for one in archive.infolist()):
         raise BadPack("its files are not those of its list", valid=REMEDY)
@@ -192,16 +205,18 @@ def _require_plain(members: Mapping[str, zipfile.ZipInfo], manifest: Manifest) -
     below = [f"{TREE}/{part}" for parts in manifest.variables.values() for part in parts]
     for name in [manifest.entry, *manifest.files, *below]:
         parts = name.split("/")
-        odd = any(part in ("", ".", "..") or part.endswith((" ", ":")) for part in parts)
-        if odd or parts[0] not in (TREE, PACKAGES) or "\\" in name or not name.isprintable():
+        if (
+            {"", ".", ".."} & {*parts}
+            or parts[0] not in (TREE, PACKAGES)
+            or "\\" in name
+            or not name.isprintable()
+        ):
             raise BadPack(f"the name {name!r:.80} leads outside", valid=REMEDY)
     for one in members.values():
         if stat.S_IFMT(one.external_attr >> 16) not in (0, stat.S_IFREG) or one.is_dir():
             raise BadPack(f"{one.filename!r:.80} is a link or no file", valid=REMEDY)
     if not set(manifest.variables) <= set(VARIABLES):
         raise BadPack("a variable that does not lead to packages", valid=", ".join(VARIABLES))
-    if len({name.casefold() for name in members}) < len(members):
-        raise BadPack("two names differ in capital letters alone", valid=REMEDY)
 
 
 def _write(archive: zipfile.ZipFile, name: str, digest: str, target: Path) -> None:

@@ -9,12 +9,13 @@ import stat
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import clearance as cl
 from clearance.case import packed
 from clearance.case.packing import BEGIN, case_contents, write_pack
-from clearance.errors import BadPack, MissingFile
+from clearance.errors import BadInput, BadPack, MissingFile
 from tests.formats.making import ARM, CASE, cube_stl, write_case
 
 WAIVERS = """- {between: [upper, post], at_least: 0.001, reason: shown, by: ann, until: 2099-01-01}
@@ -151,8 +152,8 @@ def other_variable(manifest, members):
     return manifest | {"variables": {"PATH": ["cell"]}}
 
 
-def folded(manifest, members):
-    members["files/cell/PATH.csv"] = b"x"
+def folder_and_file(manifest, members):
+    members["files/cell/path.csv/more"] = b"x"
     return listed(manifest, members)
 
 
@@ -175,7 +176,7 @@ def more_than_read(manifest, members):
         (another_content, "not as it was packed"),
         (entry_outside, "leads outside"),
         (other_variable, "does not lead to packages"),
-        (folded, "differ in capital letters"),
+        (folder_and_file, "cannot be unpacked"),
         (swollen, "at most 200 times as many"),
         (more_than_read, "'path.csv' is not what it was when it was packed"),
     ],
@@ -192,6 +193,21 @@ def test_a_zip_that_is_not_as_it_should_be_is_refused(tmp_path, parts, monkeypat
 def test_links_are_refused(tmp_path, parts):
     with pytest.raises(BadPack, match="is a link or no file"):
         cl.load_case(zipped(tmp_path, *parts, mode=stat.S_IFLNK | 0o777))
+
+
+def test_a_zip_with_any_byte_changed_is_read_as_it_was_or_refused(tmp_path, parts):
+    """Bytes of no file's content, as its time, may be others."""
+    path, rng, n_refused = tmp_path / "cell.zip", np.random.default_rng(3), 0
+    whole = path.read_bytes()
+    for place in rng.integers(0, len(whole), 60):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 0x55]) + whole[place + 1 :])
+        try:
+            with packed.unpacked(path) as found:
+                files = {name: (found.folder / name).read_bytes() for name in found.manifest.files}
+                assert files == parts[1]
+        except BadInput:
+            n_refused += 1
+    assert n_refused > 30
 
 
 def test_a_case_that_reads_beside_its_zip_is_refused(tmp_path, parts):
