@@ -90,6 +90,7 @@ def test_a_pose_in_place_of_a_motion_is_less(folder, capsys):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_cases_that_one_batch_has(folder, capsys):
     write_path(folder / "t004.csv", 0.4)
     write_path(folder / "t005.csv", -0.1)

@@ -32,6 +32,7 @@ def test_each_case_is_in_one_task_and_the_last_are_small(items, n_hands):
         waiting -= len(task)
 
 
+@pytest.mark.slow
 def test_few_cases_are_shared_by_all_who_measure(items):
     assert len(cut(Queue(items[:64], "batch"), 4)) >= 4
     assert len(cut(Queue(items[:64], "batch"), 1)) == 1

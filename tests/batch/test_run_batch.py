@@ -142,6 +142,7 @@ def test_the_key_is_of_all_that_decides_a_row(manifest):
     assert len(keys | {key}) == len(names) + 2 > 12
 
 
+@pytest.mark.slow
 def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
     own = tmp_path / "t.yaml"
 
@@ -227,6 +228,7 @@ def test_a_cell_that_is_edited_while_the_batch_runs_is_not_taken_for_what_was_re
     assert hashes.of(str(cell)) == hashlib.sha256(cell.read_bytes()).hexdigest()
 
 
+@pytest.mark.slow
 def test_a_package_that_a_variable_finds_elsewhere_is_measured_again(
     manifest, tmp_path, monkeypatch
 ):
@@ -248,6 +250,7 @@ def test_a_package_that_a_variable_finds_elsewhere_is_measured_again(
 
 
 @pytest.mark.parametrize("nearer", ["in/pk/m.stl", "first/pk/m.stl", "first/m.stl"])
+@pytest.mark.slow
 def test_a_mesh_that_appears_nearer_is_measured(nearer, manifest, tmp_path):
     """In the file's folder, in an earlier package folder, or in one that its manifest makes the package."""
     urdf, cell = manifest.parent / "cart.urdf", manifest.parent / "cell.yaml"
@@ -291,6 +294,7 @@ def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypa
     assert len(told.measured) == len(NEAREST) and statuses(now)["t003"] == "contact"
 
 
+@pytest.mark.slow
 def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
     _, found = run_here(manifest, tmp_path / "out")
     assert set(column(found, "incomplete")) == {""}

@@ -133,6 +133,7 @@ def test_contact_is_never_kept():
     assert least_sources(run)
 
 
+@pytest.mark.slow
 def test_a_report_of_bodies_that_touch_tells_no_deviation(tmp_path):
     """No direction leads from one body to the other there; the report is written, and says nothing of it."""
     arm = SCENES / "panda_shelf" / "case.yaml"

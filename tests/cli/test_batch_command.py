@@ -67,6 +67,7 @@ def test_tolerances_that_are_none_are_told_at_once(folder, capsys):
     assert not (folder / "store").exists()
 
 
+@pytest.mark.slow
 def test_no_kind_of_failure_hides_another(folder, capsys):
     """A dozen contacts, and a table that was cut off, and degrees for radians: each is named."""
     for i in range(3, 15):

@@ -75,6 +75,7 @@ def test_bad_options_are_one_line_and_write_nothing(arguments, told, place, caps
     assert sorted(place.rglob("*")) == before
 
 
+@pytest.mark.slow
 def test_a_baseline_is_told_and_does_not_change_the_exit_code(place, capsys):
     assert check("broken/case.yaml", "--out", "before", "--quiet") == 1
     assert check("broken/case.yaml", "--baseline", "before") == 1
@@ -134,6 +135,7 @@ def test_two_runs_side_by_side(place, capsys):
     assert "no table of steps" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_side_by_side_it_is_told_what_a_waiver_lets_pass(place, capsys):
     """A row "new, violated" of a comparison that passes would be taken for a fault of it."""
     asked = ("--waivers", "waivers.yaml", "--today", "2026-11-01", "--quiet")

@@ -34,6 +34,7 @@ def test_the_verdict_names_the_deepest_contact(folder, capsys):
     assert f"{line} (-50.00, 0.00, 0.00) mm" in told
 
 
+@pytest.mark.slow
 def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
     case = str(folder / "case.yaml")
     assert run(["check", case, "--contact", "none"]) == 1

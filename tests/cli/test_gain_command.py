@@ -43,6 +43,7 @@ def test_a_shift_keeps_within_its_room(slot, capsys):
     assert code == 0 and "moved 20.00 mm: x 0, y -20.00, z 0" in text
 
 
+@pytest.mark.slow
 def test_a_turn_is_told_and_written(slot, tmp_path, capsys):
     path, out = slot.parent / "turned.yaml", tmp_path / "out"
     path.write_text(slot.read_text().replace("[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
@@ -65,6 +66,7 @@ def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     assert "can make" not in text
 
 
+@pytest.mark.slow
 def test_a_slow_down_is_told(tmp_path, capsys):
     path = write_cell(tmp_path, CROSSING)
     options = ("--kind", "timing", "--robot", "other", "--slow-down", "--out", tmp_path / "out")

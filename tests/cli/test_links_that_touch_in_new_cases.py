@@ -52,6 +52,7 @@ def checked(text, capsys):
     return code, json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_links_that_touch_at_every_step_are_a_comment_and_a_contact_until_it_is_uncovered(capsys):
     text = new()
     says = (

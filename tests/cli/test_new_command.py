@@ -147,6 +147,7 @@ def test_a_program_stays_the_file_that_it_is(capsys):
         ("cell.scene", "path.csv"),
     ],
 )
+@pytest.mark.slow
 def test_it_has_the_results_of_the_files_it_is_made_from(capsys, scene, trajectory):
     words = ["--trajectory", f"cell/{trajectory}", *(["--scene", f"cell/{scene}"] if scene else [])]
     assert new(*words, "--srdf", "cell/arm.srdf") == 0

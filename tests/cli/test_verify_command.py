@@ -32,6 +32,7 @@ def home(cell, tmp_path):
     return Path(shutil.copytree(cell, tmp_path / "home"))
 
 
+@pytest.mark.slow
 def test_the_receipt_of_a_run_is_proven(home, capsys):
     assert run(["verify", str(home / "out")]) == ExitCode.CLEAR
     told = capsys.readouterr().out
@@ -149,6 +150,7 @@ def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys
     assert run(["verify", str(out), "--tolerance", str(home / "tol.yaml")]) == ExitCode.BAD_INPUT
 
 
+@pytest.mark.slow
 def test_tolerances_that_no_receipt_covers_are_told_in_a_line_of_their_own(home, capsys):
     """Clocks that may be off are no part of the proof: the receipt is nominal, and says so at once."""
     case = home / "scenes" / "box_box" / "case.yaml"

@@ -63,8 +63,11 @@ NETWORK = re.compile(
 
 def network_imports(path: Path) -> set[str]:
     """The modules for networks that a file imports, wherever in it."""
+    text = path.read_text(encoding="utf-8")
+    if not re.search("socket|ssl|ftp|smtp|asyncio|request|http|urllib|rpc|zmq|distributed", text):
+        return set()
     found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom) and node.module:
             found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):

@@ -68,6 +68,7 @@ def test_every_rule_that_judges_something_has_a_finding():
         assert {finding.status for finding in found} == {"clear"}
 
 
+@pytest.mark.slow
 def test_a_rule_of_which_nothing_is_near_has_a_finding_without_bodies():
     rules = (Rule(("lbr_iiwa_link_7", "floor"), name="floor", fail=0.001, warn=0.001),)
     found = run("iiwa_pipe_rack", Limits(0.06, 0.09, rules=rules), "limit").findings
@@ -97,6 +98,7 @@ def test_a_name_is_of_case_rule_bodies_and_occurrence_alone():
     assert len(name.id) == 16
 
 
+@pytest.mark.slow
 def test_a_program_that_runs_slower_and_a_little_beside_keeps_its_names():
     """Other times, other coordinates, more samples: the same names."""
     before = run("iiwa_pipe_rack", RACK, "limit")

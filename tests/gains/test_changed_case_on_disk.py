@@ -199,6 +199,7 @@ def test_a_case_of_no_file_and_an_input_are_refused(tmp_path):
     assert path.read_text() == SLOT
 
 
+@pytest.mark.slow
 def test_a_path_with_accelerations_is_written_as_the_cubics_that_were_measured(tmp_path):
     """The cart keeps 0.2 m where 0.21 are needed."""
     there_and_back(tmp_path)

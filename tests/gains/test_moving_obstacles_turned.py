@@ -85,6 +85,7 @@ def test_the_gradient_of_a_turned_motion_is_that_of_distances(x, timing):
 
 
 @pytest.mark.parametrize("turn", [None, "z"])
+@pytest.mark.slow
 def test_a_motion_that_turns_is_written_as_it_was_measured(tmp_path, turn):
     file = write_cell(tmp_path, MOVING)
     table = swinging()

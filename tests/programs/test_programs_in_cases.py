@@ -78,6 +78,7 @@ def line_and_arc_of_joints() -> tuple[dict, np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("on_line", [True, False])
+@pytest.mark.slow
 def test_the_tools_line_is_measured_and_not_that_of_the_joints(tmp_path, on_line):
     move, middle, _ = line_and_arc_of_joints()
     ends = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
@@ -187,6 +188,7 @@ def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
     assert np.abs(by_frame.positions - by_world.positions).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
     start = tool_at(START)[:3, 3]
     corner, end = start + [0.0, 0.15, 0.0], start + [0.0, 0.15, -0.15]
@@ -351,6 +353,7 @@ def with_zone(folder: Path, radius: float) -> Path:
     return case(folder, moves, [ball(start + [0.0, 0.35, 0.0], radius)])
 
 
+@pytest.mark.slow
 def test_what_a_zone_takes_is_violated_and_no_contact(tmp_path):
     run = cl.check(with_zone(tmp_path, 0.01))
     (phase,) = [one for one in run.record.timeline.phases if one.case.robots[0].padding]

@@ -59,6 +59,7 @@ def test_a_body_inside_a_sphere_with_one_fault_is_in_contact_either_way(fault: s
 
 
 @pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.slow
 def test_the_answers_are_those_of_the_whole_solid_by_the_oracle(fault: str) -> None:
     """Of rough solids at random poses: contact only inside, none outside, open only beside a hole."""
     random = np.random.default_rng(FAULTS.index(fault))

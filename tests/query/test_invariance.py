@@ -1,9 +1,6 @@
-"""What the distance must not depend on, and how it may change: motion, subdivision, direction, threads."""
-
-from concurrent.futures import ThreadPoolExecutor
+"""What the distance must not depend on, and how it may change: motion, subdivision, direction."""
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -97,40 +94,3 @@ def test_moving_away_along_the_witness_direction_adds_what_was_moved(pair, moves
         assert abs(after - (near.distance + step)) <= rounding
         assert after >= before - rounding
         before = after
-
-
-def _bytes(near):
-    return (
-        near.distance.hex(),
-        near.error_bound.hex(),
-        near.point_a.tobytes(),
-        near.point_b.tobytes(),
-        near.face_a,
-        near.face_b,
-        near.contact,
-    )
-
-
-@pytest.mark.parametrize("n_threads", [2, 4])
-def test_the_same_bytes_from_several_threads(n_threads):
-    random = np.random.default_rng(21)
-    shapes = [Polyhedron(*pair) for pair in _some_boxes(random)]
-    asked = []
-    for _ in range(60):
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = rotations(random, 1)[0], random.normal(size=3)
-        asked.append((*(shapes[i] for i in random.integers(0, len(shapes), 2)), pose))
-
-    def answer(task):
-        one, other, pose = task
-        return _bytes(distance(one, other, pose_b=pose))
-
-    alone = [answer(task) for task in asked]
-    with ThreadPoolExecutor(n_threads) as pool:
-        assert list(pool.map(answer, asked)) == alone
-
-
-def _some_boxes(random):
-    from tests.strategies import BOX_FACES, CUBE_CORNERS
-
-    return [(CUBE_CORNERS * 10.0 ** random.uniform(-2, 0, 3), BOX_FACES) for _ in range(8)]

@@ -53,6 +53,7 @@ def proven(folder, case=None) -> bool:
     return cl.verify(folder, case or loose()).proven
 
 
+@pytest.mark.slow
 def test_what_tolerances_leave_is_proven(folder):
     found = cl.verify(folder, loose())
     told = json.loads((folder / "summary.json").read_text())["tolerances"]["rules"][0]["proven"]
@@ -101,6 +102,7 @@ def test_less_than_the_report_tells_of_is_not_proven(folder):
     )
 
 
+@pytest.mark.slow
 def test_a_limit_that_is_kept_with_tolerances_must_be_proven(folder):
     """The report has 44 mm left, of 10 mm that are needed; a receipt of 9.999 mm does not bear that out."""
     receipt = read_receipt(folder / FILE_NAME)

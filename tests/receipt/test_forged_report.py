@@ -170,7 +170,7 @@ def test_no_value_of_the_summary_passes_as_made_elsewhere(report, tmp_path, answ
 TABLES = ("steps.csv", "contacts.csv", "budget.csv", "findings.json", "worst_moments.yaml")
 
 
-@pytest.mark.parametrize("name", [*TABLES, pytest.param("report.html", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", [*TABLES, "report.html"])
 def test_a_table_or_page_that_says_something_else_is_found(name, report_with_tolerances, tmp_path):
     folder = Path(shutil.copytree(report_with_tolerances, tmp_path / "report"))
     path = folder / name
@@ -273,6 +273,7 @@ def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
     assert first_line(tmp_path, violated()) == told
 
 
+@pytest.mark.slow
 def test_a_violated_run_is_not_read_as_one_that_keeps_its_limits(tmp_path):
     saved(violated(), tmp_path)
     found = cl.verify(tmp_path, violated())
@@ -299,6 +300,7 @@ def waived() -> cl.Case:
     return replace(violated(), waivers=(waiver,))
 
 
+@pytest.mark.slow
 def test_waivers_that_a_report_tells_of_and_the_case_does_not_have_are_found(tmp_path):
     saved(violated(), tmp_path)
 

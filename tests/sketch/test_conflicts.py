@@ -72,6 +72,7 @@ def test_redundant_is_distinguished_from_inconsistent():
     assert result.status == "over" and result.redundant == ["implied"]
 
 
+@pytest.mark.slow
 def test_a_wrong_dimension_that_is_too_short_for_no_chain():
     s, p, points, _ = truth(60, 3, off=0.02)
     a, b = 20, 32

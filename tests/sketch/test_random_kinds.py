@@ -2,6 +2,7 @@
 the drawing is shaken. Verdict, freedom and residual are compared with formulas that share no code."""
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -214,6 +215,7 @@ def test_under_constrained(count, seed, missing):
 @given(st.integers(2, 6), st.integers(0, 10**6))
 @example(3, 162)  # an exactly singular matrix on the way
 @example(6, 318)
+@pytest.mark.slow
 def test_over_constrained(count, seed):
     """One dimension more than needed: implied when it is measured, a conflict when it is not."""
     b = Builder(seed)

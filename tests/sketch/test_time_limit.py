@@ -54,6 +54,7 @@ def solved_with(sketch: Sketch, limit: TimeLimit):
 
 
 @pytest.mark.parametrize("name", MADE)
+@pytest.mark.slow
 def test_whenever_it_is_stopped_it_is_as_it_was_or_solved_as_ever(name):
     """The clock runs out at every moment at which a search asks for it, one after another."""
     drawn = numbers_of(MADE[name]())

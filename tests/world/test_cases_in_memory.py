@@ -100,6 +100,7 @@ def still(name, times=(0.0, 1.0)):
     return cl.PlacedRobot(dataclasses.replace(robot, name=name), asked)
 
 
+@pytest.mark.slow
 def test_a_case_that_no_table_could_tell_apart_is_refused():
     with pytest.raises(NothingToMeasure, match="no robot"):
         cl.Case("empty", (), posts("post"))

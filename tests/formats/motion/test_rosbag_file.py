@@ -181,25 +181,6 @@ def test_messages_without_a_stamp_are_of_the_time_of_their_receipt(tmp_path, con
     assert any("3 of 3 messages have no stamp: the time of receipt is used" in n for n in notes)
 
 
-def test_a_hole_is_suspect_in_a_case_and_refused_by_convert(tmp_path, capsys):
-    """50 messages a second but for 1 s to 3 s, in which the arm may have been anywhere."""
-    times = [i / 50 for i in range(201) if i <= 50 or i >= 150]
-    bag = write_bag(tmp_path, "mcap", {"/s": [state(t, [0.0, 0.0]) for t in times]})
-    case = write_case(
-        tmp_path, changed("path.csv", str(bag.relative_to(tmp_path))), urdf=TWO_JOINTS
-    )
-    verdict = check(case).verdict
-    assert verdict.status == "suspect"
-    assert [(one.kind, "shoulder, lift from 1 to 3 s" in one.text) for one in verdict.suspects] == [
-        ("gaps", True)
-    ]
-    assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 2
-    told = capsys.readouterr().err
-    assert "no message of shoulder, lift from 1 to 3 s" in told and told.strip().count("\n") == 0
-    said = changed("path.csv", f"{bag.relative_to(tmp_path)}, gaps: hold")
-    assert check(write_case(tmp_path, said, urdf=TWO_JOINTS)).verdict.passed
-
-
 @pytest.mark.parametrize("container", first_fast(CONTAINERS, 2))
 def test_positions_that_are_no_numbers_are_left_out_by_message_and_joint(tmp_path, container):
     """The lift is not known at 0 s, the shoulder not at 10 s: it goes straight from 9 to 11 s."""

@@ -248,6 +248,7 @@ def test_bodies_are_where_mujoco_has_them_in_a_keyframe(tmp_path, turn):
         assert np.abs(ours[:3, :3] - data.xmat[i].reshape(3, 3)).max() < 1e-8
 
 
+@pytest.mark.slow
 def test_a_new_case_moves_between_keyframes_and_rests_in_one(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write_mjcf(tmp_path, ARM)

@@ -64,6 +64,7 @@ def test_the_row_of_a_step_is_its_deepest_pair_and_the_sum_of_its_volumes(shelf)
     assert {row.link for row in shelf.record.contacts} == {"panda_leftfinger", "panda_rightfinger"}
 
 
+@pytest.mark.slow
 def test_the_way_out_of_the_carton_is_back_out_of_the_shelf(shelf):
     deepest = shelf.record.deepest
     assert deepest.step == 148 and deepest.obstacle == "carton"

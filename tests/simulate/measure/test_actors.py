@@ -151,6 +151,7 @@ def test_two_bodies_with_a_long_chain_between_are_as_far_apart_as_is_exact(seed)
 
 
 @pytest.mark.parametrize("seed", range(2))
+@pytest.mark.slow
 def test_a_body_and_a_part_carried_on_its_own_tree_are_as_far_apart_as_is_exact(seed):
     case = carrying(seed)
     run = cl.check(case, certify=False)

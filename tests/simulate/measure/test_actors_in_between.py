@@ -34,6 +34,7 @@ def finer(case: cl.Case, times: np.ndarray) -> cl.Case:
 
 
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.slow
 def test_no_bound_on_two_moving_bodies_is_above_samples_a_thousand_times_finer(seed):
     """Dented bodies that turn by up to a radian a step, apart from each other by less than they move."""
     random = np.random.default_rng(seed)
@@ -86,6 +87,7 @@ def test_tips_that_pass_each_other_between_two_samples_are_seen(seed, faster):
 
 
 @pytest.mark.parametrize("seed", range(2))
+@pytest.mark.slow
 def test_no_bound_on_a_part_that_changes_hands_within_an_interval_is_above_finer_samples(seed):
     """The hand-over is at no sample: the steps about it are its own."""
     case = carrying(seed)

@@ -249,6 +249,7 @@ def placed_exactly(points, base, before, after, share):
 
 @pytest.mark.parametrize("turn", [2.5, np.pi, 1e-9])
 @pytest.mark.parametrize("seed", range(1))
+@pytest.mark.slow
 def test_no_bound_is_above_exact_distances(seed, turn):
     """At 65 places of an interval, in fractions; the bound is within its gap of what they see."""
     scene = two_floating(np.random.default_rng(seed), 2, turn, far=0.3)

@@ -152,6 +152,7 @@ def test_a_warm_question_makes_as_many_calls_as_the_table_says(question: str) ->
 
 
 @pytest.mark.parametrize("name", CERTIFY)
+@pytest.mark.slow
 def test_further_steps_make_as_many_calls_as_the_table_says(name: str) -> None:
     assert calls_of_further_steps(CERTIFY[name]) == table()[name]
 

@@ -101,6 +101,7 @@ def test_contact_that_is_neither_seen_nor_excluded_is_not_clear(monkeypatch):
     assert [one.kind for one in run.findings if one.broken] == ["unproven"]
 
 
+@pytest.mark.slow
 def test_what_touches_but_for_rounding_says_so_and_has_no_stretch_of_contact():
     run = cl.check(sliding(1e-15, cl.Limits()))
     assert (run.status, run.passed) == ("clear", True)
