@@ -23,8 +23,9 @@ from clearance.formats.program.rapid_data import (
     tool_record,
     work_object_record,
 )
+from clearance.formats.program.rapid_grammar import grammar
 from clearance.formats.program.rapid_instructions import Rapid
-from clearance.formats.program.rapid_text import Modules, grammar
+from clearance.formats.program.rapid_text import Modules
 from clearance.formats.program.rapid_words import (
     WORDS,
 )

@@ -323,7 +323,7 @@ def _shown(one: Expression) -> str:
         if isinstance(one, Call) and not one.args:
             return ""
         one = one.of if isinstance(one, Part) else one.args[0]
-    return one.name if isinstance(one, Name) else ""
+    return one.name.rpartition(".")[2] if isinstance(one, Name) else ""
 
 
 def _speed(value: list[float], call: Call, run: Execution) -> tuple[float, float]:

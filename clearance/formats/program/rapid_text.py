@@ -6,13 +6,12 @@ Source: ABB, Technical reference manual, RAPID kernel.
 from __future__ import annotations
 
 import operator
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from clearance.errors import DuplicateName
 from clearance.formats.program.expressions import (
-    COMPARED,
     Call,
     Constant,
     Expression,
@@ -20,8 +19,8 @@ from clearance.formats.program.expressions import (
     Grammar,
     Name,
     Operation,
-    numeric,
 )
+from clearance.formats.program.rapid_grammar import WORDS, added
 from clearance.formats.program.statements import (
     RETURN,
     STOP,
@@ -37,77 +36,6 @@ from clearance.formats.program.statements import (
 )
 from clearance.formats.program.tokens import END, Cursor, Line, Token, tokens_of
 
-WORDS = re.compile(
-    r"""(?P<skip>\s+|![^\n]*|%%%.*?%%%)
-    |(?P<number>0[xX][0-9a-fA-F]+|0[bB][01]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)
-    |(?P<name>[A-Za-z_][A-Za-z_0-9]*)
-    |(?P<string>"(?:[^"\n]|"")*")
-    |(?P<operator>:=|<>|<=|>=|[-+*/<>=(){}\[\],.;:\\|?%])""",
-    re.VERBOSE | re.DOTALL,
-)
-
-
-def _sum(a: object, b: object) -> object:
-    """Numbers, texts and positions are added."""
-    if isinstance(a, list) and isinstance(b, list):
-        return [numeric(operator.add)(x, y) for x, y in zip(a, b, strict=True)]
-    if isinstance(a, str) and isinstance(b, str):
-        return a + b
-    return numeric(operator.add)(a, b)
-
-
-def _difference(a: object, b: object) -> object:
-    if isinstance(a, list) and isinstance(b, list):
-        return [numeric(operator.sub)(x, y) for x, y in zip(a, b, strict=True)]
-    return numeric(operator.sub)(a, b)
-
-
-def _product(a: object, b: object) -> object:
-    """Numbers, and a position by a number, are multiplied.
-
-    Raises:
-        TypeError: other things are.
-    """
-    for one, by in ((a, b), (b, a)):
-        if isinstance(one, list) and len(one) == 3 and not isinstance(by, list):
-            return [numeric(operator.mul)(x, by) for x in one]
-    return numeric(operator.mul)(a, b)
-
-
-def grammar(spelling: dict[str, str]) -> Grammar:
-    """How RAPID writes expressions.
-
-    Args:
-        spelling: how known names are written, by their small letters.
-    """
-    return Grammar(
-        binary={
-            "OR": (1, lambda a, b: bool(a) or bool(b)),
-            "XOR": (1, lambda a, b: bool(a) != bool(b)),
-            "AND": (2, lambda a, b: bool(a) and bool(b)),
-            "=": (4, operator.eq),
-            "<>": (4, operator.ne),
-            **{word: (4, act) for word, act in COMPARED.items()},
-            "+": (5, _sum),
-            "-": (5, _difference),
-            "*": (6, _product),
-            "/": (6, numeric(operator.truediv)),
-            "DIV": (6, numeric(lambda a, b: float(int(a / b)))),
-            "MOD": (6, numeric(lambda a, b: a - b * int(a / b))),
-        },
-        unary={
-            "NOT": (3, operator.not_),
-            "-": (7, lambda a: _product(-1.0, a)),
-            "+": (7, lambda a: a),
-        },
-        constants={"true": True, "false": False},
-        index="{}",
-        optional="\\",
-        folds=True,
-        spelling=spelling,
-    )
-
-
 CHANGES = ("Incr", "Decr", "Add", "Clear")
 """Instructions that give a variable a value of its own."""
 
@@ -116,7 +44,7 @@ def _changed(name: str, args: tuple[Expression, ...], line: Line) -> Assign:
     """What an instruction gives its variable."""
     target, *more = args
     by: Expression = more[0] if more else Constant(-1.0 if name == "Decr" else 1.0)
-    value = Constant(0.0) if name == "Clear" else Operation(_sum, (target, by), line)
+    value = Constant(0.0) if name == "Clear" else Operation(added, (target, by), line)
     return Assign(line, target, value)
 
 
@@ -137,8 +65,7 @@ class Modules:
     """The modules of a program.
 
     Attributes:
-        routines, declared, records: by name; the last are the names of fields. traps: names of routines that
-            interrupts run.
+        routines, declared, records: by name; the last are the names of fields.
     """
 
     routines: dict[str, Routine] = field(default_factory=dict)
@@ -151,7 +78,7 @@ class Modules:
         Raises:
             BadSyntax: with the line. DuplicateName: two of a name.
         """
-        cursor = Cursor(tokens_of(text, WORDS, file), folds=True)
+        cursor = Cursor(_with_own_names(tokens_of(text, WORDS, file)), folds=True)
         reader = _Reader(cursor, rules, self)
         if cursor.next.kind == END:
             cursor.refuse("'MODULE'")
@@ -168,6 +95,43 @@ _BLOCKS_END = (
     *_HANDLERS,
     *("ENDIF", "ELSE", "ELSEIF", "ENDFOR", "ENDWHILE", "ENDTEST", "CASE", "DEFAULT", "ENDMODULE"),
 )
+
+
+def _with_own_names(tokens: list[Token]) -> list[Token]:
+    """The words, with names that a module has alone (LOCAL) as `module.name`, so that others may have them too.
+
+    A name that a routine of the module has for something of its own stays as it is.
+    """
+    found, begins = (
+        list(tokens),
+        [i for i, one in enumerate(tokens) if one.text.upper() == "MODULE"],
+    )
+    for begin, end in pairwise([*begins, len(tokens)]):
+        own, inner = _declared(tokens[begin:end])
+        for i in range(begin + 2, end):
+            one, before = tokens[i], tokens[i - 1].text
+            if one.kind == "name" and one.text.lower() in own - inner and before not in (".", "\\"):
+                found[i] = one._replace(text=f"{tokens[begin + 1].text}.{one.text}")
+    return found
+
+
+def _declared(tokens: list[Token]) -> tuple[set[str], set[str]]:
+    """The names that a module has alone, and those that its routines give to data and parameters."""
+    words = [one.text.upper() for one in tokens]
+    own, inner = set[str](), set[str]()
+    for i, word in enumerate(words[:-3]):
+        is_data, is_local = word in _DATA, "LOCAL" in words[max(0, i - 2) : i]
+        if not is_data and word not in _ROUTINES:
+            continue
+        name = i + (2 if is_data or word == "FUNC" else 1)
+        if is_local:
+            own.add(tokens[name].text.lower())
+        elif is_data:
+            inner.add(tokens[name].text.lower())
+        if not is_data and words[name + 1] == "(":
+            closed = words.index(")", name) if ")" in words[name:] else name
+            inner |= {one.text.lower() for one in tokens[name + 1 : closed] if one.kind == "name"}
+    return own, inner
 
 
 class _Reader:

@@ -127,7 +127,7 @@ RAPID = b"""MODULE Weld
       MoveL Offs(p10,10*i,0,0),v100,z5,gun\\WObj:=wobj0;
     ENDFOR
     IF home.robax.rax_1<0 THEN WaitTime 0.5; ENDIF
-    MoveC RelTool(p10,50,50,0),p10,v100\\V:=50,fine,gun;
+    MoveC RelTool(p10,-40,20,0),Offs(p10,60,0,0),v100\\V:=50,fine,gun;
   ENDPROC
 ENDMODULE
 """

@@ -206,6 +206,23 @@ def test_what_only_the_controller_decides_is_never_taken_for_known(body):
     assert UNDECIDED[body] in str(caught.value)
 
 
+def test_modules_have_data_and_procedures_of_their_own():
+    module = """MODULE {0}
+    LOCAL CONST robtarget p:=[[{1},0,0],[1,0,0,0],[0,0,0,0],{2}];
+    LOCAL VAR num x:={1};
+    PROC {0}_go() go; over p; ENDPROC
+    LOCAL PROC go() MoveL Offs(p,p.trans.x,x,0),v100,fine,tool0; ENDPROC
+    LOCAL PROC over(robtarget on) MoveL on,v100,fine,tool0; ENDPROC
+    ENDMODULE
+    """
+    text = "MODULE M PROC main() a_go; B_go; ENDPROC ENDMODULE "
+    text += module.format("a", 1, NONE) + module.format("B", 2, NONE)
+    found = read("a.mod", text).moves
+    ends = [[2, 1, 0], [1, 0, 0], [4, 2, 0], [2, 0, 0]]
+    assert [place(one.to) for one in found] == [pytest.approx(end) for end in ends]
+    assert [one.to.name for one in found] == ["p", "on", "p", "on"]
+
+
 def test_what_a_procedure_has_of_its_own_stays_there():
     line = f"MoveL [[x,0,0],[1,0,0,0],[0,0,0,0],{NONE}],v100,fine,tool0;"
     body = f"VAR num x:=7;\nFOR i FROM 1 TO 2 DO ENDFOR\nx:=x+i;\n{line}\ngo;\nENDPROC\nPROC go()\n{line}"
