@@ -62,7 +62,7 @@ def converted_scene(asked: SceneRequest, target: Path) -> ConvertedScene:
         files,
         len(rows),
         (*content.notes, *(f"{asked.shown}: {one.note}" for one in left)),
-        tuple(notice.text for notice in content.notices),
+        tuple(notice.line for notice in content.notices),
     )
 
 

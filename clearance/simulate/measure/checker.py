@@ -326,7 +326,7 @@ class AskedPositions:
         """
         notices = list(self._notices(given))
         self.require_not_suspect(notices)
-        texts = [one.text for one in notices if one.severity is not Severity.SUSPECT]
+        texts = [one.line for one in notices if one.severity is not Severity.SUSPECT]
         if texts and "limits" not in self._accept:
             self._least, self._greatest = self._bounds(far=True)
             warnings.warn(f"{texts[0]}; further ones are not reported", stacklevel=4)
