@@ -23,7 +23,7 @@ _KINDS = ("trajectory", "scene", "poses")
 @click.option(
     "--kind",
     type=click.Choice(_KINDS),
-    help="What IN holds.  [default: what its suffix and its first lines say]",
+    help="Content of IN.  [default: by its suffix and its first lines]",
 )
 @click.option(
     "--which",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("case", metavar="CASE", type=click.Path(path_type=Path))
 @click.option(
-    "--kind", type=click.Choice([*KINDS, "all"]), required=True, help="What may be changed."
+    "--kind", type=click.Choice([*KINDS, "all"]), required=True, help="Kind of change to look for."
 )
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Where the changed case goes.")
 @asked_options(Request)

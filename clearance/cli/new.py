@@ -75,7 +75,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--units",
     multiple=True,
     type=click.Choice([*_UNITS]),
-    help="Of a CSV whose header names none; may be given again.",
+    help="Unit of a CSV whose header names none; may be given again.",
 )
 @click.option(
     "--period",
@@ -124,7 +124,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--rest",
     multiple=True,
     metavar="STATE",
-    help="Of the SRDF or MJCF, for joints that nothing moves; may be given again.",
+    help="State of the SRDF or MJCF for joints that nothing moves; may be given again.",
 )
 @click.option("--joint-limits", metavar="FILE", help="joint_limits.yaml of MoveIt.")
 @click.option("--controllers", metavar="FILE", help="ros2_controllers.yaml.")

@@ -50,10 +50,10 @@ def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str
     """
     sections = [
         Section("Clearance over time", _curves(gain)),
-        Section("What is changed", _moved(gain)),
+        Section("Changes", _moved(gain)),
         Section("Worst moments", [_worst_moments(gain)]),
         Section("Both motions", [_reports(gain) if with_reports else Paragraph(_NO_REPORTS)]),
-        Section("What this rests on", [*map(faint, _notes(gain, notes))]),
+        Section("Basis", [*map(faint, _notes(gain, notes))]),
     ]
     return plain_page(f"{gain.case.name}: {_badge(gain)}", _header(gain), sections, _chart(gain))
 
@@ -178,9 +178,9 @@ _NO_REPORTS = "The reports with the replays are left out: what draws them is not
 
 def _of_bound(gain: Gain) -> str:
     if is_hopeless(gain):
-        return "That no change of this kind is enough is proven."
+        return "Proven: no change of this kind is enough."
     if gain.kept and gain.size == 0.0:
-        return "That every rule holds as it is is proven."
+        return "Proven: every rule holds without a change."
     if gain.lower_bound <= 0.0:
         return "The search is local: smaller changes are not excluded."
     return "The bound is proven. The search is local: smaller changes, down to the bound, are not excluded."

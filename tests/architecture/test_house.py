@@ -63,7 +63,12 @@ def test_every_module_opens_with_what_it_is_for():
 @functools.cache
 def faults() -> dict[str, list[str]]:
     """By rule. All modules are parsed once, and none is kept: what is alive slows each collection of garbage."""
-    rules = {"docstring": without_docstring, "long": long_ones, "assert": kernel_asserts}
+    rules = {
+        "docstring": without_docstring,
+        "long": long_ones,
+        "assert": kernel_asserts,
+        "words": unclear_texts,
+    }
     found: dict[str, list[str]] = {name: [] for name in rules}
     for path in MODULES:
         module = ast.parse(path.read_text(encoding="utf-8"))
@@ -75,6 +80,41 @@ def faults() -> dict[str, list[str]]:
 def without_docstring(name: str, module: ast.Module) -> Iterator[str]:
     if not ast.get_docstring(module) and (module.body or not name.endswith("__init__.py")):
         yield name
+
+
+OPENING = re.compile(r"(?:^|(?<=[.!?] )|(?<=^[-|] ))(Of|What|That|Whose) ")
+"""No sentence begins so: its reader waits for what it is about."""
+
+UNCLEAR = {
+    "way out": "separation vector",
+    "stale waiver": "unused waiver",
+    "stands worst": "is most critical",
+    "what it is of": "its pairs",
+    "that of which": "name the thing",
+    "cannot do": "is needed",
+    "missing or unknown": "unknown: a; missing: b",
+}
+"""Words that were stumbled over, and what says it."""
+
+
+def test_texts_for_users_are_plain():
+    assert faults()["words"] == []
+    pages = [*(ROOT / "scripts" / "docs").rglob("*.md"), ROOT / "README.md"]
+    lines = [line for page in pages for line in page.read_text(encoding="utf-8").splitlines()]
+    assert len(lines) > 2000 and [line for line in lines if is_unclear(line)] == []
+
+
+def unclear_texts(name: str, module: ast.Module) -> Iterator[str]:
+    """Texts of a module that a user may read, all but its docstrings."""
+    told = {id(node.value) for node in ast.walk(module) if isinstance(node, ast.Expr)}
+    for node in ast.walk(module):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in told:
+            if is_unclear(node.value):
+                yield f"{name}, line {node.lineno}: {node.value:.60}"
+
+
+def is_unclear(text: str) -> bool:
+    return bool(OPENING.search(text)) or any(words in text.lower() for words in UNCLEAR)
 
 
 def test_the_guide_and_the_map_name_every_room():
@@ -157,3 +197,5 @@ def test_each_rule_sees_what_it_forbids():
         assert len(list(long_ones("clearance/x.py", bare))) == 1
     assert len(list(kernel_asserts("clearance/kernels/x.py", module))) == MOST_LINES
     assert list(without_docstring("clearance/x.py", module)) == ["clearance/x.py"]
+    said = ast.parse('"""What it does."""\nx = "Done. Of these none."\ny = f"the way out of {x}"\n')
+    assert len(list(unclear_texts("clearance/x.py", said))) == 2

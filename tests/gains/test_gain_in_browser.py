@@ -27,7 +27,7 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
         assert len(links) == 2
         for link in links:
             page.open(link, "window.clearance", 1400)
-            assert "What this clearance changes by" in page.run("document.body.textContent")
+            assert "Change of this clearance with" in page.run("document.body.textContent")
         before = page.run("window.clearance.state()")
         assert before["earlier"]["tool"][1] == pytest.approx(
             before["bodies"]["tool"][1] + 0.02, abs=1e-6
@@ -67,5 +67,5 @@ def test_a_page_of_what_cannot_be_does_not_speak_of_a_bound(tmp_path):
     cell = write_cell(tmp_path, SLOT)
     out = save_gain(cl.gain(cell, "waypoints", keep=[(0.9, 1.1)]), tmp_path / "out")
     text = (out / "gain.html").read_text()
-    assert "That no change of this kind is enough is proven." in text
+    assert "Proven: no change of this kind is enough." in text
     assert "The bound is proven" not in text and "gained" not in text

@@ -68,4 +68,4 @@ def test_what_holds_one_way_only_says_so():
 def test_of_bodies_in_contact_it_is_not_worked_out():
     post = standing("post", cl.box((0.1,) * 3), (0, 0, 0))
     data, text = table_of(cl.Case("hit", (along_x(gantry()),), (post,)))
-    assert data["rates"] == [] and "not worked out: the bodies are in contact" in text
+    assert data["rates"] == [] and "not computed: the bodies are in contact" in text

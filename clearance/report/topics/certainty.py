@@ -225,8 +225,8 @@ def _moving(summary: dict[str, Any]) -> Iterator[str]:
     tables = [one["name"] for one in others if one["between_samples"]]
     if tables:
         yield (
-            f"What moves by a table of poses ({', '.join(tables)}) goes straight from one row to the next, and "
-            "turns about one axis at constant speed."
+            f"Bodies that move by a table of poses ({', '.join(tables)}) go straight from one row to the next, "
+            "and turn about one axis at constant speed."
         )
     if summary["paddings"]:
         paddings = [f"{name} {limit_mm(value)} mm" for name, value in summary["paddings"].items()]

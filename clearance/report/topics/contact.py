@@ -123,8 +123,8 @@ def _row(pair: dict[str, Any]) -> Row:
 
 def _meaning(pairs: Sequence[dict[str, Any]]) -> str:
     told = (
-        "Of each pair the deepest of the steps that are worked out: one of every event, its deepest as far as "
-        "hulls or shared volumes tell, unless more was asked for. At these the replay shows the common region in "
+        "Each pair has the deepest of its computed steps: one for every event, its deepest as far as hulls or "
+        "shared volumes tell, unless more was asked for. At these the replay shows the common region in "
         "red and the separation vector of the first body as an arrow of fixed length. "
     )
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):

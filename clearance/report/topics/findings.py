@@ -59,7 +59,7 @@ def rows_of_now(comparison: Comparison | None) -> dict[str, ComparedFinding]:
 
 def _notes(found: Sequence[Finding]) -> Iterator[str]:
     yield (
-        "Of each pair that breaks a rule, every time it does; of a rule that is kept, its nearest pair."
+        "A pair that breaks a rule has a row for every time it does; a rule that is kept has its nearest pair."
     )
     if len(found) > MOST_ROWS:
         yield f"{count(len(found) - MOST_ROWS, 'more finding')} in findings.json."

@@ -65,7 +65,7 @@ def sections(content: PageContent) -> Iterator[Section]:
         "From", ">Triangles", ">Polygons", ">Size, mm", ">Volume, cm³", "Surface", ">Facets, mm"
     )  # fmt: skip
     tables = [Table((name, *heads), [*map(_row, bodies)], "bodies") for name, bodies in groups]
-    yield Section("What was loaded", tables)
+    yield Section("Loaded bodies", tables)
 
 
 def _row(body: dict[str, Any]) -> Row:

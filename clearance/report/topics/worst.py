@@ -170,10 +170,10 @@ def _joint_row(joint: dict[str, Any], several: bool) -> JointRow:
 def sensitivity_blocks(given: dict[str, Any], *, several_robots: bool) -> list[Table | Paragraph]:
     """The table under the worst moment, or a line that says why there is none."""
     if given["why_not"]:
-        return [faint(f"What it changes by is not worked out: {given['why_not']}.")]
+        return [faint(f"Its slopes are not computed: {given['why_not']}.")]
     if not given["rates"]:
         return [faint("Nothing that can be moved changes it.")]
-    heads = ("What this clearance changes by", ">Moved by", ">Up, mm", ">Down, mm", "")
+    heads = ("Change of this clearance with", ">Moved by", ">Up, mm", ">Down, mm", "")
     rows = [_rate(rate, several_robots) for rate in given["rates"]]
     return [Table(heads, rows, tall=True), faint(_note(given))]
 
