@@ -58,7 +58,10 @@ def program_motion(
         program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
         found = motion_of(placed.robot, program)
     trajectory = replace(
-        found.trajectory, frames=tuple(sorted(frames.used)), has_way_in=read.starts_anywhere
+        found.trajectory,
+        frames=tuple(sorted(frames.used)),
+        has_way_in=read.starts_anywhere,
+        assumed=tuple(f"{shown}: {one}" for one in read.assumed),
     )
     notes = (*read.notes, *found.notes)
     return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))

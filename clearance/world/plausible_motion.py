@@ -48,6 +48,7 @@ def notices_on_motion(
         *notices_on_positions(_as_given(placed, extents), before),
         *_suspect(texts),
         *_way_in(placed),
+        *_assumed(placed),
     ]
 
 
@@ -78,6 +79,15 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
         "give its start at 0 s with trajectory: {start_state: …}"
     )
     return [Notice(Severity.WARNING, START, text, about)]
+
+
+def _assumed(placed: PlacedRobot) -> list[Notice]:
+    """A warning on each thing that was assumed of a controller."""
+    about = placed.robot.name
+    return [
+        Notice(Severity.WARNING, "program", f"assumed: {one}", about)
+        for one in placed.given_trajectory.assumed
+    ]
 
 
 def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:

@@ -10,6 +10,7 @@ import yaml
 
 import clearance as cl
 from clearance.geometry.quaternions import quaternions_of
+from clearance.world.plausibility import notices_of
 from tests.programs.arms import FILES
 from tests.programs.test_programs_in_cases import START, case, far, tool_at
 
@@ -79,6 +80,7 @@ def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
     assert np.abs(one.positions - two.positions).max() < 1e-9
     assert [move.name for move in one.moves] == ["PTP 3", "PTP 4 → P1", "LIN 5", "CIRC 6"]
     told = "\n".join(found.notes)
+    assert not [one for one in notices_of(found) if one.kind == "program"]
     assert "with axes beside them agree" in told and "taken for the controller's base" in told
 
 
@@ -175,6 +177,16 @@ def test_flags_choose_the_configuration_and_tools_change(tmp_path):
     way = (last - tool_at(START))[:3, 3]
     assert np.allclose(way, 0.02 * tool_at(START)[:3, 1], atol=1e-9)
     assert "joint moves whose speed is the tool's" in "\n".join(found.notes)
+
+
+@pytest.mark.parametrize("is_said", [False, True])
+def test_where_the_base_is_stands_in_the_headline_unless_it_is_said(tmp_path, is_said):
+    asked = {"base": {"on": "base"}} if is_said else {}
+    found = cl.load_case(controller_case(tmp_path, "a.mod", rapid("[-1,0,0,0]"), **asked))
+    told = [one.text for one in notices_of(found) if one.kind == "program"]
+    assert (
+        told == [] if is_said else "assumed: a.mod: poses are seen from link 'base_link'" in told[0]
+    )
 
 
 def test_flags_that_no_configuration_has_are_refused(tmp_path):

@@ -32,13 +32,14 @@ class ControlledArm:
 
     Attributes:
         doubt: why the robot's root link may not be the controller's base; empty where that does not matter.
-        notes: a line each on what is assumed.
+        notes: a line each on what is assumed. assumed: of the base, where nobody says it; empty where it is known.
     """
 
     asked: ProgramFile
     robot: Robot
     doubt: str = ""
     notes: list[str] = field(default_factory=list)
+    assumed: str = ""
 
     @cached_property
     def link(self) -> str:
@@ -89,7 +90,11 @@ class ControlledArm:
         if self.doubt and link != BASE_LINK:
             valid = "where it is, as base: {on: base, xyz: [0, 0, …]}, seen from the robot's root"
             raise MissingKey(self.doubt, where="base", valid=valid)
-        self.notes.append(f"poses are seen from link {link!r}, taken for the controller's base")
+        told = f"poses are seen from link {link!r}, taken for the controller's base"
+        if link == BASE_LINK:
+            self.notes.append(told)
+        else:
+            self.assumed = f"{told}; base: {{on: base}} in the program says that it is"
         return chain_between(self.robot, root, link).end
 
     def tool_at(self, joints: Mapping[str, float], tool: np.ndarray) -> np.ndarray:

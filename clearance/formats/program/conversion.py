@@ -51,6 +51,7 @@ class ConvertedProgram:
     Attributes:
         places: where each of its moves stands. names: of the moves, in reports. notes: a line each on what was
             assumed.
+        assumed: what a verdict rests on, where nothing in the files confirms it, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
     """
 
@@ -59,6 +60,7 @@ class ConvertedProgram:
     names: tuple[str, ...]
     notes: tuple[str, ...] = ()
     starts_anywhere: bool = False
+    assumed: tuple[str, ...] = ()
 
 
 def converted(
@@ -89,7 +91,10 @@ def converted(
     moves, places, names = zip(*named, strict=True)
     checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
     notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
-    return ConvertedProgram(checked, places, names, notes, starts_anywhere)
+    rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
+    if made.compared[0] >= 0.0:  # the file itself says that it is so
+        notes, rests_on = (*notes, *rests_on), ()
+    return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on)
 
 
 @dataclass(eq=False)
