@@ -19,6 +19,7 @@ from scripts.makers.solids import write_stl
 def make(root: Path, name: str) -> None:
     """Writes the files of one scene under `root`/scenes."""
     folder = root / "scenes" / name
+    folder.mkdir(parents=True, exist_ok=True)
     for mesh_name, shape in MESHES.get(name, {}).items():
         write_stl(folder / "meshes" / f"{mesh_name}.stl", shape())
     for file_name, table in TABLES.get(name, dict)().items():
