@@ -125,7 +125,7 @@ REFUSED = [
     ({"fail": -1.0}, BadDimension, "fail: -1.0 is given; a length, 0 or more"),
     ({"fail": float("nan")}, BadDimension, "fail: nan is given"),
     ({"fail": True}, BadDimension, "fail: True is given"),
-    ({"accept": ["unit"]}, BadInput, "accept: 'unit' is given; one of units, limits"),
+    ({"accept": ["unit"]}, BadInput, "accept: 'unit' is given; kinds of suspect input: units, limits"),
     ({"accept": 3}, BadInput, "accept: 3 is given; a list"),
     ({"today": "1.4.2027"}, BadInput, "today: '1.4.2027' is given; a day, as 2027-03-31"),
     ({"limits": (0.1, 0.2)}, BadInput, "limits: (0.1, 0.2) is given; a Limits"),
