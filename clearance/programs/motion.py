@@ -17,6 +17,7 @@ from clearance.errors import BadDimension, BadProgram, UnknownJoint, UnknownLink
 from clearance.programs.arm import Arm
 from clearance.programs.corner import PATH_ERROR, corner_of
 from clearance.programs.following import Follower, follower_of
+from clearance.programs.inverse import joints_at
 from clearance.programs.joint_corner import JointCorner, bow
 from clearance.programs.joint_way import JointWay
 from clearance.programs.legs import Corner, Leg, PlannedWay, legs_of, runs_of, ways_of
@@ -133,7 +134,7 @@ class _Samples:
             self._straight(leg, leg.way)
         elif leg.way is not None and isinstance(leg.move, PathMove):
             self._along(leg, leg.way, leg.move)
-        self._require_limits()
+        self._require_limits(self.positions[-1])
         if self.spans and self.spans[-1].name == leg.move.name:
             self.spans[-1] = replace(self.spans[-1], end=self.now)
         else:
@@ -189,6 +190,10 @@ class _Samples:
         """What the tool's path makes of the joints."""
         follower = follower_of(self.arm, stretch, move.hold, self.at)
         samples, wide = self._enclosed(follower, leg.pieces, self._seam)
+        if leg.corner is not None:
+            corner = stretch.poses(np.array([[1.0, 0.0]]))
+            near = samples.positions[len(samples.positions) // 2]
+            self._require_limits(joints_at(self.arm.tool, corner, near[None]).positions)
         if leg.corner is not None and not wide.any():
             zone = corner_of(follower, samples, self.now, leg.corner.radius, move.name)
             if zone is None:
@@ -244,6 +249,7 @@ class _Samples:
             is_proven = is_proven and not narrow.any()
             joints.append(samples.positions[-1])
             last, wide = samples.velocities[-1], np.maximum(wide, bow(samples))
+        self._require_limits(np.array(joints))
         rates = np.stack([self.velocities[-1][-1], 2.0 * piece.rate * last])
         zone = JointCorner(joints[0], joints[1], joints[2], rates, wide, piece.duration)
         n = self._n_samples(self.arm.poses(zone.samples(32)[1]))
@@ -292,26 +298,21 @@ class _Samples:
                 f"more than {MOST_SAMPLES:,} samples", where="step", valid="a larger step"
             )
 
-    def _require_limits(self) -> None:
-        """Nothing, if the samples added last are within the limits of the joints.
+    def _require_limits(self, positions: np.ndarray) -> None:
+        """Nothing, if joints at positions (n, k) are within their limits.
 
         Raises:
             BadInput: the first that is not, with the joint and where the tool is then.
         """
-        ranges, last = self.arm.chain.ranges, self.positions[-1]
-        beyond = np.maximum(ranges[:, 0] - last, last - ranges[:, 1]).max(axis=0)
-        joint = int(np.argmax(beyond))
-        if beyond[joint] > 0.0:
-            row = int(
-                np.argmax(
-                    np.maximum(ranges[joint, 0] - last[:, joint], last[:, joint] - ranges[joint, 1])
-                    > 0.0
-                )
-            )
-            x, y, z = self.arm.poses(last[row : row + 1])[0, :3, 3]
+        low, high = self.arm.chain.ranges.T
+        beyond = np.maximum(low - positions, positions - high)
+        joint = int(np.argmax(beyond.max(axis=0)))
+        if beyond[:, joint].max() > 0.0:
+            row = int(np.argmax(beyond[:, joint] > 0.0))
+            x, y, z = self.arm.poses(positions[row : row + 1])[0, :3, 3]
             raise BadProgram(
                 f"joint {self.arm.joints[joint].name!r} is beyond its limit at ({x:.4g}, {y:.4g}, {z:.4g}) m",
-                valid=f"{ranges[joint, 0]:.4g} to {ranges[joint, 1]:.4g}",
+                valid=f"{low[joint]:.4g} to {high[joint]:.4g}",
             )
 
 

@@ -317,6 +317,13 @@ FAULTS = {
     ),
     "a joint left out": ([{"ptp": {"joints": {"joint_1": 0.0}}}], "no target of joint_2"),
     "beyond a limit": ([{"ptp": {"joints": {**START, "joint_1": 9.0}}}], "beyond its limit"),
+    "a corner beyond a limit": (
+        [
+            {"ptp": {"joints": {**START, "joint_1": 2.99}, "zone": 0.05}},
+            {"ptp": {"joints": START}},
+        ],
+        "beyond its limit",
+    ),
     "two moves in one": ([{"wait": 1.0, "ptp": {"joints": START}}], "ptp and wait are given"),
 }
 
