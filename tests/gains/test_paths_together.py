@@ -44,6 +44,9 @@ def test_what_each_of_two_must_mend_takes_both():
         assert not found.kept and "nothing of this change moves them" in str(found.blocked)
     found = gain(case, "waypoints", robot=BOTH)
     assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
+    case = replace(case, obstacles=(posts[0], standing("high", post, (0.0, 0.63, 0.0))))
+    found = gain(case, "waypoints", robot=BOTH)
+    assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
 
 
 @pytest.mark.slow
