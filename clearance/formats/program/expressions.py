@@ -14,6 +14,9 @@ from typing import Any, Protocol
 from clearance.errors import BadProgram, BadSyntax, at
 from clearance.formats.program.tokens import Cursor, Line, Token
 
+MOST_PARTS = 200
+"""Operators in a row, and parts of parts."""
+
 MOST_DEPTH = 60
 """Brackets within brackets."""
 
@@ -225,11 +228,18 @@ class ExpressionReader:
         if self._depth > MOST_DEPTH:
             self.cursor.refuse(f"an expression of at most {MOST_DEPTH} brackets")
         found = self._prefixed()
+        n_parts = 0
         while (rule := self._grammar.binary.get(self._word)) and rule[0] > power:
             line = self.cursor.take().line
             found = Operation(rule[1], (found, self.expression(rule[0])), line)
+            n_parts = self._counted(n_parts)
         self._depth -= 1
         return found
+
+    def _counted(self, n_parts: int) -> int:
+        if n_parts == MOST_PARTS:
+            self.cursor.refuse(f"an expression of at most {MOST_PARTS} parts")
+        return n_parts + 1
 
     def arguments(self, *ends: str) -> tuple[tuple[Expression, ...], dict[str, Expression]]:
         """The arguments up to one of some words, which is not taken: in their order, and by name.
@@ -304,8 +314,9 @@ class ExpressionReader:
 
     def _with_parts(self, found: Expression) -> Expression:
         opens, closes = self._grammar.index[0], self._grammar.index[1]
+        n_parts = 0
         while True:
-            line = self.cursor.next.line
+            line, n_parts = self.cursor.next.line, self._counted(n_parts)
             if self.cursor.accept("."):
                 word = self.cursor.expect_kind("name", "the name of a field")
                 by = word.text

@@ -212,14 +212,14 @@ class _Fanuc:
             BadProgram: they differ, as no controller accepts. MissingKey: the case does not say it.
         """
         chosen = run.value_of(Name(f"{kind}_NUM", line))
-        current = None if isinstance(chosen, Unknown) else int(chosen)
+        current = None if isinstance(chosen, Unknown) else number(chosen, line, f"{kind}_NUM")
         index = taught if current is None else current
         if taught is not None and index != taught and needed:
-            told = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current}"
+            told = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
             raise BadProgram(told, valid=f"{kind}_NUM={taught} before it")
         if index == 0:
             return np.eye(4)
-        key, word = f"{kind}[{index}]", "frames" if kind == "UFRAME" else "tools"
+        key, word = f"{kind}[{index or 0:g}]", "frames" if kind == "UFRAME" else "tools"
         given: Mapping[str, Any] = getattr(self.asked, word)
         is_changed = not isinstance(run.variables.get(key), type(None))
         if index is not None and key in given and not is_changed:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from clearance.errors import BadProgram
 
-_POSITION = re.compile(r"P\[\s*(\d+)\s*(?::[^\]]*)?\]\s*\{(.*?)\}\s*;", re.DOTALL)
-_VALUE = re.compile(r"\b([A-Z]\d?)\s*=\s*(\*+|[-+]?[0-9]*\.?[0-9]+)\s*(mm|deg)?")
+_POSITION = re.compile(r"P\[\s*(\d{1,9})\s*(?::[^\]]*)?\]\s*\{([^{}]*)\}\s*;")
+_VALUE = re.compile(r"\b([A-Z]\d?)\s*=\s*(\*+|[-+]?[0-9]{0,9}\.?[0-9]{1,9})\s*(?:mm|deg)\b")
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,8 @@ def _position(text: str) -> Position:
     by_group = dict(zip(groups[1::2], groups[2::2], strict=True)) or {"1": text}
     own = by_group.pop("1", "")
     values = {one[1]: None if "*" in one[2] else float(one[2]) for one in _VALUE.finditer(own)}
-    external = {name: values.pop(name) or 0.0 for name in [*values] if name.startswith("E")}
+    taught = {name: value for name, value in values.items() if value is not None}
+    external = {name: value for name, value in taught.items() if name.startswith("E")}
     for group, part in by_group.items():
         found = {
             f"GP{group}{one[1]}": float(one[2])
@@ -57,7 +58,7 @@ def _position(text: str) -> Position:
             if "*" not in one[2]
         }
         external |= found
-    frame, tool = (re.search(rf"\b{key}\s*:\s*(\d+)", own) for key in ("UF", "UT"))
+    frame, tool = (re.search(rf"\b{key}\s*:\s*(\d{{1,4}})\b", own) for key in ("UF", "UT"))
     configuration = re.search(r"CONFIG\s*:\s*'([^']*)'", own)
     return Position(
         None if frame is None else int(frame[1]),

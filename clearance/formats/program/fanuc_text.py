@@ -9,11 +9,12 @@ import math
 import operator
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from clearance.errors import BadProgram, BadSyntax
 from clearance.formats.program.expressions import (
     COMPARED,
+    MOST_DEPTH,
     Call,
     Constant,
     Expression,
@@ -162,21 +163,22 @@ def listing_of(data: bytes, shown: str, file: str = "") -> Listing:
 
 def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line, str]]:
     """The text of each instruction without its number, and its line; remarks are left out."""
-    text, line = "", Line(first, file)
+    parts, line = list[str](), Line(first, file)
     for number, row in enumerate(rows, first):
         kept = re.sub(r"^\s*\d*\s*:", "", row).strip()
         if not kept:
             continue
-        if not text:
-            line = Line(number, file)
-        text = f"{text} {kept}".strip()
+        line = line if parts else Line(number, file)
+        parts.append(kept)
         if kept.endswith(";"):
-            text = text[:-1].strip()
+            text = " ".join(parts)[:-1].strip()
             if text and not text.startswith(("!", "//", "--")):
                 yield line, text
-            text = ""
-    if text:
-        raise BadSyntax(f"{text!r:.60} has no end", where=str(line), valid="';', in a whole file")
+            parts = []
+    if parts:
+        raise BadSyntax(
+            f"{' '.join(parts)!r:.60} has no end", where=str(line), valid="';', in a whole file"
+        )
 
 
 @dataclass(eq=False)
@@ -185,7 +187,8 @@ class _Reader:
 
     instructions: list[tuple[Line, str]]
     positions: Mapping[int, Position]
-    at: int = field(default=0)
+    at: int = 0
+    depth: int = 0
 
     def all(self) -> tuple[Statement, ...]:
         """All statements.
@@ -219,7 +222,11 @@ class _Reader:
 
     def _until(self, line: Line, what: str, *ends: str) -> list[Statement]:
         """The statements of a block up to one of its ends, which is not taken."""
+        self.depth += 1
+        if self.depth > MOST_DEPTH:
+            raise BadSyntax(f"{what} within {MOST_DEPTH} blocks", where=str(line), valid="fewer")
         found = self._body()
+        self.depth -= 1
         if self.at >= len(self.instructions) or self._word not in ends:
             raise BadSyntax(
                 f"{what} has no {ends[-1]}",
@@ -253,7 +260,7 @@ class _Reader:
         """`SELECT R[1]=1,…`, and the instructions after it that begin with `=` or `ELSE`."""
         condition, action = _split(text[len("SELECT") :])
         value, _, first = condition.partition("=")
-        branches = [(_condition(f"{value}={first}", line), tuple(self._simple(line, action)))]
+        branches = [(_condition(f"{value}={first}", line), self._action(line, action))]
         while self.at < len(self.instructions) and self._word in ("=", "ELSE"):
             own, case = self.instructions[self.at]
             self.at += 1
@@ -261,7 +268,7 @@ class _Reader:
             asked = (
                 Constant(True) if _first(case) == "ELSE" else _condition(f"{value}{condition}", own)
             )
-            branches.append((asked, tuple(self._simple(own, action))))
+            branches.append((asked, self._action(own, action)))
         return If(line, "SELECT", tuple(branches))
 
     def _for(self, line: Line, text: str) -> For:
@@ -278,6 +285,11 @@ class _Reader:
         self.at += 1
         return For(line, "FOR", Name(named(found[1]), line), first, last, step, body)
 
+    def _action(self, line: Line, text: str) -> tuple[Statement, ...]:
+        """What a condition decides on; it holds no further one."""
+        word = _first(text)
+        return (Unreadable(line, word),) if word == "IF" else tuple(self._simple(line, text))
+
     def _simple(self, line: Line, text: str) -> list[Statement]:
         """A statement that holds no other."""
         word = _first(text)
@@ -289,9 +301,7 @@ class _Reader:
             return [Leave(line, word, RETURN if word == "END" else STOP)]
         if word == "IF":
             condition, action = _split(text[2:])
-            return [
-                If(line, word, ((_condition(condition, line), tuple(self._simple(line, action))),))
-            ]
+            return [If(line, word, ((_condition(condition, line), self._action(line, action)),))]
         if word == "WAIT":
             return [_wait(line, text[4:].strip())]
         if word == "CALL":
@@ -328,7 +338,11 @@ class _Reader:
     def _point(self, kind: str, index: str) -> tuple[str, Position | None]:
         """A point's name, and its position; none of a register, or of one that the file does not have."""
         index, kind = index.strip(), kind.upper()
-        own = self.positions.get(int(index)) if kind == "P" and index.isdigit() else None
+        own = (
+            self.positions.get(int(index))
+            if kind == "P" and re.fullmatch("[0-9]{1,9}", index)
+            else None
+        )
         return f"{kind}[{index}]", own
 
 

@@ -173,7 +173,7 @@ class _Krl:
                 if seconds > 0.0:
                     run.add(ControllerWait(call.line.number, seconds, call.line.file))
             elif call.name == "BAS":
-                command, *value = (run.evaluated(one) for one in call.args)
+                command, *value = [run.evaluated(one) for one in call.args] or [Unknown("nothing")]
                 Settings(run, call.line).bas(command, value[0] if value else 0)
             elif call.name == SPLINE:
                 raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import operator
 import re
 
+from clearance.errors import BadSyntax
 from clearance.formats.program.expressions import (
     COMPARED,
     Call,
@@ -133,7 +134,9 @@ def _number(text: str) -> float:
     """Whole numbers stay so: their quotient is one too."""
     if text[0] == "'":
         return int(text[2:-1], 16 if text[1] in "Hh" else 2)
-    return int(text) if text.isdigit() else float(text)
+    if not (value := float(text)) < 1e300:
+        raise BadSyntax(f"{text!r:.60} is given", valid="a number of this earth")
+    return int(text) if text.isdigit() else value
 
 
 def parameters_of(cursor: Cursor) -> tuple[tuple[str, ...], frozenset[str]]:

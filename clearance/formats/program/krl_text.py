@@ -5,13 +5,13 @@ Not for: what instructions do (`krl`).
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from clearance.errors import BadSyntax
 from clearance.formats.program.expressions import (
+    MOST_DEPTH,
     Call,
     Constant,
     Expression,
@@ -84,7 +84,7 @@ class _Reader:
     def __init__(self, lines: list[list[Token]], types: dict[str, str]) -> None:
         self._lines, self._at = lines, 0
         self._types, self._own = types, dict[str, str]()
-        self._public = set[str]()
+        self._public, self._depth = set[str](), 0
 
     def module(self) -> Module:
         """All of it."""
@@ -118,7 +118,7 @@ class _Reader:
         is_public = cursor.accept("GLOBAL")
         head = cursor.expect("DEF", "DEFFCT")
         end = "END" if head.text.upper() == "DEF" else "ENDFCT"
-        names = list[Token]()
+        names = [cursor.expect_kind("name", "a name")]
         while not cursor.is_at("("):
             names.append(cursor.take())
             if names[-1].kind == NEWLINE:
@@ -147,9 +147,13 @@ class _Reader:
         """The statements of a block up to one of its ends, which is not taken.
 
         Raises:
-            BadSyntax: it has none.
+            BadSyntax: it has none, or is too deep in others.
         """
+        self._depth += 1
+        if self._depth > MOST_DEPTH:
+            raise BadSyntax(f"{word} within {MOST_DEPTH} blocks", where=str(line), valid="fewer")
         found = self._body((*ends, *_ENDS))
+        self._depth -= 1
         if self._at >= len(self._lines) or self._word not in ends:
             raise BadSyntax(
                 f"{word} has no {ends[-1]}",
@@ -387,10 +391,7 @@ def _require_end(cursor: Cursor) -> None:
 
 def _one_of(value: Expression, read: Expressions) -> Expression:
     """True where a value is one of those that a CASE lists."""
-    found: Expression | None = None
-    while True:
-        line = read.cursor.next.line
-        one = Operation(operator.eq, (value, read.expression()), line)
-        found = one if found is None else Operation(operator.or_, (found, one), line)
-        if not read.cursor.accept(","):
-            return found
+    line, cases = read.cursor.next.line, [read.expression()]
+    while read.cursor.accept(","):
+        cases.append(read.expression())
+    return Operation(lambda found, *given: found in given, (value, *cases), line)

@@ -20,8 +20,9 @@ Aggregate = Mapping[str, Any]
 
 
 def is_number(value: object) -> bool:
-    """True for a number; a truth value is none."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """True for a number; a truth value is none, nor is what is too large for one."""
+    is_one = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_one and abs(value) < 1e300  # type: ignore[arg-type]
 
 
 def matrix_of(frame: Aggregate, shown: str) -> np.ndarray:

@@ -176,6 +176,8 @@ def test_a_listing_that_is_cut_off_within_its_points_is_refused():
     text = listing(L2 + " ;")
     with pytest.raises(cl.ClearanceError, match="no /END is in it"):
         read("CELL.LS", text[: text.index("P[4:") + 40], **CASE)
+    with pytest.raises(cl.ClearanceError, match=r"P\[2\] has no X"):
+        read("CELL.LS", text.replace("  100.000  mm,", "  1e5  mm,"), **CASE)
     with pytest.raises(cl.ClearanceError, match="under /POS is no position"):
         read("CELL.LS", text.replace("};\n/END", "/END"), **CASE)
 
