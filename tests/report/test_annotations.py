@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import html
+import io
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
+from rich.console import Console
 
 import clearance as cl
 from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.report.annotations import MOST, annotation_lines, command, sample_at
 from clearance.report.markdown import MOST_ROWS, markdown, plain
+from clearance.report.terminal import terminal_table
+from clearance.report.topic import TerminalTable
 from clearance.run import Run
 from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing
@@ -93,6 +97,7 @@ ANY_TEXT = st.text(max_size=60) | st.sampled_from(
 
 
 @given(ANY_TEXT, ANY_TEXT)
+@example("a\n::error::x", "a\r::error::x")
 def test_no_name_ends_a_command_or_begins_another(name, message):
     line = command("error", {"file": name, "title": name}, message)
     assert "\n" not in line and "\r" not in line
@@ -101,6 +106,15 @@ def test_no_name_ends_a_command_or_begins_another(name, message):
         for sign, code in ((":", "%3A"), (",", "%2C"), ("\r", "%0D"), ("\n", "%0A"), ("%", "%25")):
             escaped = escaped.replace(code, sign)
         assert escaped == given_text
+
+
+@pytest.mark.parametrize("name", ["::error::x", "##vso[task.complete]"])
+def test_no_name_that_begins_a_line_of_a_table_is_a_command(name):
+    console = Console(file=io.StringIO(), width=80)
+    console.print(terminal_table(TerminalTable(("body", "least"), [(name, name)])))
+    lines = [line.strip() for line in console.file.getvalue().splitlines()]
+    assert not any(line.startswith(("::", "##")) for line in lines)
+    assert any(line.startswith(f"'{name}'") for line in lines)
 
 
 @given(ANY_TEXT)
