@@ -487,6 +487,7 @@ def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
     [
         ("turntable/plate", "'turntable/plate' moves, so that"),
         ("part", "'part' moves, so that"),
+        ("far", "'far' moves, so that"),
         ("arm/forearm", "link 'forearm' moves with joint"),
         ("turntable/late", "'turntable/late' is not there; did you mean 'turntable/plate'"),
     ],
@@ -494,5 +495,8 @@ def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
 def test_a_frame_on_a_link_that_moves_is_refused(tmp_path, on, told):
     move = {"lin": {"to": {"frame": "jig", "xyz": [0.0, 0.0, 0.0]}}}
     path = beside_a_turntable(tmp_path, [move], "0,0.5\n9,0.6\n", frames={"jig": {"on": on}})
+    content = yaml.safe_load(path.read_text())
+    content["carry"] = [{"part": "far", "by": "turntable/plate", "from": 1.0, "until": 2.0}]
+    path.write_text(yaml.safe_dump(content))
     with pytest.raises(cl.ClearanceError, match=told):
         cl.load_case(path)
