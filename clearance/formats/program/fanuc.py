@@ -72,7 +72,7 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
 
 @dataclass(eq=False)
 class _Fanuc:
-    """What the instructions of a listing do.
+    """The instructions of a listing.
 
     Attributes:
         asked: what the case says. unsaid: lines whose speed is none that the file gives. has_joints: positions of
@@ -84,7 +84,7 @@ class _Fanuc:
     has_joints: bool = False
 
     def notes(self) -> list[str]:
-        """What is assumed."""
+        """A line each on an assumption."""
         found = []
         if self.has_joints:
             found.append("J3 is taken to be against the horizontal: axis 3 is J3 + J2")
@@ -173,7 +173,7 @@ class _Fanuc:
     def _target(
         self, name: str, one: Position | None, kind: str, run: Execution, line: Line
     ) -> tuple[Target, np.ndarray]:
-        """Where a motion goes, and the tool that is on the flange.
+        """The end of a motion, and the tool on the flange.
 
         Raises:
             BadProgram: no position, or one of other frames than those in force.

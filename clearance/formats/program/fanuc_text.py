@@ -286,7 +286,7 @@ class _Reader:
         return For(line, "FOR", Name(named(found[1]), line), first, last, step, body)
 
     def _action(self, line: Line, text: str) -> tuple[Statement, ...]:
-        """What a condition decides on; it holds no further one."""
+        """The statements that a condition decides on; they hold no further one."""
         word = _first(text)
         return (Unreadable(line, word),) if word == "IF" else tuple(self._simple(line, text))
 

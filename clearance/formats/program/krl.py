@@ -88,7 +88,7 @@ def _entry(names: Sequence[str], asked: str | None) -> str:
 
 @dataclass(eq=False)
 class _Krl:
-    """What the instructions of KRL do.
+    """The instructions of KRL, and where the robot is.
 
     Attributes:
         asked: what the case says. pose: (4, 4) `base_from_flange` [m] where the robot is; None where its axes say
@@ -103,7 +103,7 @@ class _Krl:
     is_automatic: bool = False
 
     def notes(self) -> list[str]:
-        """What is assumed."""
+        """A line each on an assumption."""
         told = "automatic operation is assumed: $T1 and $T2 are FALSE"
         found = [told] if self.is_automatic else []
         if self.unsaid:
@@ -128,7 +128,7 @@ class _Krl:
         return ()
 
     def value_of(self, name: str, run: Execution) -> Any:
-        """What is assumed of the controller: it runs a program by itself."""
+        """The controller is assumed to run the program by itself."""
         if name in ("$T1", "$T2"):
             self.is_automatic = True
             return False

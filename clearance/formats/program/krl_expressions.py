@@ -114,7 +114,7 @@ class Expressions(ExpressionReader):
         return tuple(args), {}
 
     def _aggregate(self, line: Line) -> Call:
-        """What stands in braces, the first of which is taken; `{E6POS: X 1}` may name its type."""
+        """The parts in braces, the first of which is taken; `{E6POS: X 1}` may name its type."""
         found, cursor = dict[str, Expression](), self.cursor
         while not cursor.is_at("}"):
             name = GRAMMAR.folded(cursor.expect_kind("name", "the name of a part").text)

@@ -1,4 +1,4 @@
-"""What is in force in a program in KRL: tool, base, speeds and corners, and what sets them.
+"""Settings of a program in KRL: tool, base, speeds and corners, and the instructions that change them.
 
 Not for: moves (`krl`).
 """
@@ -45,7 +45,7 @@ _FIRST: Mapping[str, Any] = {
     **{name: Unknown(f"{name} is not set before") for name in ("$TOOL", "$BASE")},
     **{name: Unknown(f"{name} is not set before") for name in ("FDAT_ACT", "PDAT_ACT", "LDAT_ACT")},
 }
-"""What a program begins with."""
+"""Variables that every program has."""
 
 HELD = (
     "$VEL",
@@ -58,7 +58,7 @@ HELD = (
     "$ORI_TYPE",
     "$CIRC_TYPE",
 )
-"""What `WITH` changes for one move; all else after it says nothing of its way."""
+"""Variables that `WITH` changes for one move; all others say nothing of its way."""
 
 _COMMANDS = frozenset(
     (
@@ -70,7 +70,7 @@ _COMMANDS = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class Settings:
-    """What is in force at a line: tool, base, speeds, corners."""
+    """The settings in force at a line."""
 
     run: Execution
     line: Line
@@ -141,7 +141,7 @@ class Settings:
         return self.numbered("BASE_DATA", index, "$WORLD")
 
     def bas(self, command: Any, value: Any) -> None:
-        """What KUKA's `BAS` does for a command.
+        """Does as KUKA's `BAS` does for a command.
 
         Raises:
             BadInput: another command.
