@@ -138,6 +138,17 @@ class Settings:
         return self.numbered("TOOL_DATA", index, "$NULLFRAME")
 
     def base(self, index: Any) -> Any:
+        """The base of a number.
+
+        Raises:
+            BadProgram: it is on another machine than the robot, which may move it.
+        """
+        machine = _part(self.part("MACHINE_FRAME_DAT", index), "MACH_DEF_INDEX")
+        if is_number(machine) and machine > 0:
+            kind = _part(self.part("MACHINE_DEF", int(machine)), "MECH_TYPE")
+            if kind != "#ROBOT":
+                told = f"base {index} is on machine {machine} , which may move it"
+                raise BadProgram(told, valid="a base that stands")
         return self.numbered("BASE_DATA", index, "$WORLD")
 
     def bas(self, command: Any, value: Any) -> None:

@@ -236,6 +236,15 @@ def test_what_the_files_do_not_decide_is_refused_with_its_line(body, told):
     assert str(caught.value).startswith("weld.src: ") and told in str(caught.value)
 
 
+def test_a_base_on_another_machine_is_refused():
+    on = "DECL MACHINE_DAT MACHINE_DEF[2]\nMACHINE_DEF[2]={MECH_TYPE #EASYS}\nDECL X MACHINE_FRAME_DAT[2]\n"
+    points = POINTS.replace("ENDDAT", on + "MACHINE_FRAME_DAT[1]={MACH_DEF_INDEX 2}\nENDDAT")
+    body = "BAS(#TOOL,2)\nBAS(#BASE,1)\nLIN XP1"
+    with pytest.raises(cl.ClearanceError, match="line 8: base 1 is on machine 2"):
+        program(body, points)
+    assert program(body, points.replace("#EASYS", "#ROBOT")).moves
+
+
 def test_each_module_has_points_and_procedures_of_its_own():
     points = "DEFDAT pick\nDECL E6POS XP1={X 7.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 180.0}\nDECL GLOBAL INT N=3\nENDDAT\n"
     pick = "DEF pick()\nstitch()\nEND\nDEF stitch()\nLIN XP1\nEND\n"
