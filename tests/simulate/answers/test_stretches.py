@@ -10,6 +10,7 @@ import pytest
 
 import clearance as cl
 from clearance.record.levels import LEVELS
+from clearance.simulate.answers.stretches import joined_spans
 from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -30,6 +31,11 @@ def spans_of(case: Case) -> dict[str, np.ndarray]:
     found = cl.check(case).session.motion_levels
     assert found is not None
     return {level: np.array(spans).reshape(-1, 2) for level, spans in found.spans.items()}
+
+
+def test_spans_that_overlap_or_meet_are_one():
+    spans = np.array([[9.0, 10.0], [3.0, 4.0], [0.0, 9.0], [1.0, 2.0], [11.0, 12.0]])
+    assert joined_spans(spans).tolist() == [[0.0, 10.0], [11.0, 12.0]]
 
 
 def finer(case: Case, times: int) -> Case:

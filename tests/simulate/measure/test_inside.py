@@ -44,16 +44,22 @@ def test_a_link_round_an_obstacle_is_in_contact_as_well() -> None:
     assert run.status == "contact"
 
 
-def test_where_the_hole_decides_the_pair_is_suspect_by_name_and_first_step() -> None:
-    outer = Polyhedron(BALL.vertices, faces_of(BALL)[1:])
+@pytest.mark.parametrize("at_once", [inside.AT_ONCE, 8])
+def test_where_the_hole_decides_the_pair_is_suspect_by_name_and_first_step(
+    at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(inside, "AT_ONCE", at_once)
+    there = np.array([5.0, 0.0, 0.0])
+    outer = Polyhedron(BALL.vertices + there, faces_of(BALL)[1:])
     middle = BALL.face(0).mean(axis=0)
-    run = moved(LINK, np.linspace(3.0, 1.0, 21)[:, None] * middle, outer)
+    run = moved(LINK, np.linspace(3.0, 1.0, 21)[:, None] * middle + there, outer)
     (notice,) = run.record.notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "inside")
     assert notice.text.startswith(
         "link l6 may be inside obstacle o0, or round it, at 0.200 s (step 20)"
     )
-    assert moved(LINK, np.linspace(3.0, 1.5, 21)[:, None] * middle, outer).record.notices == ()
+    quiet = moved(LINK, np.linspace(3.0, 1.5, 21)[:, None] * middle + there, outer)
+    assert quiet.record.notices == ()
 
 
 def test_larger_holes_make_it_suspect_and_sheets_do_not() -> None:
