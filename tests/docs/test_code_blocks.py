@@ -133,7 +133,7 @@ def test_case_files_keep_to_the_schema(block: CodeBlock, tmp_path):
     elif {"cases", "cell"} & content.keys():
         manifest_of(content, tmp_path / "batch.yaml")
     else:
-        assert set(content) <= {*Case.model_fields, "jobs", "cases", "repos"}
+        assert set(content) <= {*Case.model_fields, "jobs", "cases", "repos", "clearance"}
 
 
 def test_a_block_that_is_wrong_is_found():
