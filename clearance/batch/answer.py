@@ -34,7 +34,7 @@ STATUSES = ("clear", "near", UNUSED_WAIVER, NOT_PROVEN, "violated", "contact", "
 
 BASES = {
     "motion": "proven for the motion",
-    "samples": "looked at the samples only",
+    "samples": "measured at the samples only",
     "pose": "of a single pose",
 }
 """What verdicts can rest on, in words."""

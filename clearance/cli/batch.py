@@ -92,25 +92,27 @@ class _ShardParamType(click.ParamType):
 )
 @click.option("--fresh", is_flag=True, help="Measure all again, whatever the store has.")
 @click.option("--rehash", is_flag=True, help="Read every input file, whatever its times say.")
-@click.option("--strict", is_flag=True, help="A case that cannot be read is exit code 2, not 1.")
+@click.option("--strict", is_flag=True, help="Exit with 2, not 1, if a case cannot be read.")
 @asked_options(CheckOptions, USUAL)
 @click.option(
     "--baseline",
     metavar="STORE",
     type=click.Path(path_type=Path),
-    help="Tell what is new, worse, better or gone since the batch of this store.",
+    help="Older store to compare with: list findings that are new, worse, better or gone.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+@click.option(
+    "--quiet", is_flag=True, help="Print nothing but errors; the exit code has the answer."
+)
 def check(
     arguments: tuple[str, ...], place: Path, shard: tuple[int, int] | None, **given: Any
 ) -> int:
     """Checks many cases: those of manifests, case files and patterns of them.
 
-    Every row is kept in STORE as soon as it is there, so the same command goes on where an
-    interrupted one was, and measures only what has changed. Exit code: the greatest of all cases,
-    as of `clearance check`; 1 for one that cannot be read (2 with --strict), and for a waiver of
-    --waivers that is expired or that no case needs; 4 where some are not measured, as on a full
-    disk. A baseline does not change it; `clearance compare` has one of its own.
+    STORE keeps the row of every finished case, so the same command resumes an interrupted batch,
+    and measures only changed cases. Exit code: the greatest of all cases, as by `clearance check`;
+    1 for a case that cannot be read (2 with --strict), and for a waiver of --waivers that is expired
+    or that no case needs; 4 if some are not measured, as on a full disk. --baseline does not change
+    it; `clearance compare` has an exit code of its own.
     """
     from clearance.batch.manifest import batch_of
     from clearance.batch.output import ANSWER
@@ -121,7 +123,7 @@ def check(
     own = said(CheckOptions, given)
     options = made(CheckOptions, own, spelled_by(CheckOptions))
     if given["jobs"] is not None and given["scheduler"] is not None:
-        raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
+        raise click.UsageError("--jobs is for this machine; leave it out with --scheduler")
     if given["baseline"] is not None:
         _require_baseline(given["baseline"], place, shard)
     batch = batch_of(arguments, own)
@@ -143,18 +145,18 @@ def _require_baseline(baseline: Path, place: Path, shard: tuple[int, int] | None
             "--baseline is the store that --out writes; keep the batch before in another one"
         )
     if shard is not None:
-        raise click.UsageError("--baseline is of whole batches; compare once all parts are done")
+        raise click.UsageError("--baseline compares whole batches; compare once all parts are done")
     require_answer(baseline)
 
 
 @batch.command()
 @click.argument("place", metavar="STORE", type=click.Path(path_type=Path))
 def status(place: Path) -> int:
-    """How far the last batch of STORE is: done, missing, unreadable, failed, and the worst.
+    """Shows how far the last batch of STORE is: done, missing, unreadable, failed, and the worst.
 
-    Missing is what was never measured, and what is of files that have changed since; unreadable is
-    what was bad input when it was last tried. Exit code: the greatest of the cases that are done, 1
-    for one that is unreadable; 4 where some are missing.
+    A case is missing if it was never measured, or if its files have changed since. It is unreadable
+    if its last try found bad input. Exit code: the greatest of the cases that are done, 1 for an
+    unreadable one; 4 if some are missing.
     """
     from clearance.batch.status import status_of
     from clearance.batch.store import open_store
@@ -170,7 +172,7 @@ def status(place: Path) -> int:
 @click.argument("place", metavar="STORE", type=click.Path(path_type=Path))
 @click.argument("others", metavar="[PART]…", nargs=-1, type=click.Path(path_type=Path))
 def merge(place: Path, others: tuple[Path, ...]) -> int:
-    """Takes into STORE what parts of a batch (--shard) have measured.
+    """Adds the results of other parts of a batch (--shard) to STORE.
 
     PART is the folder or the file of a part that was measured elsewhere. The parts in STORE itself
     need not be named. The same `clearance batch` without --shard then writes the answer.

@@ -275,7 +275,7 @@ class TerminalWatch:
         if self._n_told <= MOST_TOLD:
             self._bar.console.print(shown(line), markup=False, highlight=False, soft_wrap=True)
         elif self._n_told == MOST_TOLD + 1:
-            self._bar.console.print("further failures are told at the end", markup=False)
+            self._bar.console.print("further failures are listed at the end", markup=False)
 
 
 def _standing(one: ItemResult) -> tuple[int, float]:

@@ -35,10 +35,12 @@ ARGUMENTS = {"recorded": "RUN"}
     "--baseline",
     metavar="DIR|FILE",
     type=click.Path(path_type=Path),
-    help="An older report or its findings.json: says what is new, worse, better, gone since.",
+    help="Older report, or its findings.json, to compare with: list findings that are new, worse, better or gone.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
-@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+@click.option(
+    "--quiet", is_flag=True, help="Print nothing but errors; the exit code has the answer."
+)
 @click.option("-q", "--brief", is_flag=True, help="Print the verdict and errors only.")
 @click.option(
     "--watch",
@@ -60,9 +62,9 @@ def check(
     """Measures the least clearance of every step of CASE.yaml.
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
-    written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear
+    written. With it, the same command resumes an interrupted run. Exit code: 0 clear
     (or near), 1 a limit is violated or, with tolerances, not proven, or a waiver is unused or expired, 2 bad
-    or suspect input, 3 the cross-check disagrees; the greatest that holds. A baseline does not
+    or suspect input, 3 the cross-check disagrees; the greatest that holds. --baseline does not
     change it: `clearance compare` has an exit code of its own.
     """
     spelled = spelled_by(CheckOptions, ARGUMENTS)
@@ -89,7 +91,7 @@ def check(
         return checked()
     if receipt is not None:
         raise click.UsageError(
-            "--watch and --receipt exclude each other: a receipt is of one report"
+            "--watch and --receipt exclude each other: a receipt belongs to one report"
         )
     from clearance.cli.watch import watch
 

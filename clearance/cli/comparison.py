@@ -21,15 +21,17 @@ if TYPE_CHECKING:
 @click.argument("before", metavar="A", type=click.Path(path_type=Path))
 @click.argument("now", metavar="B", type=click.Path(path_type=Path))
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Write a page with both curves here.")
-@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+@click.option(
+    "--quiet", is_flag=True, help="Print nothing but errors; the exit code has the answer."
+)
 def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     """Compares two runs of a case, or two batches: report folders, their findings.json, or stores.
 
-    Says what is new, worse, unchanged, better, gone, or not comparable and why. Exit code: 1 if B
-    breaks a rule, without a waiver, that it is not known to have broken as much in A, if its input
-    is suspect, not checked or warned of as that of A was not, or if less is proven or measured;
-    else 0. 2 bad input, 4 if the run into A or B was interrupted. Of two stores every case is
-    compared with the one of its name; one that A has and B has not is one of which less is known.
+    Lists findings that are new, worse, unchanged, better, gone, or not comparable and why.
+    Exit code: 1 if B is worse: it breaks a rule more than A did, without a waiver; its input has
+    a suspicion, a warning or an unchecked part that A had not; or less is proven or measured.
+    Else 0; 2 bad input; 4 if the run into A or B was interrupted. Two stores are compared case by
+    case, by name; a case that only A has counts as worse.
     """
     if _are_stores(before, now):
         return _compare_batches(before, now, out, quiet)
@@ -72,7 +74,7 @@ def _compare_batches(before: Path, now: Path, out: Path | None, quiet: bool) -> 
 
     if out is not None:
         raise click.UsageError(
-            "--out is of two runs; `clearance view STORE CASE` writes that of a case, of either store"
+            "--out compares two runs; `clearance view STORE CASE` writes the page of a case of either store"
         )
     found = compared_batches(before, now)
     if not quiet:

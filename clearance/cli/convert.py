@@ -29,14 +29,12 @@ _KINDS = ("trajectory", "scene", "poses")
     "--which",
     metavar="N",
     type=click.IntRange(min=1),
-    help="Which trajectory of a file that holds several, from 1.",
+    help="Number of the trajectory to read, from 1, if IN has several.",
 )
-@click.option("--topic", help="Which topic of a bag.")
+@click.option("--topic", help="Topic of the bag to read.")
 @package_dir_option("package:// and model:// of a scene are")
 @INCLUDE_OPTION
-@click.option(
-    "--force", is_flag=True, help="Overwrite OUT, and meshes beside it, where they are there."
-)
+@click.option("--force", is_flag=True, help="Overwrite OUT and the meshes beside it.")
 def convert(
     in_file: Path,
     out_file: Path,
@@ -47,13 +45,13 @@ def convert(
     includes: tuple[tuple[str, str], ...],
     force: bool,
 ) -> int:
-    """IN as OUT, by suffix: a trajectory as a CSV table or a JointTrajectory message in YAML or JSON; poses as a
-    CSV table or stamped poses in YAML or JSON; a scene as this package's YAML.
+    """Converts IN into OUT, by the suffix of OUT.
 
-    IN may be a bag, or a scene in SDF, MJCF or of MoveIt. Every number comes back bit for bit; times of
-    messages are whole nanoseconds, and a note says where they were not. What OUT cannot hold is told, a line
-    each; warnings stand in a scene, so that each check tells them. Meshes that are written out in a scene get
-    files beside OUT. Exit code: 0, or 2 for bad input.
+    A trajectory becomes a CSV table, or a JointTrajectory message in YAML or JSON; poses become a CSV table,
+    or stamped poses in YAML or JSON; a scene becomes this package's YAML. IN may also be a bag, or a scene in
+    SDF, MJCF or of MoveIt. Numbers stay the same bit for bit; times of messages are rounded to nanoseconds,
+    with a note. A line names each thing that OUT cannot hold. Warnings are written into a scene, so that each
+    check repeats them. Meshes inside a scene get files beside OUT. Exit code: 0, or 2 for bad input.
     """
     from clearance.files import refuse_there, write_files
     from clearance.formats.conversion.files import Conversion, converted, kind_of

@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 @click.option(
     "--kind", type=click.Choice([*KINDS, "all"]), required=True, help="Kind of change to look for."
 )
-@click.option("--out", metavar="DIR", type=OutputPath(), help="Where the changed case goes.")
+@click.option("--out", metavar="DIR", type=OutputPath(), help="Folder for the changed case.")
 @asked_options(Request)
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
-    """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
+    """Finds the least change with which every rule of CASE is proven to hold, and a proven lower bound for it.
 
     waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, with --turn a turn,
-    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, of
-    each robot, and the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and
-    gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
+    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, for
+    each robot, and for the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html
+    and gain.json. Exit code: 0 if every rule is proven to hold after the change, 1 if not, 2 for bad input.
     """
     from clearance.case.case_file import load_case
     from clearance.case.packed import refuse_zip

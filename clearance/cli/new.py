@@ -66,82 +66,99 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
 @click.command()
 @click.argument("out_dir", metavar="OUT_DIR", type=OutputPath())
 @click.option(
-    "--robot", required=True, metavar="FILE", help="URDF, or a file that xacro makes it of."
+    "--robot",
+    required=True,
+    metavar="FILE",
+    help="Robot: URDF, a xacro file, or a name that `clearance robots` lists.",
 )
-@click.option("--trajectory", metavar="FILE", help="CSV, JointTrajectory in YAML or JSON, a bag.")
-@click.option("--topic", help="Which topic of a bag.")
-@click.option("--which", type=click.IntRange(min=1), help="Which of several, from 1.")
+@click.option(
+    "--trajectory", metavar="FILE", help="Motion: CSV, JointTrajectory in YAML or JSON, or a bag."
+)
+@click.option("--topic", help="Topic of the bag to read.")
+@click.option(
+    "--which",
+    type=click.IntRange(min=1),
+    help="Number of the trajectory to read, from 1, if the file has several.",
+)
 @click.option(
     "--units",
     multiple=True,
     type=click.Choice([*_UNITS]),
-    help="Unit of a CSV whose header names none; may be given again.",
+    help="Unit of a CSV whose header names none. May be given again.",
 )
 @click.option(
     "--period",
     type=click.FloatRange(min=0, min_open=True),
-    help="[s] From row to row of a CSV without times.",
+    help="Time from row to row of a CSV without times [s].",
 )
 @click.option(
     "--joints",
     type=_NamesParamType(),
     metavar="A,B,…",
-    help="The columns of a CSV without a header.",
+    help="Joints of the columns of a CSV without a header, in order.",
 )
 @click.option(
     "--columns",
     type=SortParamType(COLUMNS),
     metavar="A,B=C,…",
-    help="Columns of the CSV to read, and no others: time, joint names, or joint=column.",
+    help="Columns of the CSV to read, no others: time, joint names, or joint=column.",
 )
 @click.option(
     "--states",
     type=_NamesParamType(),
     metavar="A,B,…",
-    help="Without a trajectory: states of the SRDF, or keyframes of MJCF, between which the joints go straight.",
+    help="Move through these states of the SRDF (or keyframes of MJCF), in place of a trajectory.",
 )
 @click.option(
-    "--program", metavar="FILE", help="Robot program, ours or a controller's, for a trajectory."
+    "--program",
+    metavar="FILE",
+    help="Robot program to follow: ours, URScript, RAPID, KRL or FANUC LS.",
 )
-@click.option("--entry", metavar="NAME", help="The procedure of the program that runs.")
-@click.option("--flange", metavar="LINK", help="The controller's flange.  [default: tool0]")
+@click.option("--entry", metavar="NAME", help="Procedure of the program to run.")
+@click.option(
+    "--flange", metavar="LINK", help="Link that is the controller's flange.  [default: tool0]"
+)
 @click.option(
     "--skip",
     multiple=True,
     metavar="NAME",
-    help="Instruction of the program to leave out, which moves nothing; may be given again.",
+    help="Instruction of the program to leave out, one that moves nothing. May be given again.",
 )
 @click.option(
     "--start",
     type=_StartParamType(),
     metavar="JOINT=VALUE,…|STATE",
-    help="Joints at the program's beginning [rad or m], or a state of the SRDF.",
+    help="Joint positions at the start of the program [rad or m], or a state of the SRDF.",
 )
-@click.option("--scene", metavar="FILE", help="YAML, SDF, or a scene of MoveIt.")
+@click.option("--scene", metavar="FILE", help="Obstacles: YAML, SDF, or a MoveIt scene.")
 @INCLUDE_OPTION
-@click.option("--srdf", metavar="FILE", help="Asks for self-clearance, and excuses pairs of it.")
+@click.option(
+    "--srdf",
+    metavar="FILE",
+    help="SRDF: measure self-clearance, except for the pairs that it excuses.",
+)
 @click.option(
     "--rest",
     multiple=True,
     metavar="STATE",
-    help="State of the SRDF or MJCF for joints that nothing moves; may be given again.",
+    help="State of the SRDF or MJCF for joints that nothing moves. May be given again.",
 )
-@click.option("--joint-limits", metavar="FILE", help="joint_limits.yaml of MoveIt.")
-@click.option("--controllers", metavar="FILE", help="ros2_controllers.yaml.")
+@click.option("--joint-limits", metavar="FILE", help="Joint limits: joint_limits.yaml of MoveIt.")
+@click.option("--controllers", metavar="FILE", help="Tracking tolerances: ros2_controllers.yaml.")
 @click.option(
     "--package-dir",
     "package_dirs",
     metavar="DIR",
     multiple=True,
-    help="Where package:// is looked for; may be given again.",
+    help="Folder to search for package://. May be given again.",
 )
 @click.option(
     "--geometry",
     type=click.Choice(["collision", "visual", "collision_or_visual"]),
-    help="Which shapes of the links.  [default: collision; visual where there are no others]",
+    help="Shapes of the links to measure.  [default: collision; visual where there are no others]",
 )
 @_with_xacro
-@click.option("--check", "at_once", is_flag=True, help="Check it too, as the last line says.")
+@click.option("--check", "at_once", is_flag=True, help="Run the printed `clearance check` at once.")
 @click.option("--force", is_flag=True, help="Overwrite the files of a case in OUT_DIR.")
 def new(
     out_dir: Path,
@@ -172,10 +189,10 @@ def new(
     at_once: bool,
     force: bool,
 ) -> int:
-    """A case in OUT_DIR from what there is: case.yaml to edit, trajectory.csv, scene.yaml.
+    """Writes a case into OUT_DIR from existing files: case.yaml to edit, trajectory.csv, scene.yaml.
 
-    Robot and meshes stay where they are. What was taken and what was assumed is printed, a line
-    each, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check
+    Robot and meshes stay where they are. A line is printed for each input taken and each
+    assumption made, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check
     that of the check.
     """
     from clearance.case.new_case.files import new_case
@@ -230,7 +247,7 @@ def _motion(
         return table
     if "file" not in program:
         option = next(iter(program)).replace("link", "flange")
-        raise click.UsageError(f"--{option} is of a program; --program FILE is missing")
+        raise click.UsageError(f"--{option} needs --program FILE")
     if table or states:
         raise click.UsageError("both --program and another motion; one of them")
     start = program.pop("start", None)
@@ -282,7 +299,7 @@ def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:
     notes = [*made.lost, *(() if at_once else made.notes)]
     if len(notes) > _MOST_NOTES:
         left = len(notes) - _MOST_NOTES
-        notes = [*notes[:_MOST_NOTES], f"and {left} more, in the files or told by the check"]
+        notes = [*notes[:_MOST_NOTES], f"and {left} more; `clearance check` prints them"]
     for label, lines in (
         ("took", made.taken),
         ("assumed", made.assumed),

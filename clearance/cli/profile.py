@@ -34,11 +34,11 @@ def profile() -> None:
 def compare(
     a: str, b: str, out: Path | None, field: bool, limit: float | None, limit_mm: float | None
 ) -> None:
-    """How far the outlines in files A and B differ, with a proven error: Hausdorff distance.
+    """Measures how far the outlines in files A and B differ: Hausdorff distance, with a proven error.
 
-    Lengths are in mm where a file is a swept profile or --limit-mm is given, else in the unit of the files.
+    Lengths are in mm if a file is a swept profile or --limit-mm is given, else in the unit of the files.
 
-    Each is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf). Exit code: 0,
+    A and B are each a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf). Exit code: 0,
     1 beyond the limit or not proven to be within it, 2 bad input.
     """
     if limit is not None and limit_mm is not None:
@@ -155,8 +155,10 @@ def _array(ends):
 @click.option(
     "--nearest", "mode", flag_value="nearest", default=True, help="Least Hausdorff distance."
 )
-@click.option("--outside", "mode", flag_value="outside", help="Least area that contains it.")
-@click.option("--inside", "mode", flag_value="inside", help="Largest area that stays clear of it.")
+@click.option("--outside", "mode", flag_value="outside", help="Least area that contains PROFILE.")
+@click.option(
+    "--inside", "mode", flag_value="inside", help="Largest area that stays clear of PROFILE."
+)
 @click.option(
     "--margin-mm", type=SortParamType(LENGTH), default="0", help="Least gap to keep.  [default: 0]"
 )
@@ -167,7 +169,7 @@ def _array(ends):
     "--most-seconds",
     type=click.FloatRange(min=0.0),
     default=10.0,
-    help="Processor time after which the solve of the sketch stops [s].  [default: 5]",
+    help="Processor time after which the solve of the sketch stops [s].  [default: 10]",
 )
 @click.option("--out", required=True, type=OutputPath(), help="Sketch to write, .yaml.")
 @click.option("--picture", type=OutputPath(), help="Picture to write, .svg or .png.")
@@ -252,7 +254,9 @@ def _tell_fit(found) -> None:
 @click.option("--obstacles", help="These obstacles as well, separated by commas.")
 @click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
 @click.option(
-    "--tolerance", type=SortParamType(LENGTH), help="[mm] How far it may exceed.  [default: 0.5]"
+    "--tolerance",
+    type=SortParamType(LENGTH),
+    help="Greatest excess over the swept area [mm].  [default: 0.5]",
 )
 @click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
 @click.option(

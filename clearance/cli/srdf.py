@@ -19,7 +19,7 @@ _Command = TypeVar("_Command", bound=Callable)
 
 @click.group()
 def srdf() -> None:
-    """Pairs of links that are excused from self-clearance, held against the robot's geometry."""
+    """Check, or make, the list of link pairs that are excused from self-clearance."""
 
 
 def _robot_options(command: _Command) -> _Command:
@@ -37,7 +37,7 @@ def _robot_options(command: _Command) -> _Command:
             type=click.Choice(["collision", "visual", "collision_or_visual"]),
             default="collision",
             show_default=True,
-            help="Which shapes of the links are looked at.",
+            help="Shapes of the links to measure.",
         ),
         package_dir_option("package:// is"),
         *XACRO_OPTIONS,
@@ -63,8 +63,8 @@ def audit(
 ) -> int:
     """Whether the pairs that ROBOT.srdf excuses can ever meet within the joint limits of ROBOT.urdf.
 
-    Each is proven apart, found to meet (with the joint positions), or left undecided. Exit code: 0
-    all pairs excused as Never are proven apart, 1 one of them is not, 2 bad input.
+    Each is proven separate, found to meet (with the joint positions), or left undecided. Exit code: 0
+    all pairs excused as Never are proven separate, 1 one of them is not, 2 bad input.
     """
     from clearance.cli.progress import shown_progress
     from clearance.formats.robot.srdf import load_srdf
@@ -101,7 +101,7 @@ def make(
 ) -> int:
     """An SRDF for ROBOT.urdf: neighbours, and pairs that are proven never to meet, are excused.
 
-    What can meet, and what is undecided, is told in comments. Exit code: 0, or 2 for bad input.
+    Comments list the pairs that can meet and those that are undecided. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.progress import shown_progress
     from clearance.errors import unwritable

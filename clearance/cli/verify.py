@@ -104,7 +104,9 @@ def write_receipt_of(
     type=click.Path(path_type=Path),
     help="A --waivers file of the run, if they have moved; give all of them, in the same order.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+@click.option(
+    "--quiet", is_flag=True, help="Print nothing but errors; the exit code has the answer."
+)
 def verify(
     folder: Path,
     case_file: Path | None,

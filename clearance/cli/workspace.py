@@ -30,7 +30,7 @@ MOST_LINKS = 8
 @click.option(
     "--within-mm",
     type=SortParamType(LENGTH),
-    help="How coarse the pieces of the sweep are; smaller is tighter, slower.  [default: 5]",
+    help="Size of the pieces of the sweep; smaller is tighter and slower.  [default: 5]",
 )
 @click.option(
     "--convex-parts",
@@ -51,10 +51,10 @@ def workspace(
     limit_litres: float | None,
     as_json: bool,
 ) -> int:
-    """The region that more than one robot passes through, whatever the timing of their trajectories.
+    """Finds the region that more than one robot passes through, whatever the timing of their trajectories.
 
-    The robots are those of one CASE.yaml, or of several that are of one cell, in one world frame.
-    What a robot carries belongs to it; what it shares with a robot that it stands on is not
+    The robots are those of one CASE.yaml, or of several cases of one cell, in one world frame.
+    Carried parts belong to their robot. Space shared with a robot that it stands on is not
     counted. The volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
     """
     from clearance.case.case_file import load_case

@@ -308,7 +308,7 @@ def _no_number(before: Finding, now: Finding) -> str:
         return ""
     if before.status == now.status == Status.CLEAR or before.text == now.text:
         return ""
-    return "how far it is broken is told in words, and they differ"
+    return "how far it is broken is only known in words, and they differ"
 
 
 def _lost_excuse(before: Finding, now: Finding) -> str:
@@ -345,7 +345,7 @@ def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
 
 def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
     if (old.basis, new.basis) == ("motion", "samples"):
-        yield "the motion was proven, and only the samples are looked at"
+        yield "the motion was proven, and now only the samples are measured"
     if old.basis != "pose" == new.basis:
         yield "a motion was checked, and now only a single pose is"
     if (old.method, new.method) == ("exact", "paper"):

@@ -42,7 +42,7 @@ def why_incomplete(session: Session) -> str:
         return "where clocks are not tied only the nearest pair of each step is known"
     for rule in record.rules:
         if session.is_cut(rule, release_level(rule.limits)):
-            return f"more than {MOST_NEAR_STEPS:,} steps are near; only the nearest pair of each is told"
+            return f"more than {MOST_NEAR_STEPS:,} steps are near; only the nearest pair of each is listed"
     return ""
 
 

@@ -159,7 +159,7 @@ class Verdict:
         if self.unproven_motion:
             text = f"{shown(NOT_PROVEN)} on part of the motion, {text} as measured"
         if self.basis == SAMPLES:
-            text += " at the samples only" if passing else ", looked at the samples only"
+            text += " at the samples only" if passing else ", measured at the samples only"
         elif self.basis == POSE:
             text += " at a single pose"
         if self.clocks:

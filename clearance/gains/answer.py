@@ -64,7 +64,7 @@ FARTHER = (0.05, 0.1)
 
 @dataclass(frozen=True, eq=False)
 class Gain:
-    """What a change comes to.
+    """The result of a search for the least change.
 
     Attributes:
         request: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.

@@ -83,7 +83,7 @@ def every_kind(
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:
-                yield Trial(name, None, "the worst pair is of no obstacle that stands free")
+                yield Trial(name, None, "the worst pair has no obstacle that stands free")
                 continue
             own["obstacle"] = nearest
         try:

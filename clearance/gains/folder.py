@@ -83,7 +83,7 @@ def refuse_taken(folder: Path, names: Collection[str], *, force: bool) -> None:
         )
         if other:
             raise Unwritable(
-                f"holds {other[0]!r}, which is of no report",
+                f"holds {other[0]!r}, which belongs to no report",
                 where=str(there),
                 valid="another place",
             )

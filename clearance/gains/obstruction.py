@@ -26,11 +26,11 @@ NOT_APART = "small changes of this kind do not part them there"
 NOT_FOUND = "the search found no change that gives more"
 NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
 TOO_FAR = "no change within what is allowed is large enough"
-TOO_SLOW = "no slow-down that was looked at gives more"
+TOO_SLOW = "no slow-down that was tried gives more"
 HOWEVER_SLOW = "however slow it goes, it is no farther from them by then"
 AT_REST = "they stand there whatever the delay"
 ON_ITS_WAY = "its path leads there whatever the delay"
-TOO_LATE = "no delay that was looked at gives more"
+TOO_LATE = "no delay that was tried gives more"
 
 
 SHOWN = 5e-7

@@ -152,7 +152,7 @@ class Request:
         None, NAME, "Obstacle to move; needed if there are several.", of=("obstacle",)
     )
     keep: tuple[Range, ...] = option(
-        (), STRETCH, "Stretch of the run [s] in which a path stays as it is, with the samples next to it.",
+        (), STRETCH, "Stretch of the run in which the path stays as it is [s], with the samples next to it.",
         many=True, of=("waypoints",),
     )  # fmt: skip
     keep_ends: bool = option(
@@ -163,7 +163,7 @@ class Request:
         many=True, of=("waypoints",),
     )  # fmt: skip
     tool: str | None = option(
-        None, NAME, "Link that is the tool; else the first that all joints of the path move.",
+        None, NAME, "Link that is the tool; if not given, the first link that all joints of the path move.",
         of=("waypoints", "base"),
     )  # fmt: skip
     most_delay: float = option(MOST_DELAY, SPAN, "Largest delay to try [s].")
@@ -172,21 +172,27 @@ class Request:
         of=("obstacle", "base"),
     )  # fmt: skip
     turn: Turn | None = option(
-        None, TURN, "Axis of the world for a turn beside the shift.", of=("obstacle", "base")
+        None,
+        TURN,
+        "Allow a turn about this axis of the world, beside the shift.",
+        of=("obstacle", "base"),
     )
     about: tuple[float, float, float] | None = option(
-        None, POINT, "Point of that axis; else the origin of what is moved.", needs=("turn", None)
+        None,
+        POINT,
+        "Point on the axis of --turn; if not given, the origin of the moved body.",
+        needs=("turn", None),
     )
     most_turn: float | None = option(
-        None, ANGLE, "Largest turn, either way; else half a turn.", needs=("turn", None)
+        None, ANGLE, "Largest turn either way; if not given, half a turn.", needs=("turn", None)
     )
     tool_path: str | None = option(
         None, one_of(TOOL_PATHS),
-        "moved: a base takes its tool along. kept: the tool stays, by joints that make up for the base.",
+        "moved: the tool moves with the base. kept: the joints change so that the tool stays where it was.",
         of=("base",),
     )  # fmt: skip
     slow_down: bool = option(
-        False, SWITCH, "Slow the robot down in place of a later begin.", of=("timing",)
+        False, SWITCH, "Slow the robot down instead of starting it later.", of=("timing",)
     )
 
     @property

@@ -207,7 +207,7 @@ def _not_in_time(gain: Gain) -> str:
     looked = max(gain.size, gain.lower_bound)
     slow = gain.request.slow_down
     finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.request.most_delay)
-    more = "; longer ones were not looked at"
+    more = "; longer ones were not tried"
     if looked + finest >= most:
         looked, more = most, ""
     how = (

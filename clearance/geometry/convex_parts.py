@@ -42,7 +42,7 @@ MOST_CUT = 30_000
 MOST_COMPARED = 200_000_000
 """Faces of a hull times triangles whose depth below it is measured: about 2 s."""
 
-VOLUMES = "volumes shared with a closed body are of its own mesh"
+VOLUMES = "volumes shared with a closed body come from its own mesh"
 """The note on bodies that are solids for manifold3d: only their depth comes from a substitute."""
 
 SAMPLED = 64

@@ -27,7 +27,7 @@ ROUNDED = 3
 
 @dataclass(frozen=True)
 class Verification:
-    """What a receipt comes to.
+    """The result of verifying a receipt.
 
     Attributes:
         name: of the case. source: its file; empty where it was given as an object. kind: "full" or "sampled".

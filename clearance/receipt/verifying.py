@@ -203,7 +203,7 @@ def cases_of(
     if isinstance(case, Case):
         own = case
     elif case is None and not head["case"]:
-        raise NoReceipt("the receipt is of a case without a file", valid="give the case")
+        raise NoReceipt("the receipt belongs to a case without a file", valid="give the case")
     else:
         own = load_case(_path(place, head["case"], case, "--case CASE.yaml"))
     moved: list[str | PathLike[str] | None] = [*waivers] or [None] * len(head["waivers"])
@@ -261,7 +261,7 @@ def _require_data(data: CaseData, receipt: Receipt) -> None:
         if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
             other = other_maker(receipt)
             raise BadSyntax(
-                f"it is of other numbers than those of case {data.name!r}{other and '; made by '}{other}",
+                f"its numbers are not those of case {data.name!r}{other and '; made by '}{other}",
                 valid="the case and the tolerances for which the receipt was written",
             )
         if receipt.claims.shape != (len(data.rules), data.n_intervals):

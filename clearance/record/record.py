@@ -72,7 +72,7 @@ class Disagreement:
 
 @dataclass(frozen=True)
 class CrossCheck:
-    """Our answers held against a peer's, step by step.
+    """Our answers compared with a peer's, step by step.
 
     Attributes:
         greatest_difference: [m] over all steps.

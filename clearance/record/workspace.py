@@ -20,7 +20,7 @@ class SharedLinks:
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """What robots share.
+    """The region that robots share.
 
     Attributes:
         robots: each with its name. region: the surface of what more than one passes through, world frame.

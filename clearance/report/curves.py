@@ -90,7 +90,7 @@ class MoreCurve:
 def more_curves(record: Record) -> Iterator[MoreCurve]:
     """The curves; none where there are neither tolerances nor a recording."""
     if record.commanded is not None:
-        yield _least("as asked", record.commanded.times, record.commanded.clearances, "dash")
+        yield _least("as commanded", record.commanded.times, record.commanded.clearances, "dash")
     if record.budget:
         times, between = record.motions[0].times, least_between(record.budget)
         proven = least_proven(record.budget)

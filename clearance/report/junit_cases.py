@@ -197,7 +197,7 @@ def _of_minimum(record: Record, judge: PairJudge, minimum: PairMinimum) -> TestR
 def _of_certificate(record: Record, judgement: Judgement) -> TestResult:
     group, name = "certificate", "motion between the samples"
     if record.certificate is None:
-        text = "looked at the samples only: nothing is said about the motion between them"
+        text = "measured at the samples only: the motion between them is not checked"
         return TestResult(group, name, text, skipped=True)
     violated = any(map(_is_violated, judgement.judging))
     text = certified_text(certified_of(record, record.certificate))

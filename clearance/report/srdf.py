@@ -29,11 +29,11 @@ def audit_headline(pairs: Sequence[ExcusedPair]) -> str:
     """What became of those that are said never to meet."""
     never = [pair for pair in pairs if pair.reason == NEVER]
     if not never:
-        return f"no pair is excused as {NEVER}; {count(len(pairs), 'excused pair')} looked at"
+        return f"no pair is excused as {NEVER}; {count(len(pairs), 'excused pair')} checked"
     parts = [
         (sum(pair.refuted for pair in never), "can meet"),
         (sum(pair.unproven for pair in never), "undecided"),
-        (sum(pair.finding.status is PairStatus.APART for pair in never), "proven apart"),
+        (sum(pair.finding.status is PairStatus.APART for pair in never), "proven separate"),
     ]
     told = ", ".join(f"{n} {what}" for n, what in parts if n)
     return f"of {count(len(never), 'pair')} excused as {NEVER}: {told}"
@@ -57,7 +57,7 @@ def _told(found: PairFinding, kinds: Mapping[str, str]) -> str:
         f"{name} {joint_value(kinds[name], value)}" for name, value in found.positions.items()
     )
     if found.status is PairStatus.APART:
-        return f"proven apart: at least {mm(found.lower_bound)} mm; {mm(found.least)} mm occurs"
+        return f"proven separate: at least {mm(found.lower_bound)} mm; {mm(found.least)} mm occurs"
     at = f" at {where}" if where else ""
     if found.status is PairStatus.MEETS:
         return f"can meet{at}"
@@ -73,7 +73,7 @@ def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair]) -> str:
     kinds = {joint.name: joint.kind for joint in robot.joints}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(robot.name)}>"]
     lines.append("  <!-- Never: proven for all positions within the joint limits. -->")
-    lines.append("  <!-- Adjacent: joined by one moving joint; not looked at. -->")
+    lines.append("  <!-- Adjacent: joined by one moving joint; not checked. -->")
     for each in pairs:
         ends = f"link1={quoteattr(each.pair.link_a)} link2={quoteattr(each.pair.link_b)}"
         if each.reason is not None:
@@ -91,5 +91,5 @@ def proposal_headline(pairs: Sequence[ProposedPair]) -> str:
     n_adjacent = sum(each.reason == ADJACENT for each in pairs)
     left = [each.finding.status for each in pairs if each.reason is None and each.finding]
     n_meet, n_open = left.count(PairStatus.MEETS), left.count(PairStatus.UNDECIDED)
-    told = f"{n_never} proven never to meet, {n_adjacent} adjacent (not looked at)"
+    told = f"{n_never} proven never to meet, {n_adjacent} adjacent (not checked)"
     return f"{count(len(pairs), 'pair')}: {told}; to be measured: {n_meet} can meet, {n_open} undecided"

@@ -38,7 +38,7 @@ def check(
 
 
 def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
-    """What a question comes to.
+    """Answers a question.
 
     Raises:
         NothingToMeasure: no pair is left.

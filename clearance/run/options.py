@@ -124,7 +124,7 @@ class QuestionOptions:
         "limit, a proven bound for the rest. minimum: the worst moment only.",
     )  # fmt: skip
     certify: bool = option(
-        True, SWITCH, "Prove the motion between the samples, or look at the samples only.",
+        True, SWITCH, "Prove the motion between the samples, or measure the samples only.",
         off="samples_only",
     )  # fmt: skip
     certify_gap: float = option(

@@ -77,7 +77,7 @@ class Register:
             )
         if entity.sketch is not self.sketch or self.entities.get(entity.name) is not entity:
             raise UnknownEntity(
-                f"{entity.name!r} is of another sketch", valid="an entity of this one"
+                f"{entity.name!r} belongs to another sketch", valid="an entity of this one"
             )
         return entity
 

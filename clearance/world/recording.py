@@ -71,7 +71,7 @@ def recording_of(
     """
     _require_joints(driven, commanded)
     if timing.after == "loop":
-        raise BadMotion("what was asked begins again and again", valid="after: hold")
+        raise BadMotion("the commanded motion begins again and again", valid="after: hold")
     times = _times_of_both(driven, timing.run_times(commanded.times))
     was = dict(zip(driven.joint_names, positions_along(driven, times).T, strict=True))
     own = positions_along(commanded, (times - timing.start) * timing.rate).T
@@ -103,8 +103,8 @@ def _require_joints(driven: Trajectory, commanded: Trajectory) -> None:
     missing = [name for name in commanded.joint_names if name not in driven.joint_names]
     if missing:
         raise MissingKey(
-            f"it does not tell of joints {listed(missing, 8)}, which were to move",
-            valid=f"it tells of {listed([*driven.joint_names], 8)}",
+            f"it does not have joints {listed(missing, 8)}, which were to move",
+            valid=f"it has {listed([*driven.joint_names], 8)}",
         )
 
 
@@ -114,7 +114,7 @@ def _times_of_both(driven: Trajectory, commanded: np.ndarray) -> np.ndarray:
     if not start < end:
         spans = [f"{times[0]:.12g} to {times[-1]:.12g} s" for times in (driven.times, commanded)]
         raise BadTime(
-            f"it is of {spans[0]}, and what the robot was asked of {spans[1]}",
+            f"it covers {spans[0]}, and the commanded motion {spans[1]}",
             valid=f"--recorded-offset {commanded[0] - driven.times[0]:.12g} if both begin at one moment",
         )
     times = np.union1d(driven.times, commanded)

@@ -64,7 +64,7 @@ class PairPattern:
 
 @dataclass(frozen=True)
 class Allowance(PairPattern):
-    """Pairs that are not measured; of a link and an obstacle the first pattern is of the link."""
+    """Pairs that are not measured; for a link and an obstacle the first pattern names the link."""
 
     def __str__(self) -> str:
         return " ".join([f"allowed by {list(self.between)}", *([self.when] if self.when else [])])

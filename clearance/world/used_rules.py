@@ -51,4 +51,6 @@ def _require_match(rule: Rule, pairs: Sequence[_Names], bodies: Sequence[str]) -
     for pattern in rule.between:
         if not any(matches(name, pattern) for name in bodies):
             raise UnknownLink(f"no body is called {pattern!r}", valid=nearest_name(pattern, bodies))
-    raise BadInput(f"no pair is of {list(rule.between)}", valid="patterns of two bodies of a pair")
+    raise BadInput(
+        f"no pair matches {list(rule.between)}", valid="patterns of two bodies of a pair"
+    )

@@ -74,7 +74,7 @@ def test_less_that_is_known_and_new_suspect_input_alarm(folder, capsys):
     assert code == 1 and lines[0].startswith(
         "since the baseline: NEW, WORSE OR LESS KNOWN in 4 cases"
     )
-    known = "less is known: the motion was proven, and only the samples are looked at"
+    known = "less is known: the motion was proven, and now only the samples are measured"
     assert lines[1] == f"{known} (t000 and 3 more)"
 
 
@@ -137,7 +137,7 @@ def test_a_mistake_is_one_line(folder, capsys):
     for typed, code, told in (
         (["old", "part"], 4, "part: this batch has no answer yet"),
         (["old", "."], 2, "one is a store, the other is a run"),
-        (["old", "new", "--out", "page"], 2, "--out is of two runs"),
+        (["old", "new", "--out", "page"], 2, "--out compares two runs"),
         (["old", "nothing"], 2, "one is a store, the other is a run"),
     ):
         assert run(["compare", *typed]) == code
@@ -167,7 +167,7 @@ def compared_lines(capsys):
     ("out", "more", "baseline", "told"),
     [
         ("old", (), "old", "--baseline is the store that --out writes"),
-        ("new", ("--shard", "1/2"), "old", "--baseline is of whole batches"),
+        ("new", ("--shard", "1/2"), "old", "--baseline compares whole batches"),
         ("new", (), "none", "none: not a store"),
         ("new", (), "part", "part: this batch has no answer yet"),
     ],

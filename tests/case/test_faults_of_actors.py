@@ -61,7 +61,7 @@ FAULTS = [
     (("limits:", LATER, "door.csv", GONE), BadTime, "carry[1]: part 'door' is not in the cell from 0.6 s to"),
     # rules and allowances
     (('["left/*", fixture]', '["left/*", fixtur]'), UnknownLink, "rules[0].between: no body is called 'fixtur'"),
-    (('["left/*", fixture]', '["left/*", "left/*"]'), BadInput, "limits.rules[0].between: no pair is of"),
+    (('["left/*", fixture]', '["left/*", "left/*"]'), BadInput, "limits.rules[0].between: no pair matches"),
     (("fail: 0.001, from", "from"), BadInput, "limits.rules[0]: neither fail nor warn is given"),
     (("fail: 0.001", "fail: 0.001, warn: 0.0001"), BadDimension, "rules[0]: the warn limit 0.1 mm is below"),
     (("warn: 0.03", "warn: 0.003"), BadDimension, "the warn limit 3 mm is below the fail limit 5 mm"),

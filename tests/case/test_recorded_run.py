@@ -22,7 +22,7 @@ from tests.formats.making_case import TWO_JOINTS, load_small
 from tests.formats.making_cell import load_cell
 
 PATH = "time,shoulder,lift\n0,0,0\n1,0.1,0.01\n2,0.3,0.01\n"
-APART = "it is of 5 to 6 s, and what the robot was asked of 0 to 1 s; --recorded-offset -5 if both begin"
+APART = "it covers 5 to 6 s, and the commanded motion 0 to 1 s; --recorded-offset -5 if both begin"
 FAR_OFF = (
     "joint 'shoulder' is 0.5 rad off its course at 0.000 s; at most 0.2 rad; is its clock another "
     "(--recorded-offset)?"
@@ -79,7 +79,7 @@ def test_joints_that_were_to_stay_are_held_against_where():
     ("driven", "timing", "kind", "told"),
     [
         (trajectory([5, 6], [0, 0], [0, 0]), AS_GIVEN, BadTime, APART),
-        (trajectory([0, 1], [0, 0]), AS_GIVEN, MissingKey, "does not tell of joints b, which were to move"),
+        (trajectory([0, 1], [0, 0]), AS_GIVEN, MissingKey, "does not have joints b, which were to move"),
         (trajectory([0, 1], [0, 0], [0, 0]), Timing(after="loop"), BadInput, "begins again and again"),
     ],
 )  # fmt: skip
@@ -129,11 +129,11 @@ def test_a_bag_of_joint_states_is_a_run(tmp_path):
 @pytest.mark.parametrize(
     ("text", "kind", "told"),
     [
-        ("time,shoulder\n0,0\n2,0.3\n", MissingKey, "recorded: run.csv: it does not tell of joints lift"),
+        ("time,shoulder\n0,0\n2,0.3\n", MissingKey, "recorded: run.csv: it does not have joints lift"),
         ("time,shoulder,elbow\n0,0,0\n", UnknownJoint, "unknown joint 'elbow'"),
         ("time,shoulder,lift\n", ClearanceError, "run.csv"),
         ("", ClearanceError, "run.csv"),
-        ("time,shoulder,lift\n9,0,0\n10,0,0\n", BadTime, "it is of 9 to 10 s"),
+        ("time,shoulder,lift\n9,0,0\n10,0,0\n", BadTime, "it covers 9 to 10 s"),
         ("time,shoulder,lift\n0,0.5,0\n2,0.5,0\n", BadInput, FAR_OFF),
     ],
 )  # fmt: skip
@@ -216,7 +216,7 @@ def test_on_the_command_line(tmp_path, capsys):
     file, own = str(tmp_path / "case.yaml"), str(tmp_path / "run.csv")
     code = run(["check", file, "--motion", "recorded", own, "--unproven-ok"])
     told = capsys.readouterr().out
-    assert code == 0 and "recorded    as asked " in told
+    assert code == 0 and "recorded    as commanded " in told
     assert "run.csv is off by at most (99 % of samples): shoulder 0.0393 rad (0.0393 rad)" in told
     for wrong, says in (
         ([file, "--motion", "recorded"], "RUN: nothing is given; motion 'recorded' needs the file"),

@@ -28,7 +28,7 @@ def test_the_exit_code_is_that_of_the_worst(folder, capsys):
     assert any("  violated    t002: 39.99 mm, below the fail limit of 50 mm" in x for x in lines)
     assert lines[-1] == "  page        store/batch.html"
     assert batch("batch.yaml", "--out", "store", "--fail-mm", "10", "--samples-only") == 0
-    assert "basis       3 cases looked at the samples only" in capsys.readouterr().out
+    assert "basis       3 cases measured at the samples only" in capsys.readouterr().out
     assert batch("batch.yaml", "--out", "store", "--quiet") == 1
     assert capsys.readouterr().out == ""
 

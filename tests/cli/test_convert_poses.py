@@ -68,7 +68,7 @@ def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):
     assert convert("c.yaml", "d.csv") == 0
     told = capsys.readouterr().out
     assert "in frame 'map', taken for what the poses are seen from" in told
-    assert "d.csv: the first was stamped 1700000000.100000000 s, which a table does not say" in told
+    assert "d.csv: the first was stamped 1700000000.100000000 s, which a table cannot say" in told
     assert convert("d.csv", "e.yaml") == 0
     assert "e.yaml: frame_id is empty" in capsys.readouterr().out
 
@@ -84,7 +84,9 @@ def test_transforms_stay_transforms(capsys):
     back = samples_in(Path("b.yaml").read_bytes(), "b.yaml")
     assert (back.frame, back.child, back.times.tolist()) == ("map", "door", [0.0, 1.0])
     assert convert("b.yaml", "c.csv") == 0
-    assert "the poses are of frame 'door', which a table does not say" in capsys.readouterr().out
+    assert (
+        "the poses are those of frame 'door', which a table cannot say" in capsys.readouterr().out
+    )
 
 
 def test_times_that_messages_keep_otherwise_are_told(capsys):

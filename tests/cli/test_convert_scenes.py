@@ -205,7 +205,7 @@ def test_packages_of_a_scene_are_found_in_the_folders_that_are_named(capsys):
         (["cell.scene", "made/s.yaml", "--which", "2"], "cell.scene: --which says nothing about a scene"),
         (["path.csv", "made/s.yaml", "--package-dir", "."], "--package-dir says nothing about a trajectory"),
         (["nothing.yaml", "made/s.yaml"], "nothing.yaml: there is no obstacle in it"),
-        (["what.yaml", "made/s.yaml"], "it cannot be told what this file holds; --kind says it: trajectory"),
+        (["what.yaml", "made/s.yaml"], "the content of this file is not recognised; --kind says it: trajectory"),
         (["what.yaml", "made/s.yaml", "--kind", "scene"], "unknown key 'a'"),
         (["case.yaml", "made/s.yaml"], "this is a case file, not a trajectory, a scene or poses; `clearance"),
         (["gone.yaml", "made/s.yaml"], "no.stl"),

@@ -129,7 +129,7 @@ def test_a_program_stays_the_file_that_it_is(capsys):
     told = capsys.readouterr().out
     assert "trajectory from ../cell/move.script" in told or "from cell/move.script" in told
     for more, what in (
-        (["--skip", "grip"], "--skip is of a program; --program FILE is missing"),
+        (["--skip", "grip"], "--skip needs --program FILE"),
         ([*words, "--trajectory", "cell/path.csv"], "both --program and another motion"),
         ([*words, "--start", "joint_1=x"], "joint_1=0.5,joint_2=0, or a state"),
     ):

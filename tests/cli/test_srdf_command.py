@@ -52,8 +52,8 @@ def robot(tmp_path):
 def test_pairs_that_never_meet_are_proven(robot, capsys):
     assert run(["srdf", "audit", *robot()]) == 0
     told = capsys.readouterr().out.splitlines()
-    assert told[0] == "of 1 pair excused as Never: 1 proven apart"
-    assert told[1].startswith("  base - upper   Never     proven apart: at least ")
+    assert told[0] == "of 1 pair excused as Never: 1 proven separate"
+    assert told[1].startswith("  base - upper   Never     proven separate: at least ")
     assert any(line.startswith("  lower - upper  Adjacent  can meet") for line in told)
 
 
@@ -81,7 +81,7 @@ def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsy
     assert run(["srdf", "make", urdf, "--out", str(out)]) == 0
     told = capsys.readouterr()
     assert told.err.strip() == (
-        "3 pairs: 1 proven never to meet, 2 adjacent (not looked at); "
+        "3 pairs: 1 proven never to meet, 2 adjacent (not checked); "
         "to be measured: 0 can meet, 0 undecided"
     )
     matrix = load_srdf(out, load_urdf(urdf))

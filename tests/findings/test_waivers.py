@@ -135,7 +135,7 @@ def test_a_case_names_its_files_of_waivers(tmp_path):
     run = answer(Question(case, today=TODAY))
     assert run.passed and run.verdict.n_waivers == 1
     assert run.judgement.n_of_others == 1
-    assert "of other cases, and not looked at: 1 waiver" in run.summary["notes"]
+    assert "waivers of other cases, not used here: 1 waiver" in run.summary["notes"]
 
 
 @pytest.mark.parametrize(

@@ -408,7 +408,7 @@ def test_what_is_of_files_of_samples_is_refused_beside_a_program(tmp_path):
     content = yaml.safe_load(path.read_text())
     content["trajectory"]["period"] = 0.1
     path.write_text(yaml.safe_dump(content))
-    with pytest.raises(cl.ClearanceError, match="period is of a file, not of a program"):
+    with pytest.raises(cl.ClearanceError, match="period belongs to a file, not to a program"):
         cl.load_case(path)
 
 

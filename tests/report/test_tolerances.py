@@ -48,7 +48,7 @@ NOT_RULED_OUT = (
     "limit not proven with tolerances (contact not ruled out, 0 mm required; nominal 0.376 mm)"
 )
 NOTHING = "limit not proven with tolerances (nothing proven, 0 mm required)"
-SAMPLES = ", looked at the samples only"
+SAMPLES = ", measured at the samples only"
 SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
 
 
@@ -59,7 +59,7 @@ SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
         (OPEN, "not proven", 1, f"FAIL: {NOT_RULED_OUT}{SAMPLES}"),
         (ACCEPTED, "not proven", 0, f"ACCEPTED: {NOT_RULED_OUT}{SAMPLES}"),
         (NO_ANSWER, "not proven", 1, f"FAIL: {NOTHING}{SAMPLES}"),
-        (BROKEN, "contact", 1, "CONTACT, looked at the samples only"),
+        (BROKEN, "contact", 1, "CONTACT, measured at the samples only"),
         (SUSPECT, "suspect", 2, f"SUSPECT (would be FAIL: {NOT_RULED_OUT}{SAMPLES})"),
     ],
 )  # fmt: skip

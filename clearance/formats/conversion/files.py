@@ -180,7 +180,7 @@ def kind_of(path: Path, files: InputFiles) -> Kind:
     found = _of_keys(head)
     if found is None:
         raise BadInput(
-            "it cannot be told what this file holds",
+            "the content of this file is not recognised",
             where=shown,
             valid=f"--kind says it: {', '.join(CONVERTED)}",
         )

@@ -131,7 +131,7 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
             one = joints.setdefault(checked_name(name), _Joint([], [], []))
             if one.times and state.nanoseconds <= one.times[-1]:
                 raise BadTime(
-                    f"its time is not after that of the one before that tells of {name!r}",
+                    f"its time is not later than that of the message before with {name!r}",
                     where=where,
                 )
             if not math.isfinite(position):
@@ -188,9 +188,7 @@ def _notes(
     if any(state.has_velocities for state in states):
         notes.append("recorded velocities are not followed: they are as measured, noise and all")
     if len({tuple(joints[name].times) for name in kept}) > 1:
-        notes.append(
-            "different messages tell of different joints: each has a sample at the times of all"
-        )
+        notes.append("messages have different joints: each joint has a sample at the times of all")
     n_out = sum(not span[0] <= state.nanoseconds <= span[1] for state in states)
     if n_out:
         notes.append(f"{n_out} messages at the ends are left out, where not all joints are known")

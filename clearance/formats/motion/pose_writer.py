@@ -108,9 +108,9 @@ def _header(nanoseconds: int, frame: str) -> Message:
 
 def _lost_in_tables(samples: PoseSamples) -> list[str]:
     """The notes on what a table has no place for; of frames the reader told."""
-    of = [f"the poses are of frame {samples.child!r}, which a table does not say"]
+    of = [f"the poses are those of frame {samples.child!r}, which a table cannot say"]
     seconds, rest = divmod(samples.stamp, NANO)
-    since = [f"the first was stamped {seconds}.{rest:09d} s, which a table does not say"]
+    since = [f"the first was stamped {seconds}.{rest:09d} s, which a table cannot say"]
     return [*(of if samples.child else []), *(since if samples.stamp else [])]
 
 

@@ -147,7 +147,7 @@ class _Fanuc:
         motion: Motion = constant.value
         if motion.calls:
             run.note(
-                "what motions call on their way (TB, TA, DB), which is not looked at",
+                "programs that motions call on their way (TB, TA, DB): not followed",
                 str(call.line),
             )
         unread = [word for word in motion.options if not _IDLE.fullmatch(word)]

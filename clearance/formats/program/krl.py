@@ -178,7 +178,7 @@ class _Krl:
             elif call.name == SPLINE:
                 raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
             elif call.name in ("INTERRUPT", "TRIGGER"):
-                run.note("interrupts and triggers, which are not looked at", str(call.line))
+                run.note("interrupts and triggers: not followed", str(call.line))
             else:
                 run.pass_over(call.name, call.line)
 

@@ -155,7 +155,7 @@ def note_on_accelerations(
     """That they are not looked at, where the trajectory is lines between samples, whose corners have none."""
     limited = any(limit.acceleration < math.inf for limit in limits.values())
     if limited and trajectory is not None and trajectory.velocities is None:
-        yield "accelerations are not held against their limits: the trajectory gives no velocities"
+        yield "accelerations are not compared with their limits: the trajectory has no velocities"
 
 
 def widest(controllers: list[Controller]) -> dict[str, PathTolerance]:

@@ -53,7 +53,7 @@ def _head(content: SceneContent, given: str, made_by: str, remarks: Sequence[str
     if content.frame:
         yield f"frame: {flow(content.frame)}  # of the poses; taken for the world"
     if content.notices:
-        yield "warnings:  # told by each check until they are taken out here"
+        yield "warnings:  # each check repeats them until they are removed here"
         yield from (f"- {flow(shown(notice.text))}" for notice in content.notices)
 
 

@@ -111,7 +111,9 @@ class TrajectoryFile(TimedFile):
             raise Contradiction("both file and program are given", valid="one of them")
         others = sorted(data.keys() - {"program", "start", "rate", "after", "start_state"})
         if others:
-            raise Contradiction(f"{others[0]} is of a file, not of a program", valid="no such key")
+            raise Contradiction(
+                f"{others[0]} belongs to a file, not to a program", valid="no such key"
+            )
         program = data["program"]
         if isinstance(program, dict):
             model = ProgramFile if "file" in program else Program

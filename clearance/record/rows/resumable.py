@@ -129,7 +129,7 @@ class ResumableRows(MeasuredRows):
         with unwritable(self.place):
             known = question.read_text() if question.exists() else fingerprint
             if known != fingerprint:
-                self.say("starting anew: what an interrupted run has left is of other inputs")
+                self.say("starting anew: the interrupted run had other inputs")
             if known != fingerprint or not question.exists():
                 clear(self.place)
                 _replace(question, fingerprint.encode())
@@ -156,7 +156,7 @@ class ResumableRows(MeasuredRows):
         if done and not self._told:
             self._told = True
             n_done, n_all = spans[done - 1].stop, spans[-1].stop
-            self.say(f"resuming: {n_done:,} of {n_all:,} steps are kept of an interrupted run")
+            self.say(f"resuming: {n_done:,} of {n_all:,} steps are reused from an interrupted run")
         return _ResumableLog(done, state, path, arrays)
 
     def let_go(self) -> None:

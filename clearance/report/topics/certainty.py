@@ -119,7 +119,7 @@ def notes_of(record: Record, hints: Sequence[str]) -> list[str]:
 def _waivers_of_others(case: Case) -> list[str]:
     """That some waivers are of other cases, and say nothing here."""
     others = sum(not waiver.is_of_case(case.name) for waiver in case.waivers)
-    return [f"of other cases, and not looked at: {count(others, 'waiver')}"] if others else []
+    return [f"waivers of other cases, not used here: {count(others, 'waiver')}"] if others else []
 
 
 def lines(model: ReportModel) -> Iterator[Line]:
@@ -238,7 +238,7 @@ def _moving(summary: dict[str, Any]) -> Iterator[str]:
     kind = summary["clock"]["kind"]
     if kind in clocks:
         how = clocks[kind].format(slack=summary["clock"]["slack"])
-        yield f"The clocks of the actors {how}: every pair of times that this allows is looked at."
+        yield f"The clocks of the actors {how}: every pair of times that this allows is measured."
 
 
 _MEASURED = {

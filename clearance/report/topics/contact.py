@@ -41,7 +41,7 @@ def contact_of(record: Record) -> dict[str, Any] | None:
 
 def _told(row: StepContact) -> dict[str, Any]:
     found = row.known
-    assert found is not None, "only overlaps that are worked out are told"
+    assert found is not None, "only overlaps with a depth are listed"
     return {
         "step": row.step,
         "time": row.time,
@@ -123,15 +123,15 @@ def _row(pair: dict[str, Any]) -> Row:
 
 def _meaning(pairs: Sequence[dict[str, Any]]) -> str:
     told = (
-        "Each pair has the deepest of its computed steps: one for every event, its deepest as far as hulls or "
-        "shared volumes tell, unless more was asked for. At these the replay shows the common region in "
+        "Each pair has the deepest of its computed steps: one for every event, its deepest by hulls or "
+        "shared volumes, unless more was asked for. At these the replay shows the common region in "
         "red and the separation vector of the first body as an arrow of fixed length. "
     )
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
         return f"{told}Depth and volume are exact to the rounding of float64."
     return (
         f"{told}Depth and volume that are not exact are upper bounds, with the lower bound beside them: "
-        "what stands for bodies that are not convex is told in How sure, and a separation vector of closed bodies "
+        "How sure names the substitute of bodies that are not convex, and a separation vector of closed bodies "
         "is confirmed by their own distance after it."
     )
 

@@ -62,7 +62,7 @@ def _lines(told: dict[str, Any]) -> Iterator[str]:
     asked = told["asked"]
     at = f"{seconds(asked['time'])}, step {asked['step']}"
     where = f"{asked['body_a']} - {asked['body_b']} at {at}"
-    yield f"as asked {mm(asked['clearance'])} mm at the steps: {where}"
+    yield f"as commanded {mm(asked['clearance'])} mm at the steps: {where}"
     for run in told["runs"]:
         joints = sorted(run["joints"], key=lambda one: -one["greatest"])[:4]
         off = ", ".join(
@@ -84,8 +84,8 @@ def sections(content: PageContent) -> Iterator[Section]:
     asked, driven = told["asked"], content.summary["worst"]
     line = (
         f"As driven {mm(driven['clearance'])} mm at least, {driven['body_a']} and {driven['body_b']} at "
-        f"{seconds(driven['time'])}; as asked {mm(asked['clearance'])} mm at the steps, {asked['body_a']} and "
-        f"{asked['body_b']} at {seconds(asked['time'])}. The dashed curve is what was asked."
+        f"{seconds(driven['time'])}; as commanded {mm(asked['clearance'])} mm at the steps, {asked['body_a']} and "
+        f"{asked['body_b']} at {seconds(asked['time'])}. The dashed curve is the commanded motion."
     )
     parts = [part for run in told["runs"] for part in _run(run)]
     yield Section("As driven", [Paragraph(line), *parts])
@@ -99,9 +99,7 @@ def _run(run: dict[str, Any]) -> list[Paragraph | Table]:
     ]
     offset = f", {run['offset']:g} s added to its times" if run["offset"] else ""
     span = f"{run['start']:.3f} to {seconds(run['end'])}"
-    told = (
-        f"{run['path']}, of robot {run['robot']}, held against what was asked from {span}{offset}."
-    )
+    told = f"{run['path']}, of robot {run['robot']}, compared with the commanded motion from {span}{offset}."
     return [Paragraph(told), Table(heads, rows, "clickable bodies")]
 
 

@@ -108,9 +108,7 @@ def sections(content: PageContent) -> Iterator[Section]:
     )  # fmt: skip
     in_order = sorted(told, key=lambda rule: rule["worst"] is None)
     rows = [_row(rule, content.summary["worst"]["rule"]) for rule in in_order]
-    note = (
-        "Where rules overlap, the last of them that is of a pair judges it. Least is less padding."
-    )
+    note = "Where rules overlap, the last one that matches a pair judges it. Least has the padding taken off."
     yield Section("Rules", [Table(heads, rows, "clickable rules"), faint(note)])
 
 

@@ -178,7 +178,7 @@ def _with_tolerances(told: dict[str, Any] | None) -> list[Cell]:
 
 
 def _certified_word(certified: dict[str, Any] | None) -> str:
-    return "no, looked at the samples only" if certified is None else least_proven(certified)
+    return "no, measured at the samples only" if certified is None else least_proven(certified)
 
 
 def _extent(summary: dict[str, Any]) -> str:

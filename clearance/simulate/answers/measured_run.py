@@ -49,7 +49,7 @@ class MeasuredRun:
 
     def overlap(self, row: StepContact) -> Contact:
         """All of an overlap, with its region; worked out now where the record does not have it."""
-        assert self.contacts is not None, "a row of contact is of a run with contacts"
+        assert self.contacts is not None, "a row of contact needs a run with contacts"
         return self.contacts.overlap(row)
 
     @cached_property

@@ -173,7 +173,7 @@ class DoubtfulPairs:
 def _text(link: str, obstacle: str, step: int, time: float) -> str:
     return (
         f"link {link} may be inside obstacle {obstacle}, or round it, at {time:.3f} s (step {step}): the surface "
-        "has holes, cracks or two sides, so that inside and outside cannot be told there, and the clearance is "
+        "has holes, cracks or two sides, so inside and outside cannot be distinguished there. The clearance is "
         f"that of the surfaces alone; {FEWER}"
     )
 

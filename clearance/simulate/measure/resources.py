@@ -12,7 +12,7 @@ from clearance.simulate.measure.parts import usable_cores
 
 @dataclass(frozen=True, eq=False)
 class Resources:
-    """What a run may use.
+    """The resources of a run.
 
     Attributes:
         jobs: threads; as many as the machine has to offer if None. The answer does not depend on it.

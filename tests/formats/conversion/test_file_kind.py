@@ -59,8 +59,8 @@ def test_a_file_says_what_it_holds(tmp_path, kind, name, text):
     [
         ("a.yaml", "", BadShape, "a.yaml: the file is empty; a trajectory, a scene or poses"),
         ("a.csv", "\ufeff \n", BadShape, "a.csv: the file is empty"),
-        ("a.yaml", "- 1\n- 2\n", BadInput, "it cannot be told what this file holds; --kind says it"),
-        ("a.yaml", "# obstacles: none\na: 'b, world: c'\n", BadInput, "it cannot be told"),
+        ("a.yaml", "- 1\n- 2\n", BadInput, "the content of this file is not recognised; --kind says it"),
+        ("a.yaml", "# obstacles: none\na: 'b, world: c'\n", BadInput, "this file is not recognised"),
         ("a.yaml", CASE, BadInput, "this is a case file, not a trajectory, a scene or poses"),
         ("a.bt", "# Octomap OcTree file\n", BadInput, "this is a mesh, not a trajectory"),
     ],
@@ -75,5 +75,5 @@ def test_what_does_not_is_asked_for_or_refused(tmp_path, name, text, fault, says
     "part", ["\n", " ", "- ", "{", ",", ", ", "# ", "a", '"', "'", "\\", "a:", "\t-", "#\n"]
 )
 def test_what_does_not_end_is_not_looked_at_again_and_again(tmp_path, part):
-    with pytest.raises(BadInput, match="it cannot be told"):
+    with pytest.raises(BadInput, match="the content of this file is not recognised"):
         told(tmp_path, "a.yaml", "x" + part * LONGEST)

@@ -72,8 +72,7 @@ def test_the_narrower_limits_hold(tmp_path):
     assert "wider than the robot file's, which stay: position of shoulder" in told
     assert "not used: max_acceleration" in told
     assert (
-        "accelerations are not held against their limits: the trajectory gives no velocities"
-        in told
+        "accelerations are not compared with their limits: the trajectory has no velocities" in told
     )
 
 

@@ -159,7 +159,7 @@ def test_a_run_stopped_between_its_passes_goes_on(case: Case, tmp_path: Path) ->
     )
     assert found == whole
     assert len(calls) == n_proven - 3
-    assert said == [f"resuming: {n_steps} of {n_steps} steps are kept of an interrupted run"]
+    assert said == [f"resuming: {n_steps} of {n_steps} steps are reused from an interrupted run"]
 
 
 def nudged(case: Case, what: str) -> Case:
@@ -190,7 +190,7 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
             answer(case, tmp_path / "kept", [], progress=stopping_at(5))
         said: list[str] = []
         assert answer(other, tmp_path / "kept", said, **asked) == told(cl.check(other, **asked))
-        assert said == ["starting anew: what an interrupted run has left is of other inputs"]
+        assert said == ["starting anew: the interrupted run had other inputs"]
 
 
 KILLED = """

@@ -193,7 +193,7 @@ def _notes(
         )
     limited = [joint.name for joint in model.joints if joint.kind == "ball"]
     if limited:
-        notes.append(f"limits of ball joints are not looked at: {listed(limited, 6)}")
+        notes.append(f"limits of ball joints are not checked: {listed(limited, 6)}")
     return [*notes, *notes_on_bare(kinds)]
 
 

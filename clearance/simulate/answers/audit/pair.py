@@ -86,7 +86,7 @@ class _Search:
         if self.least <= 0.0:
             return PairStatus.MEETS, 0.0, ""
         if self._in_doubt:
-            why = "a surface is open, so that inside and outside cannot be told"
+            why = "a surface is open, so inside and outside cannot be distinguished"
         if why:
             return PairStatus.UNDECIDED, 0.0, why
         return PairStatus.APART, float(min(lower_bound, self.least)), ""
