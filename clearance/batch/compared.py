@@ -130,6 +130,6 @@ def _findings(rows: list[dict[str, Any]]) -> Iterator[Finding]:
     for row in rows:
         waived = row.pop("waived")
         of = {key: tuple(row[key]) if row[key] else None for key in ("point_a", "point_b")}
-        values = {key: value for key, value in row.items() if key != "case"} | of
+        values = {key: value for key, value in row.items() if key not in ("case", "code")} | of
         excuse = None if waived is None else AppliedWaiver(at_least=0.0, reason=waived, by="")
         yield Finding(**values, waived=excuse)

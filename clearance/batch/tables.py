@@ -15,13 +15,14 @@ from clearance.batch.answer import CASE, PART, BatchAnswer
 from clearance.batch.rows import FINDING
 from clearance.batch.store import Store
 from clearance.batch.store_files import CASES, FINDINGS
+from clearance.codes import codes
 from clearance.errors import BadBatch
 from clearance.files import written_file
 
 _WAIVER_FAULTS = b"unused waivers"
 """Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""
 
-_FINDING = pa.schema([pa.field("case", pa.string()), *FINDING])
+_FINDING = pa.schema([("case", pa.string()), *FINDING, ("code", pa.string())])
 
 
 def write_tables(answer: BatchAnswer, store: Store) -> None:
@@ -71,4 +72,8 @@ def _finding_parts(answer: BatchAnswer, store: Store) -> Iterator[list[dict[str,
     for start in range(0, max(1, len(known)), PART):
         some = known[start : start + PART]
         rows = zip(some, store.rows(key for _, key in some), strict=True)
-        yield [{"case": name} | one for (name, _), row in rows for one in row["findings"]]
+        yield [
+            {"case": name, "code": codes().get(one["kind"], "")} | one
+            for (name, _), row in rows
+            for one in row["findings"]
+        ]
