@@ -86,9 +86,9 @@ def test_interleaved_positions_are_read_with_their_stride():
 
 @pytest.mark.parametrize("has_base", [True, False])
 def test_sparse_accessors_are_put_in(has_base):
-    base = np.zeros((4, 3), dtype="<f4")
-    rows, values = np.array([1, 2, 3], dtype="<u1"), np.diag([1, 2, 3]).astype("<f4")
-    faces = np.array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], dtype="<u1")
+    base = np.zeros((5, 3), dtype="<f4")
+    rows, values = np.array([2, 3, 4], dtype="<u1"), np.diag([1, 2, 3]).astype("<f4")
+    faces = np.array([1, 3, 2, 1, 2, 4, 1, 4, 3, 2, 3, 4], dtype="<u1")
     document, binary = document_of(base, faces, rows, values, primitive={"indices": 1})
     document["accessors"][0]["sparse"] = {
         "count": 3,

@@ -7,6 +7,8 @@ from clearance.formats.mesh.step_file import step_facts
 from tests.formats.making_case import load_small, with_obstacle
 from tests.formats.making_step import HEAD, TAIL, box_step, cylinder_step
 
+IN_A_COMMENT = "DATA; /* #9=ADVANCED_FACE('',(),#1,.T.);\n#9=TRIANGULATED_FACE('',1); */"
+
 
 @pytest.mark.parametrize(
     ("text", "n_faces", "accuracy"),
@@ -15,6 +17,7 @@ from tests.formats.making_step import HEAD, TAIL, box_step, cylinder_step
         (box_step(unit="m", uncertainty=0.01), 6, 1e-2),
         (cylinder_step(unit="inch", uncertainty=0.01), 3, 0.01 * 25.4e-3),
         (box_step().replace("UNCERTAINTY", "OTHER"), 6, 0.0),
+        (box_step(uncertainty=0.01).replace("DATA;", IN_A_COMMENT), 6, 1e-5),
     ],
 )
 def test_faces_are_counted_and_the_accuracy_is_in_metres(text, n_faces, accuracy):
