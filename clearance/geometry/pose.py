@@ -65,10 +65,13 @@ def pose_from_rotation_vector(xyz: Sequence[float], vector: Sequence[float]) -> 
     """The (4, 4) pose that turns about a vector by its length [rad] and then moves by `xyz` [m].
 
     Raises:
-        BadShape, NotFinite: not three finite numbers each.
+        BadShape, NotFinite: not three finite numbers each. BadPose: more than 1,000 rad.
     """
     turn = _numbers(vector, 3, "rotation vector")
-    angle = float(np.linalg.norm(turn))
+    with np.errstate(over="ignore"):
+        angle = float(np.linalg.norm(turn))
+    if not angle <= 1e3:
+        raise BadPose(f"a turn by {angle:.3g} rad", where="rotation vector", valid="1000 or less")
     axis = turn / angle if angle > 0.0 else turn
     return pose_from_quaternion(xyz, [*(np.sin(0.5 * angle) * axis), np.cos(0.5 * angle)])
 

@@ -37,6 +37,9 @@ FARTHEST_OFF, MOST_TURNED = 0.01, 0.035
 STANDS = 0.01
 """[degrees or mm] An external axis that moves by less stands: teaching leaves so much."""
 
+FARTHEST = 1e3
+"""[m] A point that is farther away is a mistake."""
+
 NO_WAY = 1e-9
 """[m] and sine of a turn: a move that is shorter is none."""
 
@@ -327,11 +330,18 @@ class _Conversion:
         """All but waits.
 
         Raises:
-            BadInput: there are none.
+            BadInput: there are none, or a point is farther away than any robot reaches.
         """
         found = [move for move in self.read.moves if isinstance(move, ControllerMove)]
         if not found:
             raise BadProgram("nothing moves", valid="a program with moves")
+        for one in found:
+            ends = (to.pose for to in (one.to, one.via) if isinstance(to, PoseTarget))
+            for pose in (one.tool, *ends):
+                away = np.abs(pose[:3, 3]).max()
+                if not away <= FARTHEST:
+                    told = f"a point {away:.3g} m away"
+                    raise BadProgram(told, where=place_of(one), valid=f"{FARTHEST:g} m or less")
         return found
 
 

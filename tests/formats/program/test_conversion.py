@@ -209,6 +209,7 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
             "line 3: a corner zone before another tool",
         ),
         ([ControllerWait(3, 1.0)], {}, "nothing moves"),
+        ([HOME, replace(POSE, to=PoseTarget(at(4e8, 0, 0)))], {}, "line 3: a point 4e+08 m away"),
         (
             [HOME],
             {"link": "finger_left"},
