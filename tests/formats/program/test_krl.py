@@ -167,7 +167,7 @@ def test_turns_of_a_joint_move_become_ranges_of_axes():
 
 def test_the_case_says_what_the_files_name_only():
     moves = "BAS(#TOOL,3)\n$BASE=BASE_DATA[9]\nLIN XP1 C_DIS\nPTP XP1 C_PTP\n"
-    body = moves + "IF $IN[1] THEN\n$OUT[2]=TRUE\nENDIF\ngrip()"
+    body = moves + "IF $IN[1] THEN\n$OUT[2]=TRUE\nmsg[]=text[]\nENDIF\ngrip()"
     found = program(
         body,
         tools={"TOOL_DATA[3]": {"xyz": [0.0, 0.0, 0.05]}},
@@ -178,7 +178,7 @@ def test_the_case_says_what_the_files_name_only():
     line, ptp = found.moves
     assert place(line) == pytest.approx([1.1, 0.0, 0.05]) and line.tool[2, 3] == 0.05
     assert (line.zone, ptp.zone) == (0.01, 0.02)
-    assert any("GRIP (line 14)" in note for note in found.notes)
+    assert any("GRIP (line 15)" in note for note in found.notes)
 
 
 @pytest.mark.parametrize("encode", ["utf-8-sig", "latin-1", "crlf"])
