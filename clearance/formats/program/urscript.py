@@ -185,7 +185,7 @@ class _UrScript:
                 run.add(ControllerWait(call.line.number, seconds, call.line.file))
         elif call.name == "set_tcp":
             (pose, *_) = (run.evaluated(one) for one in (*call.args, *call.named.values()))
-            self.tool, self.last = _matrix(_pose(pose, call.line)), None
+            self.tool, self.last = _placed(pose, call.line), None
         elif call.name == "run":
             name = call.args[0].value if isinstance(call.args[0], Constant) else ""
             if name not in run.routines or not run.effects.is_still(run.routines[name]):
@@ -290,9 +290,9 @@ def _target(value: Any, one: Expression, line: Line) -> Target:
     name = within.name if isinstance(within, Name) else ""
     if isinstance(value, Solved):
         near = None if value.near is None else tuple(value.near)
-        return PoseTarget(_matrix(value.pose), near=near, name=name)
+        return PoseTarget(_placed(value.pose, line), near=near, name=name)
     if isinstance(value, ToolPose):
-        return PoseTarget(_matrix(_pose(value, line)), name=name)
+        return PoseTarget(_placed(value, line), name=name)
     return AxisTarget(tuple(_six(value, line, "the target")), name=name)
 
 
@@ -330,6 +330,17 @@ def _pose(value: Any, line: Line) -> ToolPose:
     if not isinstance(value, ToolPose):
         raise BadProgram(f"{value!r:.60} is given", where=str(line), valid="a pose p[…]")
     return ToolPose(_six(value, line, "the pose"))
+
+
+def _placed(value: Any, line: Line) -> np.ndarray:
+    """(4, 4) of a value that has to be a pose [m].
+
+    Raises:
+        BadInput: with the line.
+    """
+    pose = _pose(value, line)
+    with at(str(line)):
+        return _matrix(pose)
 
 
 def _matrix(pose: ToolPose) -> np.ndarray:

@@ -121,6 +121,7 @@ FAULTS = {
     + Q
     + "\ni = i + 1\nend": "line 2: an endless loop that is never the same",
     "servoj([0,0,0,0,0,0])": "line 1: servoj moves the robot on a way",
+    TOOL + "movel(p[0,0,0,1e200,0,0])": "line 2: rotation vector: a turn by inf rad",
     "grip(20)": "line 1: 'grip' is no known instruction",
     "x = grip(20)": "line 1: 'grip' is no known instruction",
     "movej(home)": "line 1: the target is not known: 'home' is in no file",
