@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,27 @@ if TYPE_CHECKING:
     from clearance.case.new_case.files import NewCase
 
 _MOST_NOTES = 8
+
+_OPTION_OF_KEY = {
+    "robot.urdf": "--robot",
+    "robot.srdf": "--srdf",
+    "robot.joint_limits": "--joint-limits",
+    "robot.controllers": "--controllers",
+    "trajectory.file": "--trajectory",
+    "trajectory.program": "--program",
+    "trajectory.start_state": "--start",
+}
+"""The options that stand for keys of a case."""
+
+_OPTION_OF_PROGRAM = {"link": "--flange", "entry": "--entry", "skip": "--skip"}
+"""Those that stand for keys of its program."""
+
+_REMEDIES = {
+    "robot.srdf: the file": "--srdf FILE",
+    "trajectory: {program: …, start_state: {joint: …}}": "--start JOINT=VALUE,…",
+    "program: {": "write a case file with program: {",
+}
+"""What is valid in a case file, and what the command has in its place."""
 
 _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
 
@@ -220,12 +242,31 @@ def new(
     of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
     asked = _motion(_given(motion), _given(of_program), states)
     given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
-    made = _proposing(new_case(given, out_dir))
+    with _naming_options():
+        made = _proposing(new_case(given, out_dir))
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)
     command = _command(out_dir)
     click.echo(f"{'run':10}clearance check {shlex.join(command)}")
     return _checked(command) if at_once else ExitCode.CLEAR
+
+
+@contextmanager
+def _naming_options() -> Iterator[None]:
+    """Errors name the options of this command, in place of the keys of a case."""
+    from clearance.errors import ClearanceError
+
+    try:
+        yield
+    except ClearanceError as error:
+        first, *places = error.where.split(": ")
+        option = _OPTION_OF_KEY.get(first, first)
+        if option == "--program" and places and places[-1] in _OPTION_OF_PROGRAM:
+            option = _OPTION_OF_PROGRAM[places.pop()]
+        error.where = ": ".join([option, *places])
+        for key, remedy in _REMEDIES.items():
+            error.valid = error.valid.replace(key, remedy)
+        raise
 
 
 def _given(keys: dict[str, Any]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import numpy as np
 from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.series import half_skew
+from clearance.world.robot import Joint, JointKind
 from clearance.world.tool import Tool
 
 REACHED = 1e-12
@@ -114,20 +115,46 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.nda
     within = (found.positions >= ranges[:, 0]) & (found.positions <= ranges[:, 1])
     fits = (found.left <= 1e-9) & within.all(axis=1)
     if not fits.any():
-        x, y, z = wanted[:3, 3]
-        raise BadProgram(
-            f"no joints within {_told(arm, ranges)} bring the tool to ({x:.4g}, {y:.4g}, {z:.4g}) m",
-            valid="a pose within reach",
-        )
+        raise _unreached(arm, wanted, now, ranges)
     ways = np.where(fits, np.abs(found.positions - now).max(axis=1), np.inf)
     return np.asarray(found.positions[int(np.argmin(ways))])
 
 
-def _told(arm: Arm, ranges: np.ndarray) -> str:
-    """Ranges of joints, in words: those narrower than their limits."""
-    narrow = [
-        f"{joint.name} {low:.4g} to {high:.4g}"
-        for joint, (low, high), own in zip(arm.joints, ranges, arm.chain.ranges, strict=True)
-        if (low, high) != tuple(own)
-    ]
-    return " and ".join(["their limits", *narrow])
+ANOTHER = (
+    "another configuration of the target (RAPID: [cf1, cf4, cf6, cfx], or `ConfJ\\Off` before the move to ignore it; "
+    "KRL: S and T; else `within`)"
+)
+"""The remedy where a pose is within reach, and not in the configuration that is asked for."""
+
+
+def _unreached(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.ndarray) -> BadProgram:
+    """Why no joints within the ranges bring the tool to a pose: beyond reach, or in another configuration only."""
+    open_ranges = np.where((ranges[:, 0] < ranges[:, 1])[:, None], arm.chain.ranges, ranges)
+    narrow = np.flatnonzero((open_ranges != ranges).any(axis=1))
+    x, y, z = wanted[:3, 3]
+    place = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
+    if not narrow.size:
+        return BadProgram(
+            f"no joints within their limits bring the tool to {place}", valid="a pose within reach"
+        )
+    asked = " and ".join(range_of(arm.joints[i], *ranges[i]) for i in narrow)
+    problem = f"the configuration of the target asks for {asked}, and no such joints bring the tool to {place}"
+    try:
+        found = nearest_joints(arm, wanted, now, open_ranges)
+    except BadProgram:
+        return BadProgram(
+            f"{problem}, nor any others within their limits", valid="a pose within reach"
+        )
+    other = ", ".join(f"{arm.joints[i].name} {_shown(arm.joints[i], found[i])}" for i in narrow)
+    return BadProgram(f"{problem}; the tool reaches it with {other}", valid=ANOTHER)
+
+
+def range_of(joint: Joint, low: float, high: float) -> str:
+    """A joint and a range of it [rad or m], in words."""
+    return f"{joint.name} {_shown(joint, low)} to {_shown(joint, high)}"
+
+
+def _shown(joint: Joint, value: float) -> str:
+    """A position of a joint [rad or m], as people read it."""
+    is_slide = joint.kind is JointKind.PRISMATIC
+    return f"{value:.4g} m" if is_slide else f"{np.degrees(value):.4g} deg"

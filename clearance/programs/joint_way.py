@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
-from clearance.programs.inverse import nearest_joints
+from clearance.programs.inverse import ANOTHER, nearest_joints, range_of
 from clearance.programs.moves import SHARE_OF_WAY, JointMove
 from clearance.world.robot import Joint
 
@@ -50,11 +50,12 @@ class JointWay:
         for name, value in move.near.items():
             near[arm.column(name, "near")] = value
         for name, (low, high) in move.within.items():
-            row = ranges[arm.column(name, "within")]
+            column = arm.column(name, "within")
+            row, joint = ranges[column], arm.joints[column]
+            if low > row[1] or high < row[0]:
+                told = f"{range_of(joint, low, high)}, beyond its limits: {range_of(joint, *row)}"
+                raise BadProgram(f"the configuration of the target asks for {told}", valid=ANOTHER)
             row[:] = max(low, row[0]), min(high, row[1])
-            if row[0] > row[1]:
-                told = f"joint {name!r} cannot be from {low:.4g} to {high:.4g}"
-                raise BadProgram(told, where="within", valid="a range within its limits")
         return cls(start, nearest_joints(arm, move.pose, near, ranges))
 
     @property

@@ -136,6 +136,29 @@ def test_a_program_stays_the_file_that_it_is(capsys):
         assert new(*more, robot=str(FILES["heron6"])) == 2 and what in capsys.readouterr().err
 
 
+HOME, FAR = "movej([0,0,0,0,0,0])", "set_tcp(p[0,0,0,0,0,0])\nmovej(p[0.4,0,0.4,0,0,0])"
+TIP = ["--flange", "tool_tip"]
+
+
+@pytest.mark.parametrize(
+    ("more", "move", "told"),
+    [
+        ([], HOME, "--flange: cell/move.script: line 1: there is no link 'tool0'"),
+        (["--flange", "hand"], HOME, "--flange: cell/move.script: line 1: there is no link 'hand'"),
+        (["--entry", "weld"], HOME, "--entry: cell/move.script: there is no function 'weld'"),
+        ([*TIP, "--start", "home"], HOME, "--start: state 'home' is in no file; --srdf FILE"),
+        (TIP, FAR, "--program: cell/move.script: line 2: the first move ends at a pose, and the joints at its "
+         "beginning are unknown; --start JOINT=VALUE"),
+        (TIP, "movel(p[0.4,0,0.4,0,0,0])", "; write a case file with program: {tools: "),
+    ],
+)  # fmt: skip
+def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told, capsys):
+    Path("cell/move.script").write_text(move + "\n")
+    code = new("--program", "cell/move.script", *more, robot=str(FILES["heron6"]))
+    said = capsys.readouterr().err
+    assert code == 2 and told in said and "trajectory" not in said
+
+
 @pytest.mark.parametrize(
     ("scene", "trajectory"),
     [

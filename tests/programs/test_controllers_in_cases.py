@@ -189,9 +189,17 @@ def test_where_the_base_is_stands_in_the_headline_unless_it_is_said(tmp_path, is
     )
 
 
-def test_flags_that_no_configuration_has_are_refused(tmp_path):
-    path = controller_case(tmp_path, "a.mod", rapid("[1,0,0,0]"))
-    with pytest.raises(
-        cl.ClearanceError, match=r"a.mod: line 7: no joints within their limits and joint_1 1.569"
-    ):
+@pytest.mark.parametrize(
+    ("flags", "why"),
+    [
+        ("[1,0,0,0]", "the tool reaches it with joint_1 -28.65 deg"),
+        ("[3,0,0,0]", "asks for joint_1 269.9 deg to 360.1 deg, beyond its limits: joint_1 -"),
+    ],
+)
+def test_flags_that_no_configuration_has_are_refused_with_what_to_do(tmp_path, flags, why):
+    path = controller_case(tmp_path, "a.mod", rapid(flags))
+    with pytest.raises(cl.ClearanceError) as caught:
         cl.load_case(path)
+    told = str(caught.value)
+    assert "a.mod: line 7: the configuration of the target asks for joint_1 " in told
+    assert why in told and r"ConfJ\Off" in told

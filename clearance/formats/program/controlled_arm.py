@@ -68,8 +68,9 @@ class ControlledArm:
     @cached_property
     def axes(self) -> AxisMap:
         """How joints follow axes."""
+        joints = self.chain.masters
         with at("axes"):
-            return AxisMap.of(self.chain.masters, self.asked.axes)
+            return AxisMap.of(joints, self.asked.axes)
 
     def base(self) -> dict[str, Any]:
         """The controller's base, as a frame of a program."""
