@@ -121,8 +121,8 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.nda
 
 
 ANOTHER = (
-    "another configuration of the target (RAPID: [cf1, cf4, cf6, cfx], or `ConfJ\\Off` before the move to ignore it; "
-    "KRL: S and T; else `within`)"
+    "another configuration of the target (RAPID: [cf1, cf4, cf6, cfx], or `ConfJ\\Off` before the move to ignore "
+    "it; KRL: S and T; else `within`)"
 )
 """The remedy where a pose is within reach, and not in the configuration that is asked for."""
 
