@@ -243,6 +243,7 @@ def test_moves_have_names_and_times(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_the_verdict_names_the_move(tmp_path):
     move, middle, _ = line_and_arc_of_joints()
     move["lin"]["to"]["name"] = "P1"
