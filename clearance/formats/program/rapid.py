@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, MissingKey, at, nearest_name
 from clearance.formats.program.controller_program import (
+    AxisTarget,
     ControllerMove,
     ControllerProgram,
     ControllerWait,
@@ -56,7 +57,17 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         language.declare(run)
         run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
-        return ControllerProgram(tuple(moves), (*run.notes, *language.assumed))
+        return ControllerProgram(tuple(moves), (*run.notes, *language.assumed, *_on_cycles(moves)))
+
+
+def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:
+    """A line on the way back that a controller in cycles makes, if the program ends elsewhere than it begins."""
+    ends = [one.to for one in moves if isinstance(one, ControllerMove)]
+    if not ends or (isinstance(ends[0], AxisTarget) and ends[0] == ends[-1]):
+        return []
+    return [
+        "the procedure runs once: in cycles the way from its end to its beginning is not measured"
+    ]
 
 
 def _entry(modules: Modules, asked: str | None) -> str:

@@ -279,9 +279,9 @@ class _Reader:
         if cursor.accept("RETURN"):
             value = None if cursor.is_at(";") else self._expressions.expression()
             return Leave(word.line, "RETURN", RETURN, value)
-        if cursor.accept("EXIT", "EXITCYCLE"):
+        if cursor.accept("EXIT"):
             return Leave(word.line, word.text, STOP)
-        if cursor.is_at("GOTO", "RAISE", "RETRY", "TRYNEXT", "%"):
+        if cursor.is_at("GOTO", "RAISE", "RETRY", "TRYNEXT", "EXITCYCLE", "%"):
             return self._unreadable(word)
         if cursor.after(1).text == ":":  # a label
             cursor.take(), cursor.take()

@@ -75,6 +75,7 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert np.allclose(last.to.pose[:3, :3], np.diag([1, -1, -1]), atol=1e-6)
     assert home.tool[2, 3] == 0.1
     told = "\n".join(found.notes)
+    assert "in cycles the way from its end to its beginning is not measured" in told
     assert "SetDO (line 27)" in told and "without moves: line 18" in told and "PERS data" in told
 
 
@@ -167,6 +168,7 @@ FAULTS = {
     "WHILE di1=0 DO ENDWHILE": "line 3: while waits for what is not known",
     "WaitDI di1, 1;": "line 3: WaitDI waits for what only the controller knows; skip: [WaitDI]",
     "GOTO again;": "line 3: 'GOTO' is not understood",
+    "IF di1=1 ExitCycle;": "line 3: if decides on ExitCycle at line 3",
     '%"proc"%;': "line 3: '%' is not understood",
     "g_GripIn;": "line 3: 'g_gripin' is no known instruction",
     "SearchL di1,p,p,v10,tool0;": "line 3: SearchL changes where the robot goes",
