@@ -19,6 +19,7 @@ from clearance.run.options import COLUMNS
 
 if TYPE_CHECKING:
     from clearance.case.new_case.files import NewCase
+    from clearance.case.new_case.robot import NewCaseRequest
 
 _MOST_NOTES = 8
 
@@ -217,7 +218,6 @@ def new(
     assumption made, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check
     that of the check.
     """
-    from clearance.case.new_case.files import new_case
     from clearance.case.new_case.robot import NewCaseRequest
 
     keys = {
@@ -242,8 +242,7 @@ def new(
     of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
     asked = _motion(_given(motion), _given(of_program), states)
     given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
-    with _naming_options():
-        made = _proposing(new_case(given, out_dir))
+    made = _made(given, out_dir)
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)
     command = _command(out_dir)
@@ -299,6 +298,13 @@ def _only_one(states: list[str] | None, keys: list[str]) -> str:
     if "file" in keys:
         return f"both --trajectory and --states {','.join(states or ())}; one of them"
     return f"--{keys[0]} says how a trajectory is read; --trajectory FILE is missing"
+
+
+def _made(given: NewCaseRequest, out_dir: Path) -> NewCase:
+    from clearance.case.new_case.files import new_case
+
+    with _naming_options():
+        return _proposing(new_case(given, out_dir))
 
 
 def _proposing(made: NewCase) -> NewCase:
