@@ -245,9 +245,7 @@ def new(
     made = _made(given, out_dir)
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)
-    command = _command(out_dir)
-    click.echo(f"{'run':10}clearance check {shlex.join(command)}")
-    return _checked(command) if at_once else ExitCode.CLEAR
+    return _checked(_command(out_dir)) if at_once else ExitCode.CLEAR
 
 
 @contextmanager
@@ -336,7 +334,7 @@ def _write(made: NewCase, out_dir: Path, force: bool) -> None:
 
 
 def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:
-    """What was taken, what was assumed, what is to be known, and what was written.
+    """What was taken, what was assumed, what is to be known, what was written, and what checks it.
 
     Args:
         at_once: a check follows, which tells what it reads itself.
@@ -355,6 +353,7 @@ def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:
     ):
         for line in lines:
             click.echo(f"{label:10}{shown(line)}")
+    click.echo(f"{'run':10}clearance check {shlex.join(_command(out_dir))}")
 
 
 def _command(out_dir: Path) -> list[str]:
