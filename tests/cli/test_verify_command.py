@@ -11,6 +11,7 @@ import pytest
 from clearance.cli import ExitCode, run
 from clearance.receipt.search import too_many
 from clearance.record.replay import load_replay
+from tests.receipt.test_forged_report import hashed
 
 SCENE = Path(__file__).parents[2] / "scenes" / "box_box"
 ROBOT = Path(__file__).parents[2] / "robots" / "gantry_box"
@@ -42,6 +43,15 @@ def test_the_receipt_of_a_run_is_proven(home, capsys):
         in told
     )
     assert "trajectory.csv" in told and "are left out" in told
+
+
+@pytest.mark.slow
+def test_a_report_that_says_something_else_exits_1(home, capsys):
+    table = home / "out" / "steps.csv"
+    table.write_text(table.read_text() + "\n")
+    hashed(home / "out", "steps.csv")
+    assert run(["verify", str(home / "out")]) == ExitCode.VIOLATED
+    assert "steps.csv" in capsys.readouterr().out
 
 
 def test_quiet_says_nothing(home, capsys):
