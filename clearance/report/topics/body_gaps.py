@@ -91,9 +91,9 @@ def sections(content: PageContent) -> Iterator[Section]:
         return
     widths = ", ".join(f"{part} {limit_mm(width)} mm" for part, width in WIDTHS.items())
     told = (
-        "Information, no verdict: who can get there, and which gaps are too narrow to enter, is not known here. "
-        "Told are pairs of which one moves and one stands, with their least gap at the steps, less padding. By "
-        f"the {SOURCE}: {widths}."
+        "Information, no verdict: it is not known who can get there, nor which gaps are too narrow to enter. "
+        "The pairs are those of a moving and a standing body, with their least gap at the steps, less padding. "
+        f"Widths by the {SOURCE}: {widths}."
     )
     rows = [_row(one) for one in found[:MOST_ROWS]]
     heads = ("Between", ">Gap, mm", "When", "May catch")
