@@ -182,7 +182,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
     assert run.verdict.passed
     told = [text for text in run.verdict.warnings if text.startswith("not measured:")]
     assert told == [
-        "not measured: no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
+        "not measured: no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s) [CL421]"
     ]
     assert run.summary["certified"]["not_measured"] == [[1.0, 3.0]]
     bound = run.record.certificate.lower_bound[run.record.steps["time"].to_numpy() == 1.0]

@@ -96,7 +96,7 @@ def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
     case = load(tmp_path, LATE)
     assert [one.text for one in notices_of(case)] == [says]
     found = check(case, need="minimum").verdict
-    assert found.exit_code == 0 and list(found.warnings) == [says]
+    assert found.exit_code == 0 and list(found.warnings) == [f"{says} [CL420]"]
     assert kinds(load(tmp_path, LATE, ", start_state: {shoulder: 0, lift: 0}")) == []
     start = state({"shoulder": 0.0, "lift": 0.0})
     assert kinds(load(tmp_path, displayed(LATE, start))) == []
