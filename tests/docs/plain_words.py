@@ -25,7 +25,10 @@ WORDS = (
         r"(?i)\b(that|those|whose) (of|from|to|in|at|by|with|for) (which|whom)\b",
         "name the thing", "that of which least is left",
     ),
-    Word(r"(?i)\bof what (is|are|was)\b|\bwhat (it|they) (is|are) of\b", "name the thing", "a part of what is left"),
+    Word(
+        r"(?i)\bof what (is|are|was)\b|\bwhat (it|they) (is|are) of\b",
+        "name the thing", "a part of what is left",
+    ),
     Word(
         r"(?i)\b(is|are|was|were|be) of\b(?! (type|the same)\b)",
         "is for, belongs to, comes from, applies to", "the receipt is of a case",
