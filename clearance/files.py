@@ -217,7 +217,7 @@ def refuse_there(files: Iterable[Path], *, force: bool) -> None:
         if file.is_dir():
             raise Unwritable("is a folder", where=str(file), valid="a file is to be written there")
         if file.exists() and not force:
-            raise Unwritable("is there already", where=str(file), valid="--force overwrites it")
+            raise Unwritable("already exists", where=str(file), valid="--force overwrites it")
 
 
 def _exchange_whole(fresh: Path, folder: Path, older: Path) -> None:

@@ -54,7 +54,7 @@ def read_list(store: Store) -> list[Item]:
         raise BadBatch(
             "the list of cases is damaged",
             where=str(store.path),
-            valid="`clearance batch` once more",
+            valid="`clearance batch` again",
         ) from None
 
 

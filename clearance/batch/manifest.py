@@ -182,7 +182,7 @@ def _matching(pattern: str, folder: Path) -> Iterator[str]:
         return
     found = sorted(glob.glob(pattern, root_dir=str(folder), recursive=True))
     if not found:
-        raise MissingFile(f"no file matches {pattern!r}", valid="a pattern of files that are there")
+        raise MissingFile(f"no file matches {pattern!r}", valid="a pattern that matches files")
     for (
         one
     ) in found:  # a `Path` for each would stay behind in part: Python keeps a table of their names

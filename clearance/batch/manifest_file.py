@@ -140,7 +140,7 @@ def manifest_of(raw: object, path: Path) -> tuple[Manifest, dict[str, Any]]:
 def _said(key: str, value: Any) -> dict[str, Any]:
     """The options that a key says."""
     if value is None:
-        raise BadBatch("nothing is given", where=key, valid="a value, or no such key")
+        raise BadBatch("nothing is given", where=key, valid="a value; else leave the key out")
     if key == "limits":
         levels = validated(_Levels, value, key)
         return {name: getattr(levels, name) for name in levels.model_fields_set}

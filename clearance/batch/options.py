@@ -77,7 +77,7 @@ class CaseOptions:
         if _files_key(self.asked) != self.files_key:
             names = [path.name for paths in self.asked.files.values() for path in paths]
             where = " or ".join(names)
-            raise BadBatch("it was changed during the batch", where=where, valid="once more")
+            raise BadBatch("it changed during the batch", where=where, valid="the batch again")
         return Question.of(case, self.asked)
 
     def waived_by(self, waivers: tuple[Waiver, ...]) -> CaseOptions:

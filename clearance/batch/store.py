@@ -290,7 +290,9 @@ def _files_of(place: Path) -> list[Path]:
         return [place]
     found = [path for path in (place / FILE, *parts_in(place)) if path.is_file()]
     if not found:
-        raise BadBatch("no store and no part is here", where=str(place), valid="such a folder")
+        raise BadBatch(
+            "no store or part of one is here", where=str(place), valid="the --out of a batch"
+        )
     return found
 
 

@@ -148,7 +148,7 @@ class _Frames:
             return self._root_from_link(own)
         if self._placed.mount is not None:
             raise BadProgram(
-                f"the robot stands on {self._placed.mount.on!r}, so that where {name!r} is for it may change",
+                f"the robot stands on {self._placed.mount.on!r}, so the place of {name!r} seen from it may change",
                 valid="frames on base",
             )
         if name == schema.WORLD:
@@ -160,7 +160,7 @@ class _Frames:
         if world_from_frame is None:
             valid = "a frame on what stands as long as the case runs"
             raise BadProgram(
-                f"{name!r} moves, so that where a target on it is may change", valid=valid
+                f"{name!r} moves, so the place of a target on it may change", valid=valid
             )
         self.used.add(name)
         return np.asarray(inverse(self._placed.world_from_base) @ world_from_frame)
@@ -182,7 +182,7 @@ class _Frames:
             raise BadProgram(told, valid="a frame on what the arm does not move")
         missing = [name for name in names if name not in self._start]
         if missing:
-            told = f"nobody says where joint {missing[0]!r} below link {link!r} is"
+            told = f"the position of joint {missing[0]!r} below link {link!r} is not given"
             raise BadProgram(told, where="start", valid="its position")
         at_rest = np.array([[self._start[name] for name in names]])
         return np.asarray(chain.frames(at_rest)[0, -1])

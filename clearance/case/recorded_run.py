@@ -132,8 +132,9 @@ def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Bud
         most = MOST[units[one.joint]]
         if one.greatest > most:
             raise BadMotion(
-                f"joint {one.joint!r} is {one.greatest:.3g} {units[one.joint]} off its course at {one.time:.3f} s",
-                valid=f"at most {most:g} {units[one.joint]}; is its clock another (--recorded-offset)?",
+                f"joint {one.joint!r} is {one.greatest:.3g} {units[one.joint]} off the commanded motion at "
+                f"{one.time:.3f} s",
+                valid=f"at most {most:g} {units[one.joint]}; --recorded-offset, if its clock is another",
             )
         joints[one.joint] = replace(joints.get(one.joint, JointTolerance()), tracking=one.greatest)
     source = f"tracking: the greatest errors of the run {found.path}"

@@ -215,7 +215,7 @@ def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:
                 )
     elif given.srdf is None and given.trust_never:
         raise Contradiction(
-            "it speaks of the pairs that an SRDF file calls Never",
+            "it applies to the pairs that an SRDF file calls Never",
             where=f"{field}.trust_never",
             valid=f"{field}.srdf: the file",
         )

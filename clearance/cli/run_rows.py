@@ -50,9 +50,9 @@ def require_finished(report: Path) -> None:
     folder = report if report.is_dir() else report.parent
     if place_of(folder).is_dir():
         raise Incomplete(
-            "a run into this folder was interrupted, or goes on; what is there is older",
+            "a run into this folder was interrupted, or is not finished; its files are older",
             where=str(folder),
-            valid=f"the same check again, or none of {place_of(folder).name!r}",
+            valid=f"the same check again, or remove {place_of(folder).name!r}",
         )
 
 

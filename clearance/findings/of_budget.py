@@ -29,7 +29,7 @@ from clearance.record.wording import mm, of_rule
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
 
-NOT_WORKED_OUT = "what the tolerances leave was not worked out"
+NOT_WORKED_OUT = "the remaining clearance with tolerances was not computed"
 
 
 def of_budget(session: Session, judgement: Judgement | None) -> tuple[Finding, ...]:
@@ -149,10 +149,10 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
     basis = "the samples only" if one.between is None else "the motion"
     waived = " (waived pairs among them)" if record.case.waivers else ""
-    left = f"at least {mm(proven)} mm are left{waived}"
+    left = f"at least {mm(proven)} mm remain{waived}"
     if proven <= 0.0:
         left = "contact is not ruled out"  # a number below 0 says no depth
-    told = f"With every error at its worst at once {left}{of_rule(one.rule)}; proven for {basis}."
+    told = f"With all errors at their worst at once {left}{of_rule(one.rule)}; proven for {basis}."
     if expected is not None:
         spread = f"{budget.coverage:g} sigma, estimate{'' if one.between is not None else ' at the samples'}"
         told += f" Expected ({spread}): {mm(expected)} mm."

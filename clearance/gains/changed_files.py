@@ -144,7 +144,7 @@ class _Files:
         content, asked = self.scene_at.content, self._scene_request
         if any(one.severity is Severity.SUSPECT for one in content.notices):
             raise BadChange(
-                "its file brings suspect input, of which a scene made from it would say nothing",
+                "its file brings suspect input, which a scene made from it would hide",
                 where=asked.shown,
                 valid="a scene in YAML, as clearance convert makes one",
             )

@@ -69,7 +69,7 @@ def refuse_taken(folder: Path, names: Collection[str], *, force: bool) -> None:
     for name in (*names, *REPORTS):
         there = folder / name
         if there.exists() and not force:
-            raise Unwritable("is there already", where=str(there), valid="--force overwrites it")
+            raise Unwritable("already exists", where=str(there), valid="--force overwrites it")
         if there.is_dir() and name not in REPORTS:
             raise Unwritable("is a folder", where=str(there), valid="a file is to be written there")
     for name in REPORTS:

@@ -212,7 +212,7 @@ class Request:
         _require_robots(self)
         if self.tool is not None and not self.keep_tool and self.tool_path != "kept":
             raise BadChange(
-                "a tool is named of which nothing is to be kept",
+                "a tool is named, and nothing says that it is kept",
                 valid="kind waypoints with keep_tool, or base with a tool path that is kept",
             )
         if self.turn is not None:
@@ -242,7 +242,7 @@ def _require_robots(request: Request) -> None:
     names = request.robot
     if len(names) > 1 and (request.kind != "waypoints" or request.keep_tool or request.tool):
         raise BadChange(
-            f"{len(names)} robots are named, of which one is changed",
+            f"{len(names)} robots are named, and only one can be changed",
             valid="one; several with kind waypoints, without a tool",
         )
     if len({*names}) < len(names):

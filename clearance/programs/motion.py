@@ -147,7 +147,7 @@ class _Samples:
             if isinstance(way, JointWay) and isinstance(move, JointMove) and move.pose is not None:
                 told = [f"{name} {at:.4g}" for name, at in zip(names, way.target, strict=True)]
                 self.notes.append(
-                    f"{move.name}: of the joints that reach its pose the nearest are taken: {', '.join(told)}"
+                    f"{move.name}: the nearest joints found for its pose are taken [rad or m]: {', '.join(told)}"
                 )
 
     def motion(self) -> ProgramMotion:

@@ -54,9 +54,12 @@ def _beside(verdict: Verdict) -> list[str]:
     told = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
     if verdict.tolerances == ACCEPTED:
         told += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
-    for basis, of in ((SAMPLES, "the motion between the samples"), (POSE, "any motion")):
+    for basis, unchecked in (
+        (SAMPLES, "the motion between the samples is not checked"),
+        (POSE, "no motion is checked"),
+    ):
         if verdict.basis == basis:
-            told.append(f"{verdict.text()}: nothing is said about {of}")
+            told.append(f"{verdict.text()}: {unchecked}")
     return told
 
 

@@ -147,7 +147,7 @@ def _odd_velocities(placed: PlacedRobot, before: str) -> list[str]:
     return [
         f"the velocities of joint {before + joint.name!r} mean a way of {meant:.3g} where its positions go "
         f"{gone:.3g}"
-        f"{f' (likewise {others})' if others else ''}; velocities are in {unit}, is this {other}?"
+        f"{f' (the same for {others})' if others else ''}; velocities are in {unit}, is this {other}?"
     ]
 
 

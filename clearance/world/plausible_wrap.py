@@ -27,7 +27,7 @@ def notices_on_wrap(placed: PlacedRobot, before: str = "") -> list[Notice]:
         f"joint {before + first.joint!r} turns by more than half a turn in one step, from {first.before:.6g} to "
         f"{first.after:.6g} rad between {start:.6g} s and {end:.6g} s"
         f"{f', and in {first.n_steps - 1} more' if first.n_steps > 1 else ''}"
-        f"{f' (likewise {others})' if others else ''}: {first.after - first.before:.3g} rad as written, "
+        f"{f' (the same for {others})' if others else ''}: {first.after - first.before:.3g} rad as written, "
         f"{first.shortest:.3g} rad the shortest way; say which with trajectory: {{wrap: as_written}} or "
         "{wrap: shortest}"
     )

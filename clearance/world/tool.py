@@ -120,7 +120,7 @@ def tool_of(placed: PlacedRobot, name: str | None) -> Tool:
         if len({column for _, column in found.movers}) == len(given):
             return found
     raise BadInput(
-        f"which link of robot {placed.robot.name!r} is its tool is not said, and none is moved by all joints",
+        f"no link of robot {placed.robot.name!r} is named as its tool, and none is moved by all joints",
         valid=f"one of {', '.join(names[-4:])}",
     )
 

@@ -24,8 +24,8 @@ from tests.formats.making_cell import load_cell
 PATH = "time,shoulder,lift\n0,0,0\n1,0.1,0.01\n2,0.3,0.01\n"
 APART = "it covers 5 to 6 s, and the commanded motion 0 to 1 s; --recorded-offset -5 if both begin"
 FAR_OFF = (
-    "joint 'shoulder' is 0.5 rad off its course at 0.000 s; at most 0.2 rad; is its clock another "
-    "(--recorded-offset)?"
+    "joint 'shoulder' is 0.5 rad off the commanded motion at 0.000 s; at most 0.2 rad; "
+    "--recorded-offset, if its clock is another"
 )
 DRIVEN = "time,shoulder,lift\n0,0,0\n0.5,0.06,0.006\n2,0.298,0.01\n2.5,0.298,0.01\n"
 
@@ -79,7 +79,7 @@ def test_joints_that_were_to_stay_are_held_against_where():
     ("driven", "timing", "kind", "told"),
     [
         (trajectory([5, 6], [0, 0], [0, 0]), AS_GIVEN, BadTime, APART),
-        (trajectory([0, 1], [0, 0]), AS_GIVEN, MissingKey, "does not have joints b, which were to move"),
+        (trajectory([0, 1], [0, 0]), AS_GIVEN, MissingKey, "does not have joints b, which should move"),
         (trajectory([0, 1], [0, 0], [0, 0]), Timing(after="loop"), BadInput, "begins again and again"),
     ],
 )  # fmt: skip

@@ -101,7 +101,7 @@ def test_one_of_several_is_chosen(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["a.yaml", "b.csv"], "b.csv: is there already; --force overwrites it"),
+        (["a.yaml", "b.csv"], "b.csv: already exists; --force overwrites it"),
         (["a.yaml", "a.yaml", "--force"], "would overwrite"),
         (
             ["a.yaml", "c.txt"],

@@ -167,7 +167,7 @@ def test_meshes_beside_the_scene_are_not_overwritten_unasked(capsys):
     Path("cell.scene").write_text(FIRST)
     Path("made/cell.scene.mesh0.off").write_text("mine")
     assert convert("cell.scene", "made/scene.yaml") == 2
-    assert "made/cell.scene.mesh0.off: is there already" in capsys.readouterr().err
+    assert "made/cell.scene.mesh0.off: already exists" in capsys.readouterr().err
     assert not Path("made/scene.yaml").exists()
     assert convert("cell.scene", "made/scene.yaml", "--force") == 0
     assert Path("made/cell.scene.mesh0.off").read_text().startswith("OFF")

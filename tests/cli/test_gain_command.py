@@ -106,7 +106,10 @@ def test_the_paths_of_two_robots_are_written_each(tmp_path, capsys):
 @pytest.mark.parametrize(
     "options, told",
     [
-        (["--kind", "obstacle"], "which obstacle may be moved is not said; one of left, right"),
+        (
+            ["--kind", "obstacle"],
+            "there are several obstacles, and none is named; one of left, right",
+        ),
         (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "waypoints", "--keep", "5:6"], "is not in the run; times from 0.5 s to 1.5"),

@@ -325,7 +325,7 @@ def test_nothing_is_overwritten_unasked(capsys):
     Path("out/scene.yaml").write_text("mine")
     Path("out/notes.txt").write_text("mine too")
     assert new(*USUAL) == 2
-    assert "out/scene.yaml: is there already; --force overwrites it" in capsys.readouterr().err
+    assert "out/scene.yaml: already exists; --force overwrites it" in capsys.readouterr().err
     assert Path("out/scene.yaml").read_text() == "mine" and not Path("out/case.yaml").exists()
     assert new(*USUAL, "--force") == 0
     assert Path("out/notes.txt").read_text() == "mine too"

@@ -78,7 +78,7 @@ def test_a_pair_of_links_can_be_allowed_in_either_order(folder, capsys):
     ("robot", "told"),
     [
         (", srdf: folder.srdf, self_clearance: false", "robot.srdf: it excuses pairs of links"),
-        (", trust_never: true", "robot.trust_never: it speaks of the pairs that an SRDF file"),
+        (", trust_never: true", "robot.trust_never: it applies to the pairs that an SRDF file"),
         (", srdf: nowhere.srdf", "robot.srdf"),
         (", self_clearance: perhaps", "robot.self_clearance"),
     ],

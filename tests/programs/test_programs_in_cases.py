@@ -486,9 +486,9 @@ def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
 @pytest.mark.parametrize(
     ("on", "told"),
     [
-        ("turntable/plate", "'turntable/plate' moves, so that"),
-        ("part", "'part' moves, so that"),
-        ("far", "'far' moves, so that"),
+        ("turntable/plate", "'turntable/plate' moves, so the place"),
+        ("part", "'part' moves, so the place"),
+        ("far", "'far' moves, so the place"),
         ("arm/forearm", "link 'forearm' moves with joint"),
         ("turntable/late", "'turntable/late' is not there; did you mean 'turntable/plate'"),
     ],

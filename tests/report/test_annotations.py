@@ -143,8 +143,8 @@ def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):
     case = load_gates(tmp_path, {"gate": (0.0, 0.1)})
     lines = lines_of(cl.check(case, certify=False), tmp_path)
     assert lines == [
-        "::warning title=clearance%3A gates::clear at the samples only: nothing is said about the motion "
-        "between the samples"
+        "::warning title=clearance%3A gates::clear at the samples only: the motion "
+        "between the samples is not checked"
     ]
     waivers = (
         Waiver(("box", "gate_a"), at_least=0.002, reason="gives way", by="N. N."),

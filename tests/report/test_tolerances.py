@@ -82,7 +82,7 @@ def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
 def test_what_is_left_is_told_in_words_that_can_be_signed():
     kept = with_budget(NEAR, 0.0001, between=True)
     assert verdict_of(kept).with_tolerances == (
-        "With every error at its worst at once at least 0.176 mm are left; proven for the motion. "
+        "With all errors at their worst at once at least 0.176 mm remain; proven for the motion. "
         "Expected (3 sigma, estimate): 0.342 mm.",
     )
     (line,) = verdict_of(OPEN).with_tolerances
@@ -125,7 +125,7 @@ def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
     assert "accepted: what is not proven with the tolerances may pass" in text
     told = annotation_lines(model_of(ACCEPTED), tmp_path)
     first, *others = told
-    assert first.startswith("::warning ") and "not proven, which is accepted: With every" in first
+    assert first.startswith("::warning ") and "not proven, which is accepted: With all" in first
     assert not any(line.startswith("::error") for line in others)
     lines = annotation_lines(model_of(OPEN), tmp_path)
     lines = [line for line in lines if line.startswith("::error")]
@@ -137,7 +137,9 @@ def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
 
 def test_what_was_not_worked_out_is_not_clear():
     (finding,) = [one for one in findings_of(NO_ANSWER) if one.kind == TOLERANCES]
-    assert finding.text == "what the tolerances leave was not worked out" and finding.fails
+    assert (
+        finding.text == "the remaining clearance with tolerances was not computed" and finding.fails
+    )
 
 
 def test_findings_are_kept_and_compared(tmp_path):

@@ -244,7 +244,7 @@ def _of_file(data: bytes, case: Case) -> dict[_Key, PathTolerance]:
     }
     if not found:
         first, names = next(iter(known), ""), [one.part for one in joints_of(case).all]
-        raise UnknownJoint("it speaks of no joint of the case", valid=nearest_name(first, names))
+        raise UnknownJoint("it names no joint of the case", valid=nearest_name(first, names))
     return found
 
 

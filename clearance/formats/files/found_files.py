@@ -78,7 +78,7 @@ def _notices_on_stand_ins(stand_ins: PathsByName) -> list[Notice]:
 
 def _first(files: Mapping[str, str], verb: str = "as ") -> str:
     (given, shown), *others = files.items()
-    rest = "" if not others else f", and {len(others)} more likewise"
+    rest = "" if not others else f", and {len(others)} more in the same way"
     return f"{given} {verb}{shown}{rest}"
 
 

@@ -63,7 +63,9 @@ class StrictModel(BaseModel):
             if key not in keys:
                 raise UnknownKey(f"unknown key {key!r}", valid=nearest_name(str(key), keys))
             if key in cls.FILLED and data[key] is None:
-                raise BadInput("nothing is given", where=key, valid="a value, or no such key")
+                raise BadInput(
+                    "nothing is given", where=key, valid="a value; else leave the key out"
+                )
         return data
 
 

@@ -135,7 +135,9 @@ class _NamedRows(StrictModel):
             raise BadTolerance(given, valid="a mapping is needed")
         for key in cls.FILLED:
             if key in data and data[key] is None:
-                raise BadTolerance("nothing is given", where=key, valid="a value, or no such key")
+                raise BadTolerance(
+                    "nothing is given", where=key, valid="a value; else leave the key out"
+                )
         return data
 
 

@@ -33,7 +33,7 @@ def grouped(notes: Iterable[tuple[str, str]]) -> list[str]:
         line = f"{short(first)}: {note}"
         if others:
             names = listed([PurePosixPath(file).name for file, _ in others])
-            line = f"{len(files)} meshes: {line}; likewise {names}"
+            line = f"{len(files)} meshes: {line}; the same for {names}"
         lines.append(line)
     return lines
 

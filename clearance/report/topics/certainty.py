@@ -140,7 +140,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
 
 def _certified_lines(record: Record) -> Iterator[Line]:
     if record.certificate is None:
-        yield "certified", "no: nothing is said about the motion between the samples"
+        yield "certified", "no: the motion between the samples is not checked"
         return
     told = certified_of(record, record.certificate)
     yield "certified", certified_text(record.moves.named(told))
@@ -205,7 +205,7 @@ def _exactness(method: str, tolerance: float | None) -> str:
         )
     return (
         "Method “exact”: the global minimum over all polygons of the shapes as loaded, never hulls "
-        "or samples; what is left is the rounding of float64."
+        "or samples; the only error is the rounding of float64."
     )
 
 
@@ -251,7 +251,7 @@ _MEASURED = {
 
 def _sampling(summary: dict[str, Any]) -> Content:
     steps = f"Clearance is {_MEASURED[summary['need']]} {count(summary['n_steps'], 'step')}; "
-    proven = "nothing is said about the motion between two steps."
+    proven = "the motion between two steps is not checked."
     if summary["certified"] is not None:
         proven = f"proven is {certified_text(summary['certified'])}."
     error = summary["tracking_error"]

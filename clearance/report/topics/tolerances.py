@@ -126,7 +126,7 @@ def source_lines(record: Record, one: RuleBudget, worst: BudgetMoment) -> Iterat
         if source.proven > 0.0
     ]
     if taken:
-        yield f"most is taken by {', '.join(taken)}"
+        yield f"largest causes: {', '.join(taken)}"
     yield from _largest_lines(record, one, worst.sources[:MOST_SOURCES])
 
 
@@ -139,7 +139,7 @@ def _largest_lines(
     enough = [f"{name} {largest}" for name, largest in told if largest]
     others = [name for name, largest in told if not largest]
     if enough:
-        yield f"greatest that keeps {limit}, others as given: {', '.join(enough)}"
+        yield f"greatest value that keeps {limit}, others as given: {', '.join(enough)}"
     if others:
         yield f"not enough to keep {limit}, even at 0, alone: {', '.join(others)}"
 
@@ -210,7 +210,7 @@ HUES = 6
 
 METHOD = (
     "Proven: every error takes its worst value, in its worst direction, at once with all others; nothing is "
-    "linearised, and the pair that errors bring nearest is looked for among all. Expected: an estimate at the "
+    "linearised, and the pair that errors bring nearest is searched among all pairs. Expected: an estimate at the "
     "nearest points, no proof; errors are taken as independent."
 )
 

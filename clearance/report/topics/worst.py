@@ -194,7 +194,7 @@ def _signed(value: float) -> str:
 
 
 def _note(given: dict[str, Any]) -> str:
-    told = "In first order, near this moment: a large move changes it otherwise, and other pairs come near."
+    told = "To first order, near this moment: a large move changes it differently, and other pairs come near."
     if len(given["pairs"]) > 1:
         names = [f"{a} and {b}" for a, b in given["pairs"][:MOST_PAIRS]]
         more = len(given["pairs"]) - len(names)

@@ -218,9 +218,7 @@ def test_controllers_that_say_too_little(tmp_path, old, new, told):
 def test_controllers_of_other_joints_are_refused(tmp_path):
     others = CONTROLLERS.replace("shoulder", "elbow").replace("lift", "wrist")
     found = fault(tmp_path, "{tracking: {file: c.yaml}}", c__yaml=others)
-    assert isinstance(found, UnknownJoint) and "c.yaml: it speaks of no joint of the case" in str(
-        found
-    )
+    assert isinstance(found, UnknownJoint) and "c.yaml: it names no joint of the case" in str(found)
 
 
 def test_a_file_takes_the_place_of_the_block(tmp_path):

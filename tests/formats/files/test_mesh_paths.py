@@ -77,7 +77,7 @@ def test_a_file_of_the_same_name_stands_in_as_suspect_input_that_names_both(tmp_
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
     assert notice.text == (
         "CHECK PACKAGE: package 'arms' was not found: package://arms/meshes/part.stl is taken from meshes/part.stl"
-        ", and 1 more likewise; is it the same file? give the package's folder in package_dirs"
+        ", and 1 more in the same way; is it the same file? give the package's folder in package_dirs"
     )
 
 
