@@ -42,7 +42,7 @@ class Effects:
         """What in a body moves the robot, leaves the body, or may do so, in words."""
         for one in within(body):
             leaves = isinstance(one, Leave) and one.what != STOP and not entered
-            if leaves or (isinstance(one, Unreadable) and one.word not in self.skip):
+            if leaves or (isinstance(one, Unreadable) and not self.leaves_out(one)):
                 yield f"{one.word} at {one.line}"  # type: ignore[union-attr]
             for call in _calls_of(one):
                 if call.name in self.skip or call.name in entered:
@@ -52,6 +52,10 @@ class Effects:
                     yield from self.deciding(inner, (*entered, call.name))
                 elif self.moves(call.name) is not False:
                     yield f"{call.name} at {one.line}"
+
+    def leaves_out(self, one: Unreadable) -> bool:
+        """True if a statement is left out as asked; one that decides which lines run never is."""
+        return one.word in self.skip and not one.jumps
 
     def is_still(self, routine: Routine) -> bool:
         """True if nothing in a routine moves the robot."""
@@ -108,6 +112,9 @@ def unknown_word(call: Call) -> BadProgram:
 
 def unreadable_word(one: Unreadable) -> BadProgram:
     """The error for a statement that may do anything."""
+    if one.jumps:
+        told = f"{one.word!r} is not understood, and decides which lines run"
+        return BadProgram(told, where=str(one.line), valid="a program without it")
     return BadProgram(
         f"{one.word!r} is not understood, and may decide where the robot goes",
         where=str(one.line),

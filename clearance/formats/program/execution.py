@@ -175,7 +175,7 @@ class Execution:
             case Leave():
                 return one
             case Unreadable():
-                if one.word not in self.skip:
+                if not self.effects.leaves_out(one):
                     raise unreadable_word(one)
                 self.note("left out as asked", f"{one.word} ({one.line})")
         return None

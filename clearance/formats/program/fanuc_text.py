@@ -105,6 +105,7 @@ _END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGN
 _ASSIGNED = re.compile(
     r"((?:R|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)", re.IGNORECASE | re.DOTALL
 )
+_JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
 _TIMED = re.compile(r"\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,.*", re.IGNORECASE | re.DOTALL)
 
 
@@ -288,7 +289,11 @@ class _Reader:
     def _action(self, line: Line, text: str) -> tuple[Statement, ...]:
         """The statements that a condition decides on; they hold no further one."""
         word = _first(text)
-        return (Unreadable(line, word),) if word == "IF" else tuple(self._simple(line, text))
+        return (
+            (Unreadable(line, word, jumps=True),)
+            if word == "IF"
+            else tuple(self._simple(line, text))
+        )
 
     def _simple(self, line: Line, text: str) -> list[Statement]:
         """A statement that holds no other."""
@@ -312,7 +317,7 @@ class _Reader:
             return [Assign(line, name, _condition(assigned[2], line), is_of_all=True)]
         if word in QUIET:
             return [Do(line, Call(word, (), {}, line))]
-        return [Unreadable(line, word)]
+        return [Unreadable(line, word, bool(_JUMPS.search(text)))]
 
     def _motion(self, line: Line, found: re.Match[str]) -> Do:
         """A motion; its speed is the second argument.
@@ -382,7 +387,9 @@ def _wait(line: Line, text: str) -> Statement:
     )
     if seconds is not None:
         return Do(line, Call(WAIT, (_condition(seconds[1], line),), {}, line))
-    condition, _, _ = text.partition("TIMEOUT")
+    condition, _, late = text.partition("TIMEOUT")
+    if _JUMPS.search(late):
+        return Unreadable(line, "TIMEOUT", jumps=True)
     return While(line, "WAIT", _condition(condition, line), (), at_end=True)
 
 
@@ -390,6 +397,6 @@ def _call(line: Line, text: str) -> Statement:
     """A call of another program."""
     found = re.fullmatch(r"([\w-]+)\s*(?:\((.*)\))?", text, re.DOTALL)
     if found is None:
-        return Unreadable(line, "CALL")
+        return Unreadable(line, "CALL", jumps=True)
     given = [] if not (found[2] or "").strip() else found[2].split(",")
     return Do(line, Call(found[1].upper(), tuple(_condition(one, line) for one in given), {}, line))

@@ -49,6 +49,9 @@ from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 
 _Branch = tuple[Expression | None, tuple[Statement, ...]]
 
+_JUMPS = ("RETURN", "EXIT", "GOTO", "BRAKE", "RESUME")
+"""They decide which lines run."""
+
 _ENDS = ("END", "ENDFCT", "DEF", "DEFFCT")
 
 
@@ -185,7 +188,7 @@ class _Reader:
             if "=" in marks and "(" not in marks:
                 unread = Constant(Unknown(f"{word} is given what is not read"))
                 return [Assign(line, Name(word, line), unread)]
-            return [Unreadable(line, word)] if within_routine else []
+            return [Unreadable(line, word, word in _JUMPS)] if within_routine else []
 
     def _block(self, word: str, line: Line) -> Statement | None:
         """The statement that a block is, which begins with a word; None for another one."""
@@ -215,8 +218,8 @@ class _Reader:
             cursor.take()
             value = read.expression() if cursor.next.kind != NEWLINE else None
             return [Leave(line, word, RETURN if word == "RETURN" else BREAK, value)]
-        if word in ("GOTO", "HALT", "BRAKE", "RESUME"):
-            return [Unreadable(line, word)]
+        if word in (*_JUMPS, "HALT"):
+            return [Unreadable(line, word, word != "HALT")]
         if word == "WAIT":
             return [self._wait(line, read)]
         if word in MOVES:

@@ -297,7 +297,7 @@ class _Reader:
         while not self._cursor.is_at(";"):
             if self._cursor.take().kind == END:
                 self._cursor.refuse("';'")
-        return Unreadable(word.line, word.text)
+        return Unreadable(word.line, word.text, jumps=True)
 
     def _call_or_value(self, word: Token) -> Statement:
         cursor = self._cursor

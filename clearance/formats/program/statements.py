@@ -77,10 +77,11 @@ class Leave:
 
 @dataclass(frozen=True)
 class Unreadable:
-    """A statement whose effect is not known; `word` is its first."""
+    """A statement whose effect is not known; `word` is its first. One that `jumps` is never left out."""
 
     line: Line
     word: str
+    jumps: bool = False
 
 
 Statement = Assign | Do | If | While | For | Leave | Unreadable

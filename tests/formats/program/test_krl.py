@@ -258,6 +258,13 @@ def test_each_module_has_points_and_procedures_of_its_own():
     assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
 
 
+@pytest.mark.parametrize("body", ["GOTO over", "BRAKE", "IF $IN[1] THEN\nGOTO over\nENDIF"])
+def test_what_decides_which_lines_run_is_never_left_out(body):
+    with pytest.raises(cl.ClearanceError, match=r"line [78]") as caught:
+        program(f"{body}\nPTP XHOME\nover:", skip=["GOTO", "BRAKE"])
+    assert "skip" not in str(caught.value)
+
+
 def test_a_move_is_never_left_out():
     with pytest.raises(cl.ClearanceError, match="PTP moves the robot"):
         program("PTP XHOME", skip=["ptp"])

@@ -251,6 +251,9 @@ def test_what_moves_nothing_is_left_out_by_name():
     assert len(moves_of(body, skip=["WAITDI", "Grip_In", "while"])) == 1
     with pytest.raises(cl.ClearanceError, match="skip: MoveL moves the robot"):
         moves_of(body, skip=["movel"])
+    for word in ("GOTO", "EXITCYCLE"):  # it decides which lines run
+        with pytest.raises(cl.ClearanceError, match="decides which lines run; a program without"):
+            moves_of(f"{word} a;", skip=[word])
 
 
 def test_the_procedure_that_runs_is_chosen():
