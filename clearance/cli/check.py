@@ -68,12 +68,14 @@ def check(
     change it: `clearance compare` has an exit code of its own.
     """
     spelled = spelled_by(CheckOptions, ARGUMENTS)
-    options = made(CheckOptions, said(CheckOptions, given), spelled)
-    outputs = Outputs(**given)
+    asked, outputs = said(CheckOptions, given), Outputs(**given)
     outputs.require_writable()
     printed = PrintedOutput(as_json, quiet, brief)
-    _require_file(case_file)
+    with outputs.refusal_told(case_file, to_stderr=as_json):
+        options = made(CheckOptions, asked, spelled)
+        _require_file(case_file)
 
+    @outputs.refusal_told(case_file, to_stderr=as_json)
     def checked() -> ExitCode:
         from clearance.case.case_file import load_case
         from clearance.files import refuse_inputs

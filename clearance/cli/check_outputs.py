@@ -6,6 +6,8 @@ Whatever can be refused is refused before anything is measured. Not for: what is
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +15,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli.options import OutputPath, in_order
+from clearance.codes import code_of_error, coded
 from clearance.errors import Unwritable
 
 if TYPE_CHECKING:
@@ -133,6 +136,40 @@ class Outputs:
             told = "this run has not come to an end; the same command goes on"
             write_unfinished("clearance", told, self.junit)
 
+    @contextmanager
+    def refusal_told(self, case_file: Path, *, to_stderr: bool) -> Iterator[None]:
+        """Tells build servers what stops a run, so that nothing of an older run is taken for its answer.
+
+        A place that holds no JUnit or no summary is left as it is: it may be an input, named by mistake.
+        """
+        try:
+            yield
+        except Exception as error:
+            text = coded(
+                " ".join(str(error).split()) or type(error).__name__, code_of_error(type(error))
+            )
+            with suppress(Unwritable):
+                self._tell_refusal(case_file, text, type(error).__name__, to_stderr)
+            raise
+
+    def _tell_refusal(self, case_file: Path, text: str, fault: str, to_stderr: bool) -> None:
+        if self.junit is not None and _holds(self.junit, b"<testsuite"):
+            from clearance.report.junit import write_unfinished
+
+            write_unfinished("clearance", text, self.junit, fault)
+        if self.summary is None and not self.github:
+            return
+        from clearance.files import write_file
+        from clearance.report.annotations import refusal_line
+        from clearance.report.markdown import refusal_markdown
+
+        summary = refusal_markdown(case_file.name, text)
+        if self.summary is not None and _holds(self.summary, b"### "):
+            write_file(self.summary, summary.encode("utf-8"))
+        if self.github:
+            click.echo(refusal_line(case_file, text, _root()), err=to_stderr)
+            _append_to_summary(summary)
+
     def trajectory_ahead(self, question: Question) -> WrittenTrajectory | None:
         """The trajectory file, where the motion is known before it is measured.
 
@@ -213,6 +250,16 @@ class Outputs:
             _annotate(run, to_stderr)
 
 
+def _holds(file: Path, sign: bytes) -> bool:
+    """Whether a file has a sign near its begin; one that is empty or not there has."""
+    if not file.exists():
+        return True
+    with suppress(OSError), file.open("rb") as opened:
+        begin = opened.read(1000)
+        return not begin or sign in begin
+    return False
+
+
 def _append_to_summary(text: str) -> None:
     place = os.environ.get(SUMMARY_VARIABLE)
     if not place:
@@ -227,6 +274,10 @@ def _append_to_summary(text: str) -> None:
 def _annotate(run: Run, to_stderr: bool) -> None:
     from clearance.report.annotations import annotation_lines
 
-    root = Path(os.environ.get(ROOT_VARIABLE) or os.curdir)
-    for line in annotation_lines(run.report, root):
+    for line in annotation_lines(run.report, _root()):
         click.echo(line, err=to_stderr)
+
+
+def _root() -> Path:
+    """The folder of the repository."""
+    return Path(os.environ.get(ROOT_VARIABLE) or os.curdir)

@@ -41,6 +41,12 @@ def annotation_lines(model: ReportModel, root: Path) -> Iterator[str]:
     yield from lines[:MOST]
 
 
+def refusal_line(case_file: Path, text: str, root: Path) -> str:
+    """The line on a case that cannot be read or is refused."""
+    place = {"file": _shown(str(case_file), root), "title": f"clearance: {case_file.name}"}
+    return command("error", place, text)
+
+
 def _of_verdict(verdict: Verdict) -> list[str]:
     told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
     told += [*verdict.unproven_motion, *verdict.waiver_faults]

@@ -75,14 +75,14 @@ def write_junit(
             file.write(part.encode())
 
 
-def write_unfinished(suite: str, text: str, path: Path) -> None:
-    """Writes the file of a run that has no answer yet, so that an older one, green perhaps, is not taken for its
-    answer: one case that is an error, and says why.
+def write_unfinished(suite: str, text: str, path: Path, fault: str = "Incomplete") -> None:
+    """Writes the file of a run that has no answer, or none yet, so that an older one, green perhaps, is not taken
+    for its answer: one case that is an error, and says why.
 
     Raises:
         Unwritable: as `write_junit`.
     """
-    write_junit(suite, [TestResult("verdict", "finished", text, "Incomplete", errs=True)], path, {})
+    write_junit(suite, [TestResult("verdict", "finished", text, fault, errs=True)], path, {})
 
 
 def _parts(

@@ -34,6 +34,11 @@ def plain(text: str) -> str:
     return _LINK_OR_LIST.sub(lambda sign: f"&#{ord(sign[0])};", shown.translate(_SIGNS))
 
 
+def refusal_markdown(name: str, text: str) -> str:
+    """An error in place of a verdict."""
+    return f"### {plain(name)}: ERROR\n\n- {plain(text)}\n"
+
+
 def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
     """The verdict, why, and the findings that are not clear; with what became of them since a baseline."""
     verdict, findings = model.verdict, model.findings

@@ -10,6 +10,7 @@ import pytest
 
 from clearance.cli import run
 from tests.findings.gates import write_gates
+from tests.report.junit_schema import valid_suite
 
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.1)}
 WORSE = {"gate_a": (-0.5, 0.0025), "gate_b": (0.5, 0.1)}
@@ -229,3 +230,33 @@ def test_the_hook_tells_all_that_fails(place, capsys):
     assert lines[0].startswith("  3.000 mm, below the fail limit of 5 mm: box - gate_a")
     assert lines[1].startswith("  suspect units: CHECK UNITS: obstacle 'gate_b'")
     assert lines[2].startswith("  unused waiver: waiver box - gate_a") and len(lines) == 3
+
+
+def test_a_refused_case_leaves_nothing_green(place, capsys, monkeypatch):
+    step = place / "step.md"
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(step))
+    asked = ("--junit", "junit.xml", "--summary", "own.md", "--github", "--quiet")
+    assert check("clear/case.yaml", *asked) == 0
+    case = place / "clear" / "case.yaml"
+    case.write_text(case.read_text().replace("limits:", "limit:"))
+    capsys.readouterr()
+    for given, code in ((case, "CL103"), (place / "none.yaml", "CL101")):
+        assert check(str(given), *asked) == 2
+        out, err = capsys.readouterr()
+        told = err.removeprefix("error: ").rstrip("\n")
+        assert f"[{code}]" in told
+        assert out.startswith("::error file=") and f"clearance%3A {given.name}::{told}\n" in out
+        suite = valid_suite(place / "junit.xml")
+        (fault,) = suite.iter("error")
+        assert suite.get("errors") == "1" and fault.get("message") == told
+        for summary in (place / "own.md", step):
+            assert summary.read_text().splitlines()[-3] == f"### {given.name}: ERROR"
+
+
+@pytest.mark.parametrize("option", ["--junit", "--summary"])
+def test_a_refused_case_overwrites_no_input(option, place, capsys):
+    case = place / "clear" / "case.yaml"
+    case.write_text(case.read_text().replace("limits:", "limit:"))
+    before = case.read_bytes()
+    assert check("clear/case.yaml", option, "clear/case.yaml") == 2
+    assert case.read_bytes() == before and capsys.readouterr().err.count("\n") == 1
