@@ -57,9 +57,30 @@ class Effects:
         """True if a statement is left out as asked; one that decides which lines run never is."""
         return one.word in self.skip and not one.jumps
 
-    def is_still(self, routine: Routine) -> bool:
-        """True if nothing in a routine moves the robot."""
-        return next(self.deciding(routine.body, (routine.name,)), None) is None
+    def moving(self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()) -> Iterator[Call]:
+        """The calls in a body that move the robot or change how it moves, or may do so."""
+        for call in (call for one in within(body) for call in _calls_of(one)):
+            if call.name in self.skip or call.name in entered:
+                continue
+            if call.name in self.routines:
+                inner = self.routines[call.name].body
+                yield from self.moving(inner, (*entered, call.name))
+            elif self.moves(call.name) is not False:
+                yield call
+
+    def require_still(self, what: str, name: str, line: Line) -> None:
+        """Nothing, if nothing in a routine that runs beside the program moves the robot.
+
+        Raises:
+            BadProgram: something does, or may.
+        """
+        if name in self.routines:
+            culprit = next(self.deciding(self.routines[name].body, (name,)), None)
+        else:
+            culprit = None if name in self.skip else "it is in no file that is given"
+        if culprit is not None:
+            told = f"{what} {name!r} moves the robot, or may: {culprit}"
+            raise BadProgram(told, where=str(line), valid="one that moves nothing")
 
     def changed_in(
         self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()

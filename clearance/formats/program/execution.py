@@ -26,6 +26,7 @@ from clearance.formats.program.expressions import (
     number,
     value_of,
 )
+from clearance.formats.program.remarks import Remarks
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -44,7 +45,6 @@ from clearance.formats.program.statements import (
 )
 from clearance.formats.program.tokens import Line
 from clearance.formats.text.notes import counted
-from clearance.world.notice import listed
 
 MOST_STATEMENTS = 500_000
 """Statements that a program runs; more are a loop that does not end."""
@@ -91,7 +91,7 @@ class Language(Protocol):
 
 
 @dataclass(eq=False)
-class Execution:
+class Execution(Remarks):
     """A program that runs.
 
     Attributes:
@@ -105,7 +105,6 @@ class Execution:
     variables: dict[str, Any] = field(default_factory=dict)
     frames: list[dict[str, Any]] = field(init=False)
     moves: list[ControllerMove | ControllerWait] = field(default_factory=list)
-    _passed: dict[str, dict[str, None]] = field(default_factory=dict)
     _n_run: int = 0
 
     @cached_property
@@ -121,19 +120,6 @@ class Execution:
                 raise BadProgram(
                     f"{name} moves the robot", where="skip", valid="what moves nothing, or no skip"
                 )
-
-    @property
-    def notes(self) -> list[str]:
-        """A line each on what was passed over, and where."""
-        return [f"{what}: {listed([*where], 6)}" for what, where in self._passed.items()]
-
-    def note(self, what: str, where: str) -> None:
-        """Keeps something to tell, each place once."""
-        self._passed.setdefault(what, {})[where] = None
-
-    def pass_over(self, name: str, line: Line) -> None:
-        """Keeps that an instruction was passed over since it moves nothing."""
-        self.note("instructions that move nothing", f"{name} ({line})")
 
     def add(self, move: ControllerMove | ControllerWait) -> None:
         """A move that the robot makes.

@@ -26,7 +26,7 @@ from clearance.formats.program.controller_program import (
 )
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Expression, Name, Unknown, number
-from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, SPLINE, WAIT
+from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, SPLINE, SYSTEM, WAIT
 from clearance.formats.program.krl_files import files_of
 from clearance.formats.program.krl_settings import (
     FUNCTIONS,
@@ -177,8 +177,11 @@ class _Krl:
                 Settings(run, call.line).bas(command, value[0] if value else 0)
             elif call.name == SPLINE:
                 raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
-            elif call.name in ("INTERRUPT", "TRIGGER"):
-                run.note("interrupts and triggers: not followed", str(call.line))
+            elif call.args:  # an interrupt or a trigger, and what it calls
+                (called,) = (str(run.evaluated(one)) for one in call.args)
+                if called != SYSTEM:
+                    run.effects.require_still(call.name, called, call.line)
+                run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
             else:
                 run.pass_over(call.name, call.line)
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import operator
 import re
+from collections.abc import Sequence
 
 from clearance.errors import BadSyntax
 from clearance.formats.program.expressions import (
@@ -20,7 +21,7 @@ from clearance.formats.program.expressions import (
     numeric,
 )
 from clearance.formats.program.krl_values import composed, quotient
-from clearance.formats.program.tokens import Cursor, Line
+from clearance.formats.program.tokens import Cursor, Line, Token
 
 MOVES = {
     spline + kind + relative: kind.lower()
@@ -57,6 +58,10 @@ WORD = re.compile(
     |(?P<mark>==|<>|<=|>=|[-+*/:.,=<>()\[\]{}])""",
     re.VERBOSE,
 )
+
+
+SYSTEM = "IR_STOPM"
+"""What every program calls where the controller stops with a message: it moves nothing."""
 
 
 class _Capitals(Grammar):
@@ -155,3 +160,11 @@ def parameters_of(cursor: Cursor) -> tuple[tuple[str, ...], frozenset[str]]:
             returned.add(name)
         cursor.accept(",")
     return tuple(found), frozenset(returned)
+
+
+def called_beside(words: Sequence[Token]) -> tuple[Expression, ...]:
+    """The name of the procedure that an interrupt or a trigger calls: `DO sub()`."""
+    for do, name, mark in zip(words, words[1:], words[2:], strict=False):
+        if do.text.upper() == "DO" and mark.text == "(":
+            return (Constant(GRAMMAR.folded(name.text)),)
+    return ()

@@ -28,6 +28,7 @@ from clearance.formats.program.krl_expressions import (
     TYPES,
     WAIT,
     Expressions,
+    called_beside,
     parameters_of,
 )
 from clearance.formats.program.krl_values import as_integer, as_real
@@ -49,8 +50,7 @@ from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 
 _Branch = tuple[Expression | None, tuple[Statement, ...]]
 
-_JUMPS = ("RETURN", "EXIT", "GOTO", "BRAKE", "RESUME")
-"""They decide which lines run."""
+_JUMPS = ("RETURN", "EXIT", "GOTO", "BRAKE", "RESUME")  # decide which lines run
 
 _ENDS = ("END", "ENDFCT", "DEF", "DEFFCT")
 
@@ -176,7 +176,7 @@ class _Reader:
         if word in ("DECL", "GLOBAL", *TYPES):
             return self._declared(read, within_routine)
         if word in QUIET:
-            return [Do(line, Call(word, (), {}, line))]
+            return [Do(line, Call(word, called_beside(self._lines[self._at - 1]), {}, line))]
         if word in NOTHING:
             return []
         try:

@@ -196,12 +196,7 @@ class Rapid:
 
     def _connect(self, call: Call, run: Execution) -> None:
         trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
-        if trap not in run.routines or not run.effects.is_still(run.routines[trap]):
-            raise BadProgram(
-                f"trap {trap!r} moves the robot, or may",
-                where=str(call.line),
-                valid="a trap that moves nothing",
-            )
+        run.effects.require_still("trap", trap, call.line)
         run.note("traps that move nothing", f"{trap} ({call.line})")
 
     def result_of(self, call: Call, run: Execution) -> Any:

@@ -188,12 +188,7 @@ class _UrScript:
             self.tool, self.last = _placed(pose, call.line), None
         elif call.name == "run":
             name = call.args[0].value if isinstance(call.args[0], Constant) else ""
-            if name not in run.routines or not run.effects.is_still(run.routines[name]):
-                raise BadProgram(
-                    f"thread {name!r} moves the robot, or may",
-                    where=str(call.line),
-                    valid="a thread that moves nothing",
-                )
+            run.effects.require_still("thread", name, call.line)
             run.note("threads that move nothing", f"{name} ({call.line})")
         elif self.moves(call.name):
             raise BadProgram(

@@ -258,11 +258,28 @@ def test_each_module_has_points_and_procedures_of_its_own():
     assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
 
 
+WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
+
+
 @pytest.mark.parametrize("body", ["GOTO over", "BRAKE", "IF $IN[1] THEN\nGOTO over\nENDIF"])
 def test_what_decides_which_lines_run_is_never_left_out(body):
     with pytest.raises(cl.ClearanceError, match=r"line [78]") as caught:
         program(f"{body}\nPTP XHOME\nover:", skip=["GOTO", "BRAKE"])
     assert "skip" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "body", ["INTERRUPT DECL 10 WHEN $IN[1] DO", "GLOBAL INTERRUPT DECL 9 WHEN $IN[1] DO", WHEN]
+)
+def test_what_runs_beside_the_program_moves_nothing(body):
+    beside = "END\nDEF away()\nBRAKE\nLIN XP1\nEND\nDEF lamp()\n$OUT[1]=TRUE\n"
+    for name, told in (("away", "BRAKE at line 11"), ("off", "it is in no file that is given")):
+        with pytest.raises(cl.ClearanceError, match=f"line 7: .* or may: {told}"):
+            program(f"{body} {name}()\nPTP XHOME\n{beside}")
+    found = program(f"{body} lamp()\n{body} IR_STOPM()\nPTP XHOME\n{beside}")
+    assert len(found.moves) == 1 and any(
+        "LAMP (line 7), IR_STOPM (line 8)" in x for x in found.notes
+    )
 
 
 def test_a_move_is_never_left_out():

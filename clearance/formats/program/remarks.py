@@ -1,0 +1,33 @@
+"""What a program's run has to tell beside its moves. Not for: running it (`execution`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from clearance.formats.program.tokens import Line
+from clearance.world.notice import listed
+
+
+@dataclass(eq=False)
+class Remarks:
+    """What was passed over, and what a verdict leaves out.
+
+    Attributes:
+        doubts: for the headline, one line each.
+    """
+
+    doubts: dict[str, None] = field(init=False, default_factory=dict)
+    _passed: dict[str, dict[str, None]] = field(init=False, default_factory=dict)
+
+    @property
+    def notes(self) -> list[str]:
+        """A line each on what was passed over, and where."""
+        return [f"{what}: {listed([*where], 6)}" for what, where in self._passed.items()]
+
+    def note(self, what: str, where: str) -> None:
+        """Keeps something to tell, each place once."""
+        self._passed.setdefault(what, {})[where] = None
+
+    def pass_over(self, name: str, line: Line) -> None:
+        """Keeps that an instruction was passed over since it moves nothing."""
+        self.note("instructions that move nothing", f"{name} ({line})")
