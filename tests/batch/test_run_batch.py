@@ -185,7 +185,7 @@ def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path)
     item = items_of([str(manifest)], dict(tolerance=own))[0]
     own.write_text("obstacles: {wall: {xyz: 0.002}}\n")
     done = measure(Task((item,), 60.0, program(), "a batch"))
-    assert not done.measured and "t.yaml: it was changed" in done.faults[0].text
+    assert not done.measured and "t.yaml: it changed" in done.faults[0].text
 
 
 def test_the_table_of_cases_is_what_any_tool_reads(manifest, tmp_path):

@@ -129,7 +129,7 @@ def test_bad_input_is_one_line(slot, tmp_path, capsys, options, told):
 def test_all_kinds_are_tried_with_each_of_several_robots(tmp_path, capsys):
     path, out = write_cell(tmp_path, CROSSING), tmp_path / "out"
     code, text, _ = said(capsys, path, "--kind", "all", "--out", out)
-    assert code == 0 and "which robot" not in text
+    assert code == 0 and "none is named" not in text
     for kind in ("waypoints", "base", "timing"):
         for robot in ("one", "other"):
             assert f"\n{kind}/{robot} " in text

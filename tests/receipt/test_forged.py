@@ -118,11 +118,11 @@ def test_a_limit_that_is_kept_with_tolerances_must_be_proven(folder):
 
 def test_tolerances_cannot_be_made_smaller_or_left_out(folder):
     small = loose(0.5)
-    with pytest.raises(BadSyntax, match="other numbers"):
+    with pytest.raises(BadSyntax, match="its numbers are not those"):
         cl.verify(folder, small)
     receipt = read_receipt(folder / FILE_NAME)
     rewritten(folder, head=receipt.head | {"nominal": True})
-    with pytest.raises(BadSyntax, match="other numbers"):
+    with pytest.raises(BadSyntax, match="its numbers are not those"):
         cl.verify(folder, loose())
     nominal = case_data(replace(loose(), tolerance=None))
     head = receipt.head | {"nominal": True, "data": nominal.digest, "rules": list(nominal.rules)}
@@ -156,7 +156,7 @@ def test_a_window_of_a_rule_cannot_be_made_another(tmp_path):
     assert cl.verify(tmp_path, windowed(1.5)).proven
     for start, until in ((1.0, 2.0), (0.0, 2.0), (1.0, 1.5), (0.5, 1.0)):
         other = windowed(start, until)
-        with pytest.raises(BadSyntax, match="other numbers"):
+        with pytest.raises(BadSyntax, match="its numbers are not those"):
             cl.verify(tmp_path, other)
         rewritten(tmp_path, head=receipt.head | {"data": case_data(other).digest})
         assert not proven(tmp_path, other)
@@ -197,7 +197,7 @@ def test_a_joint_cannot_be_made_to_follow_otherwise(tmp_path):
     assert cl.verify(tmp_path, following(0.5)).proven
     for multiplier, offset in ((1.5, 0.0), (-0.5, 0.0), (0.5, 0.5)):
         other = following(multiplier, offset)
-        with pytest.raises(BadSyntax, match="other numbers"):
+        with pytest.raises(BadSyntax, match="its numbers are not those"):
             cl.verify(tmp_path, other)
         rewritten(tmp_path, head=receipt.head | {"data": case_data(other).digest})
         found = cl.verify(tmp_path, other)
@@ -213,7 +213,7 @@ def least(case: cl.Case) -> float:
 def test_pairs_that_are_left_out_change_what_it_is_of(folder):
     receipt = read_receipt(folder / FILE_NAME)
     fewer = replace(loose(), allow=(("bar", "plate"),))
-    with pytest.raises(BadSyntax, match="other numbers"):
+    with pytest.raises(BadSyntax, match="its numbers are not those"):
         cl.verify(folder, fewer)
     rewritten(folder, head=receipt.head | {"data": case_data(fewer).digest})
     assert not proven(folder, fewer)  # what is there is of more pairs

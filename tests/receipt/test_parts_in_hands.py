@@ -95,5 +95,5 @@ def test_along_a_slide_both_errors_are_taken_and_of_an_exact_grasp_one(how, take
 @pytest.mark.slow
 def test_a_receipt_of_an_exact_grasp_is_not_one_of_another(tmp_path):
     saved(quarter_turn(0.1, 0.03, exact_grasp=True), tmp_path)
-    with pytest.raises(BadSyntax, match="other numbers"):
+    with pytest.raises(BadSyntax, match="its numbers are not those"):
         cl.verify(tmp_path, quarter_turn(0.1, 0.03))

@@ -120,7 +120,7 @@ def test_random_directions_and_deeds_prove_nothing_false(folder):
     ],
 )
 def test_a_receipt_is_of_its_own_case_only(folder, other):
-    with pytest.raises(BadSyntax, match="other numbers"):
+    with pytest.raises(BadSyntax, match="its numbers are not those"):
         cl.verify(folder, other)
 
 
