@@ -189,6 +189,17 @@ def test_where_the_base_is_stands_in_the_headline_unless_it_is_said(tmp_path, is
     )
 
 
+def test_moves_of_handlers_stand_in_the_headline(tmp_path):
+    away = "ERROR (50)\nback;\nRETRY;\nENDPROC\nPROC back()\nMoveL p10,v5,fine,tool0;\nUNDO\nRETURN;\nENDPROC"
+    text = rapid("[-1,0,0,0]").replace("ENDPROC", away, 1)
+    case = controller_case(tmp_path, "a.mod", text, base={"on": "base"})
+    (told,) = [one.text for one in notices_of(cl.load_case(case)) if one.kind == "program"]
+    line = 1 + text[: text.index("MoveL p10,v5")].count("\n")
+    assert told == (
+        f"assumed: a.mod: line {line}: the ERROR handler of main does not run: its moves are not measured"
+    )
+
+
 @pytest.mark.parametrize(
     ("flags", "why"),
     [

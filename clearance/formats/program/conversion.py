@@ -97,6 +97,7 @@ def converted(
     rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, rests_on = (*notes, *rests_on), ()
+    rests_on = (*rests_on, *read.doubts)
     return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on)
 
 

@@ -10,6 +10,7 @@ import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 from typing import Any, Protocol
 
 from clearance.errors import BadProgram, nearest_name
@@ -269,6 +270,7 @@ class Execution(Remarks):
         if len(call.args) > len(routine.parameters):
             told = f"{call.name} is given {counted(len(call.args), 'argument')}"
             raise BadProgram(told, where=str(call.line), valid=f"{len(routine.parameters)} at most")
+        self._doubt_handlers(routine)
         in_order = dict(zip(routine.parameters, call.args, strict=False))
         given = {**routine.defaults, **in_order, **call.named}
         frame = {name: self.evaluated(value) for name, value in given.items()}
@@ -282,6 +284,15 @@ class Execution(Remarks):
             if assigned(given[name]) is not None:
                 self._assign(Assign(call.line, given[name], Constant(frame[name])))
         return value, left if left is not None and left.what == STOP else None
+
+    def _doubt_handlers(self, routine: Routine) -> None:
+        """Keeps which handlers of a routine move the robot: they are not run."""
+        for word, body in routine.handlers:
+            for call in islice(self.effects.moving(body, (routine.name,)), 1):
+                told = (
+                    f"the {word} handler of {routine.name} does not run: its moves are not measured"
+                )
+                self.doubts[f"{call.line}: {told}"] = None
 
     def _branch(self, one: If) -> Leave | None:
         for condition, body in one.branches:

@@ -106,6 +106,7 @@ _ASSIGNED = re.compile(
     r"((?:R|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)", re.IGNORECASE | re.DOTALL
 )
 _JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
+_ENDS = ("ENDIF", "ELSE", "ENDFOR", "=")
 _TIMED = re.compile(r"\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,.*", re.IGNORECASE | re.DOTALL)
 
 
@@ -206,12 +207,7 @@ class _Reader:
     def _body(self) -> list[Statement]:
         """Statements up to the end of their block."""
         found = list[Statement]()
-        while self.at < len(self.instructions) and self._word not in (
-            "ENDIF",
-            "ELSE",
-            "ENDFOR",
-            "=",
-        ):
+        while self.at < len(self.instructions) and self._word not in _ENDS:
             line, text = self.instructions[self.at]
             self.at += 1
             found += self._block(line, text) or self._simple(line, text)

@@ -57,7 +57,8 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         language.declare(run)
         run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
-        return ControllerProgram(tuple(moves), (*run.notes, *language.assumed, *_on_cycles(moves)))
+        notes = (*run.notes, *language.assumed, *_on_cycles(moves))
+        return ControllerProgram(tuple(moves), notes, doubts=(*run.doubts,))
 
 
 def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:

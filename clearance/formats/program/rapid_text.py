@@ -203,17 +203,24 @@ class _Reader:
             self._name("a type")
         line, name = cursor.next.line, self._name("a name")
         parameters, returned = self._parameters() if cursor.accept("(") else ([], set[str]())
-        body = self._block()
-        while cursor.accept(*_HANDLERS):
+        body, handlers = self._block(), list[tuple[str, tuple[Statement, ...]]]()
+        while cursor.is_at(*_HANDLERS):
+            kind = cursor.take().text.upper()
             if cursor.accept("("):
                 self._expressions.arguments(")")
                 cursor.expect(")")
-            self._block()
+            handlers.append((kind, self._block()))
         cursor.expect(_ROUTINES[word.text.upper()])
         if name in self._into.routines:
             raise DuplicateName(f"{name!r} is there twice", where=str(line))
         self._into.routines[name] = Routine(
-            name, line, tuple(parameters), body, word.text.upper() == "TRAP", frozenset(returned)
+            name,
+            line,
+            tuple(parameters),
+            body,
+            word.text.upper() == "TRAP",
+            frozenset(returned),
+            handlers=tuple(handlers),
         )
 
     def _parameters(self) -> tuple[list[str], set[str]]:

@@ -97,6 +97,7 @@ class Routine:
     Attributes:
         parameters: their names, in order. body: its statements. is_thread: it runs beside the others.
         returned: parameters that are the caller's own variables. defaults: values of those that are not given.
+        handlers: what runs in its place when something goes wrong, by the word for it.
     """
 
     name: str
@@ -106,6 +107,7 @@ class Routine:
     is_thread: bool = False
     returned: frozenset[str] = frozenset()
     defaults: Mapping[str, Expression] = field(default_factory=dict)
+    handlers: tuple[tuple[str, tuple[Statement, ...]], ...] = ()
 
 
 def within(body: tuple[Statement, ...]) -> Iterator[Statement]:
