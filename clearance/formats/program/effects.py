@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from clearance.errors import BadProgram
 from clearance.formats.program.expressions import Call, Expression, calls_in
@@ -67,6 +68,22 @@ class Effects:
                 yield from self.moving(inner, (*entered, call.name))
             elif self.moves(call.name) is not False:
                 yield call
+
+    def moving_in(self, name: str) -> str | None:
+        """Where an instruction or a routine moves the robot; None where it does not, or nobody knows."""
+        if name not in self.routines:
+            return "" if self.moves(name) else None
+        calls = self.moving(self.routines[name].body, (name,))
+        found = (f": {one.name} at {one.line}" for one in calls if self.moves(one.name))
+        return next(found, None)
+
+    def doubts_on_handlers(self, routine: Routine) -> dict[str, None]:
+        """A line on each handler of a routine that moves the robot: it is not run."""
+        found = dict[str, None]()
+        for word, body in routine.handlers:
+            told = f"the {word} handler of {routine.name} does not run: its moves are not measured"
+            found |= {f"{call.line}: {told}": None for call in islice(self.moving(body), 1)}
+        return found
 
     def require_still(self, what: str, name: str, line: Line) -> None:
         """Nothing, if nothing in a routine that runs beside the program moves the robot.

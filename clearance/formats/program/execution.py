@@ -10,7 +10,6 @@ import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice
 from typing import Any, Protocol
 
 from clearance.errors import BadProgram, nearest_name
@@ -117,10 +116,9 @@ class Execution(Remarks):
     def __post_init__(self) -> None:
         self.frames = [self.variables]
         for name in self.skip:
-            if self.language.moves(name):
-                raise BadProgram(
-                    f"{name} moves the robot", where="skip", valid="what moves nothing, or no skip"
-                )
+            if (culprit := self.effects.moving_in(name)) is not None:
+                told = f"{name} moves the robot, or changes how it moves{culprit}"
+                raise BadProgram(told, where="skip", valid="what moves nothing, or no skip")
 
     def add(self, move: ControllerMove | ControllerWait) -> None:
         """A move that the robot makes.
@@ -190,7 +188,7 @@ class Execution(Remarks):
             BadInput: none of them, which may move the robot.
         """
         if call.name in self.skip:
-            self.note("left out as asked", f"{call.name} ({call.line})")
+            self._leave_out(call)
             return Unknown(f"{call.name} ({call.line}) is left out")
         if call.name in self.routines:
             return self._called(self.routines[call.name], call)[0]
@@ -243,13 +241,18 @@ class Execution(Remarks):
         for name, line in changed:
             self._place(name)[name] = Unknown(f"{name!r} is given a value at {line}")
 
+    def _leave_out(self, call: Call) -> None:
+        """Keeps that a call is left out, and makes variables unknown that it may have changed."""
+        self.note("left out as asked", f"{call.name} ({call.line})")
+        self._forget(self.effects.changed_in([(Do(call.line, call),)]))
+
     def enter(self, routine: Routine) -> None:
         """Runs a routine that takes no arguments."""
         self._called(routine, Call(routine.name, (), {}, routine.line))
 
     def _do(self, call: Call) -> Leave | None:
         if call.name in self.skip:
-            self.note("left out as asked", f"{call.name} ({call.line})")
+            self._leave_out(call)
         elif call.name in self.routines:
             return self._called(self.routines[call.name], call)[1]
         elif self.language.moves(call.name) is None:
@@ -270,7 +273,7 @@ class Execution(Remarks):
         if len(call.args) > len(routine.parameters):
             told = f"{call.name} is given {counted(len(call.args), 'argument')}"
             raise BadProgram(told, where=str(call.line), valid=f"{len(routine.parameters)} at most")
-        self._doubt_handlers(routine)
+        self.doubts |= self.effects.doubts_on_handlers(routine)
         in_order = dict(zip(routine.parameters, call.args, strict=False))
         given = {**routine.defaults, **in_order, **call.named}
         frame = {name: self.evaluated(value) for name, value in given.items()}
@@ -284,15 +287,6 @@ class Execution(Remarks):
             if assigned(given[name]) is not None:
                 self._assign(Assign(call.line, given[name], Constant(frame[name])))
         return value, left if left is not None and left.what == STOP else None
-
-    def _doubt_handlers(self, routine: Routine) -> None:
-        """Keeps which handlers of a routine move the robot: they are not run."""
-        for word, body in routine.handlers:
-            for call in islice(self.effects.moving(body, (routine.name,)), 1):
-                told = (
-                    f"the {word} handler of {routine.name} does not run: its moves are not measured"
-                )
-                self.doubts[f"{call.line}: {told}"] = None
 
     def _branch(self, one: If) -> Leave | None:
         for condition, body in one.branches:

@@ -170,10 +170,11 @@ class Rapid:
         elif name in ("SingArea", "CirPathMode") and {*call.named} <= {"off", "pathframe"}:
             run.pass_over(name, call.line)
         elif name in OTHER_MOVES:
+            told = f"{name} changes where the robot goes, in a way that is not read"
+            is_turned = name == "SingArea"
+            off = "SingArea\\Off, so that the tool keeps its orientation"
             raise BadProgram(
-                f"{name} changes where the robot goes, in a way that is not read",
-                where=str(call.line),
-                valid="a program without it",
+                told, where=str(call.line), valid=off if is_turned else "a program without it"
             )
         else:
             self._set(call, run)

@@ -172,7 +172,7 @@ FAULTS = {
     '%"proc"%;': "line 3: '%' is not understood",
     "g_GripIn;": "line 3: 'g_gripin' is no known instruction",
     "SearchL di1,p,p,v10,tool0;": "line 3: SearchL changes where the robot goes",
-    "SingArea\\Wrist;": "line 3: SingArea changes where the robot goes",
+    "SingArea\\Wrist;": "not read; SingArea\\Off, so that the tool keeps its orientation",
     "PDispOn p, tool0;": "line 3: PDispOn changes where the robot goes",
     "FOR i FROM 1 TO n DO ENDFOR": "line 3: the range of 'i' is not known: 'n' is in no file",
     "FOR i FROM 1 TO 5 STEP 0 DO ENDFOR": "line 3: a step of 0",
@@ -254,6 +254,17 @@ def test_what_moves_nothing_is_left_out_by_name():
     for word in ("GOTO", "EXITCYCLE"):  # it decides which lines run
         with pytest.raises(cl.ClearanceError, match="decides which lines run; a program without"):
             moves_of(f"{word} a;", skip=[word])
+
+
+def test_a_procedure_is_left_out_only_if_it_moves_nothing():
+    data = f"VAR robtarget p:={P};"
+    body = "sub;\nMoveL p,v100,fine,tool0;\nENDPROC\nPROC sub()\nsub2;\nENDPROC\nPROC sub2()\n"
+    told = "skip: sub moves the robot, .*: MoveL at line 10; what moves nothing"
+    with pytest.raises(cl.ClearanceError, match=told):
+        moves_of(f"{body}MoveL p,v100,fine,tool0;", data, skip=["sub"])
+    with pytest.raises(cl.ClearanceError, match=r"line 4: the target is not known: .* at line 10"):
+        moves_of(f"{body}p:=here;", data, skip=["sub"])
+    assert len(moves_of(f"{body}SetDO do1,1;\nWorldAccLim\\On:=3;", data, skip=["sub"])) == 1
 
 
 def test_the_procedure_that_runs_is_chosen():
