@@ -145,13 +145,18 @@ def gained(case: Case, request: Request) -> Gain:
 
 
 def _refuse_programs(case: Case, request: Request) -> None:
-    """Nothing, if what is changed leaves the joints of robots with a program as they are.
+    """Nothing, if programs are proven and what is changed leaves the joints of robots with one as they are.
 
     Raises:
         BadInput: it does not: the program would have to be followed anew.
     """
     for placed in case.robots:
         asked = placed.trajectory
+        if asked is not None and asked.unproven:
+            raise BadChange(
+                f"part of the program of robot {placed.robot.name!r} is not proven, whatever is changed",
+                valid="a program that `clearance check` proves",
+            )
         if asked is None or not asked.moves or request.kind == "timing":
             continue
         if request.kind != "obstacle" or asked.frames:

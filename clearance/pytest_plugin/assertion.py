@@ -20,8 +20,9 @@ def assert_clear(
         run: of `check`, or of the fixture `clearance_case`.
         between: patterns of names of two bodies, in any order; all pairs if not given.
         at_least: [m]; the fail limit of the rule that judges each pair if not given. Without it and `between`, the
-            run is passed. With either, input must not be suspect and no peer may disagree all the same, and where
-            the case has tolerances what they leave of the pairs is proven to keep it, unless `unproven_ok` is set.
+            run is passed. With either, input must not be suspect, no peer may disagree and programs must be
+            proven all the same, and where the case has tolerances what they leave of the pairs is proven to keep
+            it, unless `unproven_ok` is set.
 
     Raises:
         AssertionError: what comes nearer, how near, when, and what was asked for; or why the input is in doubt.
@@ -47,4 +48,5 @@ def _doubts(run: Run) -> list[str]:
     """Why what was measured is not to be trusted, whichever pair is asked about."""
     verdict = run.verdict
     told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
+    told += verdict.unproven_motion
     return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]

@@ -158,9 +158,10 @@ class VerdictItem(_Item):
 
 
 def _in_doubt(run: Run) -> list[str]:
-    """Why nothing that passes in a run counts for much: suspect input, a peer that disagrees."""
+    """Why nothing that passes in a run counts for much: suspect input, unproven programs, peers that disagree."""
     verdict = run.verdict
     told = [f"suspect {one.kind}" for one in verdict.suspects]
+    told += verdict.unproven_motion
     return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]
 
 

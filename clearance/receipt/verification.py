@@ -6,7 +6,7 @@ nor the report beside one (`verifying`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,6 +20,7 @@ from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import EvidenceReader, Receipt
 from clearance.world.case import Case, Limits, Omission
+from clearance.world.unproven_motion import not_proven
 
 ROUNDED = 3
 """Units by which a claim may be below what was certified (`writing.claims_of`)."""
@@ -39,6 +40,7 @@ class Verification:
         unmeasured: links and pairs that are left out, and why.
         nominal: the case has tolerances, of which the bound takes nothing off.
         n_not_ruled_out: in how many intervals tolerances leave nothing, so that nothing is proven of that.
+        n_not_followed: in how many intervals joints of a program are not proven to be where the bound has them.
         below: [m] the fail limit of each of those rules whose bound is below it, as the case has it.
         beyond: [m] how much more than is proven the report certifies in some interval, by rule.
         verdict: of the case, answered again. asked: what it rests on besides the case's own file.
@@ -58,6 +60,7 @@ class Verification:
     unmeasured: tuple[Omission, ...]
     nominal: bool
     n_not_ruled_out: int = 0
+    n_not_followed: int = 0
     below: Mapping[str, float] = field(default_factory=dict)
     beyond: Mapping[str, float] = field(default_factory=dict)
     verdict: str = ""
@@ -101,13 +104,16 @@ class Verification:
     @property
     def _exceptions(self) -> str:
         """In how many intervals there is nothing to prove."""
-        text = ""
-        if self.n_contact:
-            text = f" EXCEPT in {self.n_contact} intervals, in which bodies may touch"
-        if self.n_not_ruled_out:
-            text += f"{' and' if text else ' EXCEPT'} with tolerances in {self.n_not_ruled_out} intervals"
-            text += ", in which contact is not ruled out"
-        return text
+        exceptions = (
+            (self.n_not_followed, "in {} intervals, in which a program is not proven"),
+            (self.n_contact, "in {} intervals, in which bodies may touch"),
+            (
+                self.n_not_ruled_out,
+                "with tolerances in {} intervals, in which contact is not ruled out",
+            ),
+        )
+        told = " and ".join(text.format(n) for n, text in exceptions if n)
+        return told and f" EXCEPT {told}"
 
 
 def proven(case: Case, data: CaseData, receipt: Receipt) -> Verification:
@@ -133,12 +139,19 @@ def proven(case: Case, data: CaseData, receipt: Receipt) -> Verification:
         unmeasured=data.unmeasured,
         nominal=not data.has_errors and case.tolerance is not None,
         n_not_ruled_out=int(open_ones[n_nominal:].any(axis=0).sum()),
+        n_not_followed=_n_in(data.times, not_proven(case)),
         below={
             rule: limits.fail
             for rule, limits in limits_of(case, data).items()
             if rule in bounds and bounds[rule] + ROUNDED * UNIT < limits.fail
         },
     )
+
+
+def _n_in(times: np.ndarray, spans: Sequence[tuple[float, float]]) -> int:
+    """How many intervals between times (n,) [s] reach into spans."""
+    starts, ends = np.array(spans).reshape(-1, 2).T
+    return int(((times[:-1, None] < ends) & (times[1:, None] > starts)).any(axis=1).sum())
 
 
 def n_without_errors(data: CaseData) -> int:

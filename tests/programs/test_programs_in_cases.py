@@ -13,6 +13,7 @@ import clearance as cl
 from clearance.findings.doubts import doubts_of
 from clearance.findings.finding_text import finding_line
 from clearance.geometry.quaternions import quaternions_of
+from clearance.pytest_plugin import assert_clear
 from clearance.record.wording import certified_text
 from clearance.report.summary import summary_of
 from clearance.report.topics.certainty import certified_of
@@ -22,6 +23,7 @@ from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
 from tests.programs.arms import FILES, arm, turned
+from tests.receipt.receipts import saved
 
 JOINTS = ("joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6")
 START = dict(zip(JOINTS, (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2), strict=True))
@@ -449,6 +451,22 @@ def test_a_stretch_near_a_singularity_is_measured_and_not_proven(tmp_path):
     assert "at every moment that is proven" in certified
     samples = cl.check(near_singular(tmp_path), certify=False)
     assert samples.passed and any(told in warning for warning in samples.verdict.warnings)
+
+
+@pytest.mark.slow
+def test_a_stretch_that_is_not_proven_is_taken_for_a_proof_nowhere(tmp_path):
+    unproven = cl.load_case(near_singular(tmp_path))
+    with pytest.raises(AssertionError, match="measured at the samples and not proven: LIN 1"):
+        assert_clear(cl.check(unproven), between=("wrist_roll", "far"), at_least=0.01)
+    with pytest.raises(cl.BadInput, match="part of the program of robot 'heron6' is not proven"):
+        cl.gain(unproven, "obstacle", obstacle="far")
+    saved(unproven, tmp_path / "report")
+    found = cl.verify(tmp_path / "report", unproven)
+    (span,) = unproven.robots[0].trajectory.unproven
+    times = unproven.robots[0].trajectory.times
+    n = np.count_nonzero((times >= span.start) & (times < span.end))
+    assert found.proven
+    assert f"PROVEN EXCEPT in {n} intervals, in which a program is not proven: " in found.headline
 
 
 def beside_a_turntable(folder: Path, moves: list, rows: str = "", **more) -> Path:
