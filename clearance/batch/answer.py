@@ -121,9 +121,10 @@ class BatchAnswer:
         return sum(map(bool, self.column("waived")))
 
     @property
-    def n_warned(self) -> int:
-        """How many cases have warnings."""
-        return sum(map(bool, self.column("warnings")))
+    def warned(self) -> list[str]:
+        """The cases that have warnings."""
+        rows = zip(self.column("case"), self.column("warnings"), strict=True)
+        return [case for case, warnings in rows if warnings]
 
     @property
     def n_failing(self) -> int:

@@ -58,7 +58,7 @@ def _counted(answer: BatchAnswer) -> str:
 
 def _basis(answer: BatchAnswer) -> str:
     parts = [f"{n:,} {BASES[basis]}" for basis, n in answer.bases.items()] or ["nothing measured"]
-    for n, what in ((answer.n_waived, "with waivers"), (answer.n_warned, "with warnings")):
+    for n, what in ((answer.n_waived, "with waivers"), (len(answer.warned), "with warnings")):
         if n:
             parts.append(f"{n:,} {what}")
     return ", ".join(parts)

@@ -12,6 +12,7 @@ from clearance.batch.status import BatchStatus
 from clearance.batch.store import Store
 from clearance.errors import shown
 from clearance.record.wording import count, depth_mm, mm
+from clearance.world.notice import listed
 
 
 def print_answer(
@@ -71,8 +72,9 @@ def _print_facts(answer: BatchAnswer) -> None:
         click.echo(
             f"  waived      {count(n_waived, 'case')} with what breaks a rule and a waiver lets pass"
         )
-    if n_warned := answer.n_warned:
-        click.echo(f"  warnings    {count(n_warned, 'case')}, see the page")
+    if warned := answer.warned:
+        told = f"  warnings    {count(len(warned), 'case')}, see the page: {listed(warned)}"
+        click.echo(shown(told))
     for basis, n in answer.bases.items():
         click.echo(f"  basis       {count(n, 'case')} {BASES[basis]}")
     least = answer.least

@@ -44,6 +44,7 @@ class Verification:
         below: [m] the fail limit of each of those rules whose bound is below it, as the case has it.
         beyond: [m] how much more than is proven the report certifies in some interval, by rule.
         verdict: of the case, answered again. asked: what it rests on besides the case's own file.
+        beside: what it does not cover, and warnings, one line each.
         not_verified: files of the report that are not as they are made again, and why; empty if all are.
     """
 
@@ -65,6 +66,7 @@ class Verification:
     beyond: Mapping[str, float] = field(default_factory=dict)
     verdict: str = ""
     asked: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
     not_verified: str = ""
     source: str = ""
 
@@ -85,9 +87,10 @@ class Verification:
         not_verified = f", NOT VERIFIED: {self.not_verified}" if self.not_verified else ""
         report = "" if self.not_verified else "; every byte of the report matches a fresh run"
         asked = f" ({'; '.join(self.asked)})" if self.asked else ""
+        beside = "".join(f"; {one}" for one in self.beside)
         return (
             f"{sampled}{nominal}PROVEN{self._exceptions}{not_verified}: {bounds} between all {self.n_pairs} pairs "
-            f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{report}; "
+            f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{beside}{report}; "
             f"{len(self.inputs)} inputs of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
         )
 

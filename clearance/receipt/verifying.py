@@ -95,7 +95,9 @@ def _verified(
     run = answer(question)
     asked = changed_options(own, question, files)
     source = "" if isinstance(case, Case) else str(case or receipt.head["case"])
-    found = replace(found, asked=asked, verdict=run.verdict.text(), source=source)
+    verdict = run.verdict
+    beside = (*verdict.scope, *(f"warning: {line}" for line in verdict.warnings))
+    found = replace(found, asked=asked, verdict=verdict.text(), beside=beside, source=source)
     return _compared_with_report(found, run, data, receipt, place)
 
 

@@ -1,8 +1,10 @@
 """What of a batch stands first: of cases in contact the deepest, in the summary, the table and on the page."""
 
+import pyarrow as pa
 from pytest import approx
 
 from clearance.batch import engine
+from clearance.batch.answer import BatchAnswer
 from clearance.batch.page import page_data
 from clearance.batch.store import open_store
 from clearance.cli.batch_verdict import print_answer
@@ -25,3 +27,13 @@ def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch)
     told = capsys.readouterr().out
     assert "least       t001: contact, at most 30.00 mm deep, slider - wall" in told
     assert "contact     t001: contact 30.00 mm deep: slider - wall" in told
+
+
+def test_cases_with_warnings_are_named(tmp_path, capsys):
+    _, found = run_here(write_cell(tmp_path / "in", [0.4, 0.5, 0.6]), tmp_path / "out")
+    i = found.rows.schema.get_field_index("warnings")
+    column = pa.array([["a start"], [], ["a hole"]], found.rows.schema.field(i).type)
+    found = BatchAnswer(found.rows.set_column(i, "warnings", column))
+    with open_store(tmp_path / "out") as store:
+        print_answer(found, store, 0, None)
+    assert "warnings    2 cases, see the page: t000, t002\n" in capsys.readouterr().out

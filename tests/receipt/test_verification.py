@@ -44,6 +44,19 @@ def test_the_bound_of_a_run_is_proven_again(folder):
     assert (found.n_pairs, found.n_intervals, found.n_claimed) == (2, 4, 4)
 
 
+def test_the_headline_says_what_the_verdict_does_not_cover(tmp_path):
+    case = turning_arm()
+    placed = case.robots[0]
+    late = replace(placed.trajectory, times=placed.trajectory.times + 0.5, has_way_in=True)
+    case = replace(case, robots=(replace(placed, trajectory=late),))
+    saved(case, tmp_path)
+    told = (
+        "; verdict clear; self-collision not checked [CL531]; warning: not measured: how robot 'arm' comes to its "
+        "first point at 0.5 s; "
+    )
+    assert told in cl.verify(tmp_path, case).headline
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_cubics_mounts_tables_and_parts_in_hands_are_covered(tmp_path, seed):

@@ -27,6 +27,7 @@ from clearance.report.markdown import markdown
 from clearance.report.moveit_moments import moments_text
 from clearance.report.summary import json_text
 from clearance.report.terminal import print_answer
+from clearance.report.topics import certainty
 from clearance.run import Run
 from clearance.world.case import Limits
 from tests.findings.test_verdict import CASES, made
@@ -46,6 +47,20 @@ SUSPECT = CASES["suspect and contact"][0]
 def cell_run() -> Run:
     """Measured, and all that is told of it can be worked out by hand."""
     return cl.check(cell(), need="pairs")
+
+
+def test_notes_that_say_what_none_before_them_says_are_the_last_to_be_cut():
+    corners = [
+        f"a.src: corner zone of 20 mm after LIN {i}, {i}.5 s: up to {i} mm" for i in range(1, 19)
+    ]
+    made = record(
+        notes=(*corners, "a.src: IF is taken as true", "arm.urdf: 1 link without any shape")
+    )
+    told = [
+        text for label, text in certainty.lines(model_of(run_of(made))) if label in ("note", "")
+    ]
+    kinds = (*made.case.notes, corners[0], *made.notes[-2:])
+    assert set(kinds) < {*told} and len(told) == 9 and told[-1] == "and 14 more notes, see --json"
 
 
 def terminal(one) -> str:

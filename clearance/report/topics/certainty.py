@@ -132,10 +132,17 @@ def lines(model: ReportModel) -> Iterator[Line]:
         yield "facets", f"{told}too small by that much, never too large"
     if record.cross_check is not None:
         yield from labelled("cross-check", _check_lines(record.cross_check))
-    notes = notes_of(record, model.session.hints)
+    notes = _repeats_last(notes_of(record, model.session.hints))
     yield from (("note", note) for note in notes[:MOST_NOTES])
     if len(notes) > MOST_NOTES:
         yield "", f"and {count(len(notes) - MOST_NOTES, 'more note')}, see --json"
+
+
+def _repeats_last(notes: Sequence[str]) -> list[str]:
+    """The notes in their order, but behind the others those that begin with the words of an earlier one, as the
+    notes of corner after corner do."""
+    begun = [tuple(word for word in note.split() if word.isalpha())[:3] for note in notes]
+    return [notes[i] for i in sorted(range(len(notes)), key=lambda i: begun[i] in begun[:i])]
 
 
 def _certified_lines(record: Record) -> Iterator[Line]:
