@@ -146,6 +146,14 @@ class Verdict:
         """True if nothing speaks against it: the exit code is 0."""
         return self.exit_code == 0
 
+    @property
+    def shade(self) -> str:
+        """The status whose colour it has: nothing is green that fails, or that only the samples show."""
+        if self.disputed_by or self.status in (UNUSED_WAIVER, NOT_PROVEN):
+            return str(Status.VIOLATED)
+        by_samples = self.basis == SAMPLES and self.status == Status.CLEAR
+        return str(Status.NEAR) if by_samples else self.status
+
     def text(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
         text, passing = shown(self.measured), self.measured in _PASSING

@@ -65,7 +65,7 @@ def page_of(
     """
     summary = content.summary
     data = _data(replay) | _pairs(summary, replay, curves.pairs)
-    data |= _more(curves.more) | _earlier(earlier)
+    data |= _more(curves.more) | _earlier(earlier) | {"sampled": summary["basis"] == "samples"}
     least, found = (summary["end"] - summary["start"]) / FINEST, summary["intervals"]
     data["intervals"] = {level: _bands(found[level], least) for level in LEVELS}
     return render(

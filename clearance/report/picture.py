@@ -94,7 +94,7 @@ def _with_inset(still: Still) -> np.ndarray:
 
 def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
     """The verdict, the moment, and the limits and what was not checked, one below the other."""
-    hue, limits = COLOURS.get(verdict.status), record.case.limits
+    hue, limits = COLOURS.get(verdict.shade), record.case.limits
     colour = _SUSPECT if hue is None else f"#{hue:06x}"
     below = ", ".join([limits_text(limits.fail, limits.warn), *verdict.scope])
     lines = (

@@ -17,8 +17,9 @@ from clearance.report.topics.verdict import header
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
-from tests.report.made import content_of, run_of, summary_of, verdict_of, write_junit
+from tests.report.made import content_of, page_of, run_of, summary_of, verdict_of, write_junit
 from tests.report.records import disagreeing, record, with_steps
+from tests.report.test_page import data_in
 
 NO_LIMITS = Limits()
 UNITS = Notice(Severity.SUSPECT, "units", "post.stl: 589 m away; is its scale missing?")
@@ -97,11 +98,23 @@ def test_every_answer_says_the_same(name, tmp_path):
     )
     badge = header(content_of(one))
     assert "at the samples only" in badge.badge and "Self-collision not checked" in repr(badge)
+    failing = {1: "violated", 3: "violated", 2: "suspect", 0: "near"}[exit_code]
+    shade = "contact" if status == "contact" else failing
+    assert badge.badge_kind == shade and data_in(page_of(one))["sampled"]
+    assert not any(text.endswith(" never") for text in printed(one))
     for reason in verdict.reasons:
         assert reason in summary["reasons"] and reason in told
 
 
 BOX = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
+
+
+def test_levels_that_no_sample_reaches_are_told_of_the_samples():
+    lines = printed(made())
+    for label in ("contact", "below fail", "below warn"):
+        assert f"  {label:<12}not at the 8 samples" in lines
+    whole = printed(cl.check(BOX, limits=NO_LIMITS))
+    assert f"  {'contact':<12}never" in whole
 
 
 @pytest.mark.parametrize("name", ["fail", "warn"])

@@ -77,7 +77,8 @@
   const toPlot = (metres) => metres * 1000;
   const clearancesShown = Array.from(clearances, toPlot), timesShown = Array.from(times);
 
-  // One curve a status; each stretch reaches to the next step so that the curve has no gaps.
+  // One curve a status; each stretch reaches to the next step so that the curve has no gaps. Dashed where nothing
+  // is known between the samples.
   function statusCurve(code) {
     const y = Array(n).fill(null);
     for (let i = 0; i < n; i++) if (data.status[i] === code) {
@@ -85,7 +86,7 @@
       if (i + 1 < n && data.status[i + 1] < code) y[i + 1] = clearancesShown[i + 1];
       if (i > 0 && data.status[i - 1] < code) y[i - 1] = clearancesShown[i - 1];
     }
-    return {x: timesShown, y, kind: `status ${data.statuses[code]}`};
+    return {x: timesShown, y, kind: `status ${data.statuses[code]}${data.sampled ? " dash" : ""}`};
   }
 
   const statusCurves = data.statuses.map((_, code) => statusCurve(code));

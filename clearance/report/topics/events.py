@@ -43,7 +43,8 @@ def lines(model: ReportModel) -> Iterator[Line]:
 def _intervals(model: ReportModel, level: str) -> str:
     found, moves = model.session.intervals[level], model.record.moves
     if not found:
-        return "never"
+        n_samples = count(model.record.rows.n_rows, "sample")
+        return f"not at the {n_samples}" if model.record.basis == "samples" else "never"
     n_intervals, n_steps = model.session.extent(level)
     times = [
         span_text(part.start, part.end, moves.over(part.start, part.end))

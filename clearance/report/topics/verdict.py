@@ -103,12 +103,12 @@ def header(content: PageContent) -> Header:
         ("Cross-check", _cross_check_word(summary["cross_check"])),
         *((name.capitalize(), value) for name, value in signed.items() if value),
     ]
-    failing = verdict.disputed_by or verdict.status in (UNUSED_WAIVER, NOT_PROVEN)
-    kind = "violated" if failing else verdict.status
     beside = Bullets(_beside(verdict, summary.get("tolerances")), "beside")
     told = [Bullets(_headline(summary, verdict), "beside headline"), beside]
     shown = [block for block in told if block.lines]
-    return Header("Clearance report", summary["name"], badge_text(verdict), kind, shown, facts)
+    return Header(
+        "Clearance report", summary["name"], badge_text(verdict), verdict.shade, shown, facts
+    )
 
 
 def badge_text(verdict: Verdict) -> str:
