@@ -37,6 +37,7 @@ GIVEN = {
     "CL420": "start", "CL421": "gaps", "CL422": "clocks", "CL423": "wrap", "CL424": "limits",
     "CL425": "joint limits", "CL426": "recorded run", "CL427": "program", "CL501": "clearance", "CL502": "profile",
     "CL510": "unused waiver", "CL511": "BadWaiver", "CL520": "NothingToMeasure", "CL521": "pairs",
+    "CL522": "paper",
     "CL530": "surroundings", "CL531": "self-collision", "CL532": "floor and walls", "CL601": "unproven",
     "CL602": "tolerances", "CL603": "tolerances of waived", "CL604": "BadTolerance",
     "CL605": "unproven motion", "CL610": "certificate", "CL611": "contact",

@@ -18,6 +18,12 @@ from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.phase import Phase
 
+_BY_PAPER = Notice(
+    Severity.WARNING,
+    "paper",
+    "pairs may have been left out: the paper's method has no guarantee; for a safe clearance use method 'exact'",
+)
+
 
 def notices_of(
     question: Question,
@@ -29,6 +35,7 @@ def notices_of(
     measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [_nothing_measured(phase) for phase in plan.empty]
+    empty += [_BY_PAPER] if question.method == "paper" else []
     untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []
     untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]
     return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])

@@ -117,6 +117,13 @@ def test_levels_that_no_sample_reaches_are_told_of_the_samples():
     assert f"  {'contact':<12}never" in whole
 
 
+def test_the_method_of_the_paper_is_a_warning():
+    warnings = cl.check(BOX, method="paper").verdict.warnings
+    assert len(warnings) == 1 and "pairs may have been left out" in warnings[0]
+    assert warnings[0].endswith("[CL522]")
+    assert not any("left out" in text for text in cl.check(BOX).verdict.warnings)
+
+
 @pytest.mark.parametrize("name", ["fail", "warn"])
 def test_a_limit_that_is_only_not_proven_says_so_below_the_headline(name, monkeypatch):
     """Nothing is below the limit, by a nanometre at most: the work of a proof to 0.1 mm does not tell."""
