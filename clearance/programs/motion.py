@@ -145,7 +145,8 @@ class _Samples:
         names = [joint.name for joint in self.arm.joints]
         for move, way, _ in ways:
             if isinstance(way, JointWay) and isinstance(move, JointMove) and move.pose is not None:
-                told = [f"{name} {at:.4g}" for name, at in zip(names, way.target, strict=True)]
+                target = np.round(way.target, 9) + 0.0  # 0 but for rounding is 0, and never -0
+                told = [f"{name} {at:.4g}" for name, at in zip(names, target, strict=True)]
                 self.notes.append(
                     f"{move.name}: the nearest joints found for its pose are taken [rad or m]: {', '.join(told)}"
                 )

@@ -73,6 +73,14 @@ def test_a_joint_move_makes_half_a_turn_where_it_is():
     assert np.abs(tool(found, found.trajectory.positions[-1])[0] - pose).max() < 1e-9
 
 
+def test_a_joint_that_is_at_0_but_for_rounding_is_told_as_0():
+    start = (START[0], START[1], START[2], 0.0, START[4], START[5])
+    found = motion([JointMove("PTP 1", "moves[0]", pose=first_pose("heron6", start))])
+    told = dict(one.split() for one in found.notes[0].partition("]: ")[2].split(", "))
+    assert abs(found.trajectory.positions[-1, 3]) < 1e-9 and told["joint_4"] == "0"
+    assert float(told["joint_1"]) == pytest.approx(START[0], abs=1e-3)
+
+
 def test_a_move_to_where_the_joints_are_is_no_move():
     names = [joint.name for joint in arm("heron6").joints]
     stays = JointMove("PTP 1", "moves[0]", joints=dict(zip(names, START, strict=True)))
