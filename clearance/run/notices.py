@@ -15,8 +15,10 @@ from clearance.simulate.measure import inside
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.measure.sections import SectionPlan
 from clearance.world.case import Case
+from clearance.world.extents import metres, reach_of
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.phase import Phase
+from clearance.world.plausible_sizes import FAR_OFF, far_off_notice
 
 _BY_PAPER = Notice(
     Severity.WARNING,
@@ -34,7 +36,7 @@ def notices_of(
     """All notices, those of the case and of how it was measured; the gravest first."""
     measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
-    empty = [_nothing_measured(phase) for phase in plan.empty]
+    empty = [*map(_nothing_measured, plan.empty), *_far_off(question.case, found)]
     empty += [_BY_PAPER] if question.method == "paper" else []
     untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []
     untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]
@@ -45,6 +47,16 @@ def _nothing_measured(phase: Phase) -> Notice:
     start, end = phase.span
     text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
     return Notice(Severity.WARNING, "pairs", text)
+
+
+def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:
+    """A warning that nothing comes near to anything, which boxes of hollow meshes do not show."""
+    least = min((one.found.clearance.min(initial=np.inf) for one in found), default=np.inf)
+    reach = max(map(reach_of, case.robots))
+    told = any(notice.kind == "units" for notice in case.notices)
+    if FAR_OFF * reach < least < np.inf and not told:
+        text = f"nothing comes nearer than {metres(least)} m to the robot"
+        yield far_off_notice(text, least / reach)
 
 
 def _without_depth(found: Sequence[SectionAnswer]) -> Iterator[Notice]:

@@ -28,6 +28,9 @@ RATIO = 200.0
 """[-] An obstacle this many times as long as the robot reaches, or a body this many times shorter, is in another
 unit: millimetres are 1000. Of 69 robots no mesh is shorter than 1/43 of the reach."""
 
+OF_A_MESH, RIDING = 100.0, 20.0
+"""[-] The same of an obstacle that is a mesh, whose file may be in millimetres, and of what rides on a link."""
+
 LONG_MESH, SHORT_MESH = 50.0, 0.01
 """[-] Parts of the reach from and up to which a mesh is also compared with the other obstacles."""
 
@@ -50,8 +53,9 @@ def _notices(case: Case, slides: tuple) -> tuple[Notice, ...]:
         texts += _odd_links(placed, before)
     if not texts:  # a robot that is odd itself is no measure for others
         reaches = [reach_of(placed) for placed in case.robots]
-        texts = [*_odd_obstacles(case.obstacles, reaches), *odd_places(case)]
-    return tuple(Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts)
+        texts = [*_odd_obstacles(case, reaches), *odd_places(case)]
+    found = (Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts)
+    return tuple(found) or tuple(_far_off(case))
 
 
 def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:
@@ -110,22 +114,29 @@ _TOO_LARGE = (
 _TOO_SMALL = "lengths are in metres, is it scaled by 0.001 though its file is in metres?"
 
 
-def _odd_obstacles(obstacles: Sequence[Obstacle], reaches: Sequence[float]) -> list[str]:
+def _odd_obstacles(case: Case, reaches: Sequence[float]) -> list[str]:
     least, most = min(reaches), max(reaches)
-    lengths = [length_of(obstacle.body) for obstacle in obstacles]
+    lengths = [length_of(obstacle.body) for obstacle in case.obstacles]
     large, small = [], []
-    for i, obstacle in enumerate(obstacles):
+    for i, obstacle in enumerate(case.obstacles):
         others = lengths[:i] + lengths[i + 1 :]
         text = f"obstacle {obstacle.name!r} is {metres(lengths[i])} m long"
-        if _is_large(obstacle.body, lengths[i], others, most):
+        riding = _rides(case, obstacle) and lengths[i] >= RIDING * most > 0
+        if riding or _is_large(obstacle.body, lengths[i], others, most):
             large.append((lengths[i], text))
         elif _is_small(obstacle.body, lengths[i], others, least):
             small.append((-lengths[i], text))
     return _lengths_in_words(large, small, least)
 
 
+def _rides(case: Case, obstacle: Obstacle) -> bool:
+    """True for a part in a hand, and for what is mounted on a link."""
+    mounted = obstacle.mount is not None and not owner_of(case, obstacle.mount)[0]
+    return mounted or any(carry.part == obstacle.name for carry in case.carries)
+
+
 def _is_large(body: Body, length: float, others: list[float], reach: float) -> bool:
-    if length >= RATIO * reach > 0:
+    if length >= (OF_A_MESH if _is_mesh(body) else RATIO) * reach > 0:
         return True
     among = _is_mesh(body) and bool(others) and length >= RATIO * float(np.median(others))
     return among and length >= LONG_MESH * reach
@@ -162,16 +173,52 @@ class Place(NamedTuple):
 
 def odd_places(case: Case) -> list[str]:
     """Obstacles, or else a base, that stand where no robot of the case gets."""
-    bases = [_robot_place(case, i) for i in range(len(case.robots))]
+    bases = _bases(case)
     reaches = [reach_of(placed) for placed in case.robots]
     far = []
-    for i, obstacle in enumerate(case.obstacles):
-        place = _obstacle_place(case, i)
-        gaps = [_gap(obstacle, place, base) for base in bases]
+    for obstacle, gaps in zip(case.obstacles, _gaps(case, bases), strict=True):
         near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(gaps, reaches, strict=True))
         if not near and min(gaps) > min(HALL, WALL * length_of(obstacle.body)):
             far.append((min(gaps), obstacle.name))
     return _in_words(case, greatest(far), bases) if far else []
+
+
+FAR_OFF = 5.0
+"""[-] What stays this many times as far away as `reach_of`, about ten times that of a data sheet, is idle."""
+
+
+def _far_off(case: Case) -> list[Notice]:
+    """A warning on obstacles that no robot ever comes near to."""
+    reach = max(map(reach_of, case.robots))
+    gaps = map(min, _gaps(case, _bases(case)))
+    far = [
+        (gap, f"obstacle {one.name!r} stays {metres(gap)} m")
+        for one, gap in zip(case.obstacles, gaps, strict=True)
+        if gap > FAR_OFF * reach
+    ]
+    if not far:
+        return []
+    whose = "the robot's base" if len(case.robots) == 1 else "every robot's base"
+    text = f"{listed([text for _, text in greatest(far)])} and more away from {whose}"
+    return [far_off_notice(text, min(far)[0] / reach)]
+
+
+def far_off_notice(text: str, times: float) -> Notice:
+    """A warning that what is measured is many times the reach away."""
+    asks = "are sizes and places in metres, not in millimetres?"
+    return Notice(Severity.WARNING, "units", f"{text}, {times:.0f} times its reach: {asks}")
+
+
+def _bases(case: Case) -> list[Place]:
+    return [_robot_place(case, i) for i in range(len(case.robots))]
+
+
+def _gaps(case: Case, bases: Sequence[Place]) -> list[list[float]]:
+    """[m] Least distances of each obstacle from each base."""
+    return [
+        [_gap(obstacle, _obstacle_place(case, i), base) for base in bases]
+        for i, obstacle in enumerate(case.obstacles)
+    ]
 
 
 def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> list[str]:

@@ -11,11 +11,12 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.mimics import followers
+from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
 from clearance.world.plausibility import notices_of
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
-from tests.made_cases import at
+from tests.made_cases import at, faces_of
 
 
 def arm(size: float = 0.3, origin: str = "arm.stl", **joint) -> Robot:
@@ -62,6 +63,48 @@ def test_a_good_case_tells_nothing():
 def test_another_unit_is_suspect(changes, says):
     found = [notice.text for notice in notices_of(case_of(**changes)) if notice.kind == "units"]
     assert len(found) == 1 and says in found[0], found
+
+
+def test_what_rides_on_a_link_is_not_many_times_the_reach():
+    """20 m where the robot reaches 0.8 m; a wall may be so long."""
+    case = case_of(obstacle=box((20.0, 0.2, 0.2)), pose=np.eye(4))
+    assert reported(case) == []
+    mount = Mount("upper", at(0.1))
+    riding = replace(case.obstacles[0], mount=mount)
+    assert reported(replace(case, obstacles=(riding,))) == [("suspect", "units")]
+
+
+def frame_around(side: float) -> Polyhedron:
+    """A square frame about the origin, whose bars are a hundredth of `side` thick."""
+    bar = box((side, side / 100, side / 100))
+    half = side / 2
+    turned = bar.vertices[:, [1, 0, 2]] * [-1, 1, 1]
+    parts = [bar.vertices + [0, way * half, 0] for way in (-1, 1)]
+    parts += [turned + [way * half, 0, 0] for way in (-1, 1)]
+    faces = [[i + 8 * k for i in face] for k in range(4) for face in faces_of(bar)]
+    return Polyhedron(np.concatenate(parts), faces)
+
+
+@pytest.mark.parametrize(
+    ("changes", "severity", "says"),
+    [
+        ({"obstacle": box((60.0, 60.0, 60.0)), "pose": at(0.0, 0.0, -35.0)}, "warning",
+         "obstacle 'block' stays 5 m and more away from the robot's base, 6 times its reach"),
+        ({"pose": at(15.0)}, "warning", "obstacle 'block' stays 14.9 m and more away"),
+        ({"obstacle": frame_around(20.0), "pose": at(0.0)}, "warning",
+         "nothing comes nearer than 9.7 m to the robot, 12 times its reach"),
+        ({"obstacle": frame_around(90.0), "pose": at(0.0)}, "suspect", "'block' is 90.9 m long"),
+    ],
+)  # fmt: skip
+def test_what_is_far_from_the_robot_is_no_quiet_clear(changes, severity, says):
+    case = case_of(**changes)
+    if severity == "suspect":
+        frame = case.obstacles[0]
+        mesh = replace(frame, body=replace(frame.body, origin="frame.stl"))
+        case = replace(case, obstacles=(mesh,))
+    found = [one for one in check(case).record.notices if one.kind == "units"]
+    assert [one.severity for one in found] == [severity]
+    assert says in found[0].text
 
 
 def test_a_small_box_of_a_robot_is_a_sensor():
