@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from clearance.errors import BadProgram
-from clearance.formats.program.expressions import Call, Expression, calls_in
+from clearance.formats.program.expressions import Call, Expression, Unknown, calls_in, names_in
 from clearance.formats.program.statements import (
     STOP,
     Assign,
@@ -18,6 +18,7 @@ from clearance.formats.program.statements import (
     Routine,
     Statement,
     Unreadable,
+    While,
     assigned,
     expressions_of,
     within,
@@ -99,6 +100,16 @@ class Effects:
             told = f"{what} {name!r} moves the robot, or may: {culprit}"
             raise BadProgram(told, where=str(line), valid="one that moves nothing")
 
+    def read_by(self, parts: Iterable[Expression], entered: tuple[str, ...] = ()) -> Iterator[str]:
+        """The variables that expressions may read, in routines that they call too."""
+        for part in parts:
+            yield from names_in(part)
+            for name in (call.name for call in calls_in(part)):
+                if name in self.routines and name not in entered:
+                    inner = within(self.routines[name].body)
+                    own = (expression for one in inner for expression in expressions_of(one))
+                    yield from self.read_by(own, (*entered, name))
+
     def changed_in(
         self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()
     ) -> Iterator[tuple[str, Line]]:
@@ -158,3 +169,12 @@ def unreadable_word(one: Unreadable) -> BadProgram:
         where=str(one.line),
         valid=f"a program without it, or skip: [{one.word}] if it does not",
     )
+
+
+def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
+    """The error for a loop whose condition only the controller knows."""
+    told, valid = f"{one.word} decides on {culprit}, and", "a condition that the file decides"
+    if culprit is None:
+        told, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
+    told = f"{told} is not known: {value.why}"
+    return BadProgram(told, where=str(one.line), valid=valid)

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 from clearance.errors import BadProgram, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait
-from clearance.formats.program.effects import Effects, unknown_word, unreadable_word
+from clearance.formats.program.effects import Effects, undecided, unknown_word, unreadable_word
 from clearance.formats.program.expressions import (
     Call,
     Constant,
@@ -26,6 +26,7 @@ from clearance.formats.program.expressions import (
     number,
     value_of,
 )
+from clearance.formats.program.kept import Kept
 from clearance.formats.program.remarks import Remarks
 from clearance.formats.program.statements import (
     BREAK,
@@ -112,6 +113,11 @@ class Execution(Remarks):
         """What statements may do."""
         language = self.language
         return Effects(language.moves, language.writes, self.routines, self.skip)
+
+    @cached_property
+    def kept(self) -> Kept:
+        """What rests on values that the controller keeps between runs."""
+        return Kept(self.effects, self.frames)
 
     def __post_init__(self) -> None:
         self.frames = [self.variables]
@@ -208,9 +214,11 @@ class Execution(Remarks):
         name = assigned(one.target)
         if name is None:
             raise BadProgram("no variable is given", where=str(one.line), valid="a variable")
-        value = self.evaluated(one.value)
-        if isinstance(one.target, Name):
-            place = self.variables if one.is_of_all else self._place(name.name, one.is_own)
+        value, origin = self.evaluated(one.value), self.kept.origin_of([one.value])
+        is_name = isinstance(one.target, Name)
+        place = self.variables if one.is_of_all else self._place(name.name, one.is_own)
+        self.kept.put(name.name, origin, place, not is_name)
+        if is_name:
             place[name.name] = value
             return
         assert isinstance(one.target, Part)
@@ -277,26 +285,37 @@ class Execution(Remarks):
         in_order = dict(zip(routine.parameters, call.args, strict=False))
         given = {**routine.defaults, **in_order, **call.named}
         frame = {name: self.evaluated(value) for name, value in given.items()}
+        self.kept.origins.append({name: self.kept.origin_of([one]) for name, one in given.items()})
         self.frames.append(frame)
         left = self.run(routine.body)
         value = None
         if left is not None and left.what == RETURN and left.value is not None:
             value = self.evaluated(left.value)
         self.frames.pop()
+        origins = self.kept.origins.pop()
         for name in routine.returned & given.keys():
-            if assigned(given[name]) is not None:
+            if (target := assigned(given[name])) is not None:
                 self._assign(Assign(call.line, given[name], Constant(frame[name])))
+                self.kept.put(target.name, origins.get(name, ""), self._place(target.name), True)
         return value, left if left is not None and left.what == STOP else None
 
     def _branch(self, one: If) -> Leave | None:
-        for condition, body in one.branches:
+        for n_asked, (condition, body) in enumerate(one.branches, 1):
             value = True if condition is None else value_of(condition, self)
             if isinstance(value, Unknown):
                 self._pass_branches(one, value)
                 return None
             if value:
-                return self.run(body)
-        return None
+                return self._way(one, n_asked, body)
+        return self._way(one, len(one.branches), ())
+
+    def _way(self, one: If, n_asked: int, body: tuple[Statement, ...]) -> Leave | None:
+        """Runs one way of a branch, of which so many conditions were looked at."""
+        asked = [condition for condition, _ in one.branches[:n_asked] if condition is not None]
+        origin, left = self.kept.origin_of(asked), self.run(body)
+        if origin:
+            self.doubts |= self.kept.doubts_on(one, origin)
+        return left
 
     def _pass_branches(self, one: If, why: Unknown) -> None:
         """Nothing but that variables are not known any more, where no branch moves the robot.
@@ -321,11 +340,8 @@ class Execution(Remarks):
                 self.note(told, f"{one.word} ({one.line})")
                 return Leave(one.line, one.word, STOP)
             if endless and n_passes == MOST_PASSES:
-                told, valid = (
-                    "an endless loop that is never the same",
-                    "variables that stay the same",
-                )
-                raise BadProgram(told, where=str(one.line), valid=valid)
+                told = "an endless loop that is never the same"
+                raise BadProgram(told, where=str(one.line), valid="variables that stay the same")
             before = self._state() if endless and n_passes else None
             self._count(one.line)
             left = self.run(one.body)
@@ -347,14 +363,7 @@ class Execution(Remarks):
             return bool(value) != one.at_end
         culprit = next(self.effects.deciding(one.body), None)
         if culprit is not None or one.word not in self.skip:
-            told, valid = (
-                f"{one.word} decides on {culprit}, and",
-                "a condition that the file decides",
-            )
-            if culprit is None:
-                told, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
-            told = f"{told} is not known: {value.why}"
-            raise BadProgram(told, where=str(one.line), valid=valid)
+            raise undecided(one, culprit, value)
         self.note("left out as asked", f"{one.word} ({one.line})")
         self._forget(self.effects.changed_in([one.body]))
         return False

@@ -166,6 +166,14 @@ def calls_in(one: Expression) -> Iterator[Call]:
         yield from calls_in(part)
 
 
+def names_in(one: Expression) -> Iterator[str]:
+    """All variables in an expression."""
+    if isinstance(one, Name):
+        yield one.name
+    for part in _parts(one):
+        yield from names_in(part)
+
+
 def is_constant(one: Expression) -> bool:
     """True for an expression of constants only."""
     made_of = Constant | Items | Operation

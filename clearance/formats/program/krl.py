@@ -45,6 +45,7 @@ from clearance.formats.program.krl_values import (
     matrix_of,
     why,
 )
+from clearance.formats.program.statements import Assign
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
 
@@ -73,8 +74,12 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         variables = first_variables(asked.asked, files.routines)
         run = Execution(language, files.routines, skip, variables)
         run.run(files.declared)
+        for one in files.declared:
+            if isinstance(one, Assign) and isinstance(one.target, Name):
+                run.kept.put(one.target.name, f"{one.target.name} ({one.line})", run.variables)
         run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
-        return ControllerProgram(tuple(run.moves), (*run.notes, *language.notes()))
+        notes = (*run.notes, *language.notes())
+        return ControllerProgram(tuple(run.moves), notes, doubts=(*run.doubts,))
 
 
 def _entry(names: Sequence[str], asked: str | None) -> str:

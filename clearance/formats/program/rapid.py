@@ -55,6 +55,7 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         skip = frozenset(rules.folded(one) for one in given.skip)
         run = Execution(language, modules.routines, skip)
         language.declare(run)
+        language.keep(run)
         run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
         notes = (*run.notes, *language.assumed, *_on_cycles(moves))

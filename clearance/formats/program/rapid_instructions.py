@@ -94,6 +94,12 @@ class Rapid:
             if name not in run.variables:
                 run.value_of(Name(name, one.line))
 
+    def keep(self, run: Execution) -> None:
+        """Says which data of modules keep their values between runs, unless the case says them."""
+        for name, one in self.modules.declared.items():
+            if one.kind == "PERS" and name not in self.known_data:
+                run.kept.put(name, f"{name} ({one.line})", run.variables)
+
     def moves(self, name: str) -> bool | None:
         """Whether an instruction decides where the robot goes; None for one that is not known."""
         if name in MOVES or name in OTHER_MOVES or name == "ConfJ":

@@ -258,6 +258,31 @@ def test_each_module_has_points_and_procedures_of_its_own():
     assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
 
 
+KEPT = "DEFDAT CELL PUBLIC\nDECL GLOBAL BOOL high=TRUE\nENDDAT"
+"""A value that the controller keeps between runs, in line 2."""
+
+
+@pytest.mark.parametrize(
+    ("body", "line"),
+    [
+        ("IF high==TRUE THEN\nPTP XHOME\nENDIF\nPTP XHOME", 7),
+        ("IF NOT high THEN\nPTP XHOME\nENDIF\nPTP XHOME", 7),
+        ("b=high\nSWITCH b\nCASE TRUE\nPTP XHOME\nENDSWITCH\nPTP XHOME", 8),
+        ("IF high THEN\nn=2\nELSE\nn=1\nENDIF\nIF n==2 THEN\nPTP XHOME\nENDIF\n", 12),
+        ("up(high,n)\nIF n THEN\nPTP XHOME\nENDIF\n", 8),
+        ("IF high THEN\n$OUT[1]=TRUE\nENDIF\nPTP XHOME", 0),
+        ("high=FALSE\nIF high THEN\nPTP XHOME\nENDIF\nPTP XHOME", 0),
+        ("b=high\nb=TRUE\nIF b THEN\nPTP XHOME\nENDIF", 0),
+    ],
+)
+def test_a_branch_that_a_kept_value_decides_is_doubted(body, line):
+    more = "END\nDEF up(a:IN,c:OUT)\nc=NOT a\nc=NOT c\n"
+    beside = {"weld.dat": POINTS.encode(), "cell.dat": KEPT.encode()}
+    found = read("weld.src", f"{HEAD}{body}\n{more}END\n", beside)
+    told = f"line {line}: the way not taken is not measured; HIGH (cell.dat line 2) decides"
+    assert [one.split(",")[0] for one in found.doubts] == [told] * bool(line)
+
+
 WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
 
 

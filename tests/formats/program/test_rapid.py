@@ -267,6 +267,15 @@ def test_a_procedure_is_left_out_only_if_it_moves_nothing():
     assert len(moves_of(f"{body}SetDO do1,1;\nWorldAccLim\\On:=3;", data, skip=["sub"])) == 1
 
 
+def test_a_branch_that_persistent_data_decide_is_doubted():
+    body = f"IF isup() THEN MoveL {P},v5,fine,tool0; ENDIF\nMoveL {P},v5,fine,tool0;\nENDPROC\n"
+    body += "FUNC bool isup() RETURN up>1; ENDFUNC PROC last()"
+    text = f"MODULE M %s num up:=2;\nPROC main()\n{body}\nENDPROC ENDMODULE"
+    (told,) = read("a.mod", text % "TASK PERS").doubts
+    assert told.startswith("line 3: the way not taken is not measured; up (line 1) decides")
+    assert not read("a.mod", text % "CONST").doubts
+
+
 def test_the_procedure_that_runs_is_chosen():
     text = f"MODULE M PROC a() MoveL {P},v5,fine,tool0; ENDPROC PROC b() ENDPROC ENDMODULE"
     assert len(read("a.mod", text, entry="A").moves) == 1
