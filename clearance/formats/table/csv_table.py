@@ -43,6 +43,10 @@ UNNAMED = "(column "
 """How the name of a column without one begins; its place follows."""
 
 
+_NO_BLANKS = dict.fromkeys(map(ord, "\v\f\x1c\x1d\x1e\x1f"), "\0")
+"""Blanks round a number to numpy and Python; in a table they are none, and a number with one is refused."""
+
+
 class TextTable(NamedTuple):
     """A file with a table, and how it is written.
 
@@ -60,7 +64,7 @@ class TextTable(NamedTuple):
         if "_" in cell or not cell.isascii() or (self.decimal != "." and "." in cell):
             return None
         try:
-            return float(cell.replace(self.decimal, "."))
+            return float(cell.translate(_NO_BLANKS).replace(self.decimal, "."))
         except ValueError:
             return None
 
@@ -213,15 +217,14 @@ def columns_of(
 def _blocks(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[np.ndarray]:
     """All rows, so many at a time; columns are fields, called by their places. Those wanted are numbers."""
     kinds = [(str(i), "f8" if name in wanted else "U1") for i, name in enumerate(names)]
-    swap = str.maketrans(",.", ".,")
+    swap = _NO_BLANKS | (str.maketrans(",.", ".,") if table.decimal == "," else {})
     try:
         with table.opened() as file:
             if file.read(3) != BOM_UTF8:
                 file.seek(0)
             text = io.TextIOWrapper(file, "ascii", "surrogateescape", newline="")  # as numbers are
-            lines = (line for line in islice(text, _n_above(table), None) if line.strip("\r\n"))
-            if table.decimal == ",":
-                lines = (line.translate(swap) for line in lines)
+            rows = islice(text, _n_above(table), None)
+            lines = (line.translate(swap) for line in rows if line.strip("\r\n"))
             for first in lines:
                 block = chain([first], islice(lines, BLOCK - 1))
                 yield np.loadtxt(
@@ -258,7 +261,9 @@ def _fault_in_rows(
             if name in wanted and table.float_of(cell) is None:
                 valid = "decimals have commas in this file" if table.decimal == "," else ""
                 return BadSyntax(
-                    f"{cell.strip()!r} in column {name!r} is not a number", where=where, valid=valid
+                    f"{cell.strip(' ')!r} in column {name!r} is not a number",
+                    where=where,
+                    valid=valid,
                 )
     return None if n_rows else _no_rows()
 

@@ -72,6 +72,8 @@ def test_numbers_are_read_to_the_last_bit():
         ("time,a\n0,1\n1\n", BadShape, "line 3: 1 columns; the header has 2"),
         ("time,a\n0,\n", BadSyntax, "line 2: '' in column 'a' is not a number"),
         ("time,a\n0,1_0\n", BadSyntax, "'1_0' in column 'a'"),
+        ("time,a\n0,1\f\n", BadSyntax, r"'1\x0c' in column 'a'"),
+        ("time;a\n0;1,5\n1;\x1c2,5\n", BadSyntax, r"line 3: '\x1c2,5' in column 'a'"),
         ("time,a\n0,1\n\n1,nan\n", NotFinite, "line 4: nan in column 'a'"),
         ("time,a\n0,1\n1,1\n\n1,2\n", BadTime, "line 5: time 1.0 follows 1.0"),
         ("time,arm,amr/velocity\n0,1,2\n", MissingKey, "'amr/velocity' is the velocity of 'amr'"),
