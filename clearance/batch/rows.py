@@ -119,7 +119,7 @@ def row_of(run: Run) -> dict[str, Any]:
     return {
         "status": verdict.status,
         "exit_code": verdict.exit_code,
-        "text": verdict.text(),
+        "text": verdict.headline(),
         "measured": verdict.measured,
         "basis": verdict.basis,
         "need": record.need,

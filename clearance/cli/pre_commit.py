@@ -53,7 +53,7 @@ def _checked(path: Path, options: CheckOptions) -> ExitCode:
 
     run = answer(Question.of(load_case(path), options, spelled_by(CheckOptions)))
     if not run.passed:
-        click.echo(f"{path}: {run.verdict.text(str.upper)}")
+        click.echo(f"{path}: {run.verdict.headline(str.upper)}")
         for line in _why(run):
             click.echo(f"  {line}")
     return ExitCode(run.verdict.exit_code)

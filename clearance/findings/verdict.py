@@ -154,7 +154,25 @@ class Verdict:
         by_samples = self.basis == SAMPLES and self.status == Status.CLEAR
         return str(Status.NEAR) if by_samples else self.status
 
-    def text(self, shown: Callable[[str], str] = str) -> str:
+    @property
+    def reservations(self) -> tuple[str, ...]:
+        """What a reader must know beside the headline, one line each."""
+        return (
+            *([f"nearest of all {self.nearest}"] if self.nearest else []),
+            *(f"waived: {line}" for line in self.waived),
+            *self.waiver_faults,
+            *self.unproven_motion,
+            *self.with_tolerances,
+            *self.scope,
+            *(f"suspect {one.kind}: {one.line}" for one in self.suspects),
+            *self.warnings,
+        )
+
+    def text(self) -> str:
+        """The verdict with its reservations, in one line."""
+        return "; ".join((self.headline(), *self.reservations))
+
+    def headline(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
         text, passing = shown(self.measured), self.measured in _PASSING
         if passing and self.tolerances not in ("", KEPT):

@@ -133,7 +133,7 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
 def _of_run(run: Run, proven: float | None) -> dict[str, Any]:
     return {
         "verdict": run.status,
-        "verdict_text": run.verdict.text(),
+        "verdict_text": run.verdict.headline(),
         "passed": run.passed,
         "fail": run.record.rule(run.record.worst.rule).limits.fail,
         "worst": _moment(run.record.worst),

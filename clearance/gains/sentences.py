@@ -69,7 +69,7 @@ def _kept(gain: Gain) -> Iterator[Line]:
     yield "after", _worst(gain.after)
     yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
     if not gain.after.passed:
-        yield "but", f"the changed case is not passed: {gain.after.verdict.text()}"
+        yield "but", f"the changed case is not passed: {gain.after.verdict.headline()}"
 
 
 def _not_kept(gain: Gain) -> Iterator[Line]:
@@ -234,7 +234,7 @@ def _worst(run: Run) -> str:
     if not worst.touches and worst.clearance < 0.0:
         far = f"{depth_mm(-worst.clearance)} mm too near for their padding"
     told = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(run.record, worst)}"
-    return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.text()}"
+    return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.headline()}"
 
 
 def _joint(part: ChangePart) -> str:

@@ -41,7 +41,7 @@ def assert_clear(
 
 def _reasons(run: Run) -> list[str]:
     verdict = run.verdict
-    return [] if verdict.passed else [verdict.text(), *verdict.reasons]
+    return [] if verdict.passed else [verdict.headline(), *verdict.reasons]
 
 
 def _doubts(run: Run) -> list[str]:

@@ -154,7 +154,7 @@ class VerdictItem(_Item):
         run = self.case_run.run()
         verdict = run.verdict
         if not verdict.passed:
-            raise self.failure([f"{run.record.case.name}: {verdict.text()}", *verdict.reasons])
+            raise self.failure([f"{run.record.case.name}: {verdict.headline()}", *verdict.reasons])
 
 
 def _in_doubt(run: Run) -> list[str]:

@@ -97,7 +97,7 @@ def _verified(
     source = "" if isinstance(case, Case) else str(case or receipt.head["case"])
     verdict = run.verdict
     beside = (*verdict.scope, *(f"warning: {line}" for line in verdict.warnings))
-    found = replace(found, asked=asked, verdict=verdict.text(), beside=beside, source=source)
+    found = replace(found, asked=asked, verdict=verdict.headline(), beside=beside, source=source)
     return _compared_with_report(found, run, data, receipt, place)
 
 
@@ -164,7 +164,7 @@ def _not_borne(run: Run, data: CaseData, receipt: Receipt) -> Iterator[str]:
         limit = getattr(limits[rule], level) if level else 0.0
         if level and len(claimed) and (claimed.min() + ROUNDED) * UNIT < limit:
             yield (
-                f"a fresh run is {verdict.text()}, but the receipt proves only "
+                f"a fresh run is {verdict.headline()}, but the receipt proves only "
                 f"{claimed.min() * UNIT * 1e3:.6f} mm ({shown(rule)}), below the {level} limit "
                 f"of {limit * 1e3:g} mm"
             )

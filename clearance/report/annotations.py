@@ -65,7 +65,7 @@ def _beside(verdict: Verdict) -> list[str]:
         (POSE, "no motion is checked"),
     ):
         if verdict.basis == basis:
-            told.append(f"{verdict.text()}: {unchecked}")
+            told.append(f"{verdict.headline()}: {unchecked}")
     return told
 
 

@@ -53,7 +53,7 @@ def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
     shown = [finding for finding in findings if finding.status != "clear"]
     if not shown:
         told += [f"kept: {finding_line(finding)}" for finding in findings[:MOST_ROWS]]
-    lines = [f"### {plain(model.record.case.name)}: {plain(verdict.text(str.upper))}", ""]
+    lines = [f"### {plain(model.record.case.name)}: {plain(verdict.headline(str.upper))}", ""]
     lines += [f"- {plain(text)}" for text in told]
     if shown:
         lines += ["", *_table(shown[:MOST_ROWS], comparison)]

@@ -24,7 +24,7 @@ from clearance.report.topics.pairs import MOST_LINES, pair_figures
 
 def run_text(model: ReportModel) -> str:
     """Name, verdict, least clearance, who and when, in one line."""
-    return f"{model.record.case.name}: {model.verdict.text()}, {_worst(model.record)}"
+    return f"{model.record.case.name}: {model.verdict.headline()}, {_worst(model.record)}"
 
 
 def run_html(model: ReportModel) -> str:
@@ -33,14 +33,6 @@ def run_html(model: ReportModel) -> str:
 
     record, verdict = model.record, model.verdict
     limits = record.rule(record.worst.rule).limits
-    beside = [
-        *([f"nearest of all {verdict.nearest}"] if verdict.nearest else []),
-        *verdict.unproven_motion,
-        *verdict.with_tolerances,
-        *verdict.scope,
-        *(f"suspect {one.kind}: {one.line}" for one in verdict.suspects),
-        *verdict.warnings,
-    ]
     several = bool(record.case.limits.rules)
     rows = [
         Row([pair.link, pair.obstacle, *pair_figures(pair), *([pair.rule] * several)])
@@ -48,9 +40,9 @@ def run_html(model: ReportModel) -> str:
     ]
     return render(
         "notebook.html",
-        title=f"{record.case.name}: {verdict.text()}",
+        title=f"{record.case.name}: {verdict.headline()}",
         worst=f", {_worst(record)} ({limits_text(limits.fail, limits.warn)})",
-        beside=Bullets(beside),
+        beside=Bullets(verdict.reservations),
         nearest=Table(
             (*BODIES[record.sides[0]], ">mm", ">Step", ">s", *(["Rule"] * several)), rows
         ),

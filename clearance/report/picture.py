@@ -98,7 +98,7 @@ def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
     colour = _SUSPECT if hue is None else f"#{hue:06x}"
     below = ", ".join([limits_text(limits.fail, limits.warn), *verdict.scope])
     lines = (
-        (f"{verdict.text(str.upper)}   {record.case.name}", 15, colour, "bold"),
+        (f"{verdict.headline(str.upper)}   {record.case.name}", 15, colour, "bold"),
         (moment_line(record, record.worst), 12, _INK, "normal"),
         (below, 10, _FAINT, "normal"),
     )

@@ -61,7 +61,7 @@ def _print(console: Console, text: Text) -> None:
 def _headline(model: ReportModel) -> Text:
     """Verdict and least clearance, or the most critical moment and its rule, or the deepest contact."""
     record, verdict, limits = model.record, model.verdict, model.record.case.limits
-    text = Text(verdict.text(str.upper), style=_STYLES.get(verdict.shade, "bold red"))
+    text = Text(verdict.headline(str.upper), style=_STYLES.get(verdict.shade, "bold red"))
     name, worst = record.case.name, record.worst
     if worst.touches:
         told = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"

@@ -184,6 +184,10 @@ class Run:
 
         return f"<Run {run_text(self.report)}>"
 
+    def __str__(self) -> str:
+        """The same, with what must be known beside it below."""
+        return "\n  ".join((repr(self), *self.verdict.reservations))
+
     def _repr_html_(self) -> str:
         """The verdict and the closest pairs, for a notebook."""
         from clearance.report.notebook import run_html

@@ -52,7 +52,7 @@ def test_what_is_proven_of_a_waiver_is_that_of_its_pairs(tmp_path):
 
 def test_kept_with_tolerances(tmp_path):
     run = asked(tmp_path, 0.0005, gates={"right": (0.5, 0.008)}, waivers=())
-    assert run.passed and run.verdict.text(str.upper) == "NEAR with tolerances"
+    assert run.passed and run.verdict.headline(str.upper) == "NEAR with tolerances"
     assert run.record.budget[0].least == pytest.approx(0.0075, abs=2e-4)
     table = run.steps
     assert {"proven", "expected", "proven_between"} <= set(table.column_names)
@@ -62,6 +62,6 @@ def test_kept_with_tolerances(tmp_path):
 def test_at_the_samples_only_the_headline_says_so(tmp_path):
     case = load_gates(tmp_path, {"right": (0.5, 0.008)})
     run = cl.check(case, tolerance={"base": {"xyz": 0.0005}}, certify=False)
-    assert run.verdict.text(str.upper) == "NEAR with tolerances at the samples only"
+    assert run.verdict.headline(str.upper) == "NEAR with tolerances at the samples only"
     assert "proven for the samples only" in run.verdict.with_tolerances[0]
     assert "proven_between" not in run.steps.column_names

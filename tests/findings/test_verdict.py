@@ -80,7 +80,10 @@ def test_every_answer_says_the_same(name, tmp_path):
         verdict.passed,
         exit_code,
     )
-    assert summary["verdict_text"] == verdict.text() and "at the samples only" in verdict.text()
+    assert (
+        summary["verdict_text"] == verdict.headline()
+        and "at the samples only" in verdict.headline()
+    )
     assert summary["basis"] == "samples" and summary["not_checked"] == ["self-collision"]
     write_junit(one, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
@@ -93,7 +96,7 @@ def test_every_answer_says_the_same(name, tmp_path):
     assert "at the samples only" in told and "self-collision not checked" in told
     headline, second, *_ = printed(one)
     assert (
-        headline.startswith(verdict.text(str.upper))
+        headline.startswith(verdict.headline(str.upper))
         and second.strip() == "self-collision not checked [CL531]"
     )
     badge = header(content_of(one))
@@ -102,6 +105,12 @@ def test_every_answer_says_the_same(name, tmp_path):
     shade = "contact" if status == "contact" else failing
     assert badge.badge_kind == shade and data_in(page_of(one))["sampled"]
     assert not any(text.endswith(" never") for text in printed(one))
+    doubts = [
+        *(one.line for one in verdict.suspects),
+        *verdict.warnings,
+        "self-collision not checked",
+    ]
+    assert all(one in text for one in doubts for text in (verdict.text(), str(run)))
     for reason in verdict.reasons:
         assert reason in summary["reasons"] and reason in told
 

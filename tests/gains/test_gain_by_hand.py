@@ -173,7 +173,7 @@ def quick(n, speed, acceleration=np.inf):
 def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
     found = gain(quick(n, speed, acceleration), "waypoints")
     assert found.kept == found.after.passed
-    assert "joint limits" not in found.after.verdict.text()
+    assert "joint limits" not in found.after.verdict.headline()
     ranges = joint_ranges(found.case.robots[0])
     assert all(one.room.min() > -1e-9 for one in ranges)
 

@@ -442,7 +442,7 @@ def test_a_stretch_near_a_singularity_is_measured_and_not_proven(tmp_path):
     (span,) = trajectory.unproven
     assert span.move == "LIN 1" and 0.0 < span.start < span.end < 0.2
     assert run.verdict.exit_code == 1 and run.verdict.status == "not proven"
-    assert "not proven on part of the motion, clear as measured" in run.verdict.text()
+    assert "not proven on part of the motion, clear as measured" in run.verdict.headline()
     told = f"LIN 1, {span.start:.3f}-{span.end:.3f} s: a singularity is too near"
     assert told in run.verdict.reasons[0] and "unproven motion" in {
         doubt.kind for doubt in doubts_of(run.record, None) if doubt.fails

@@ -139,7 +139,7 @@ def test_the_verdict_says_how_far_clocks_may_be_apart_and_both_times(slack, told
     run = dataclasses.replace(
         found, record=record, session=dataclasses.replace(found.session, record=record)
     )
-    assert run.verdict.text().endswith(told)
+    assert run.verdict.headline().endswith(told)
     summary = run.summary
     assert summary["clocks"] == told and summary["worst"]["time_b"] == 2.5
     text = printed(run)

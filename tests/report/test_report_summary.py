@@ -98,8 +98,11 @@ def test_a_case_file_can_be_checked_by_its_path(run):
 def test_a_run_is_told_in_a_line(run):
     told = repr(run)
     assert "\n" not in told and len(told) < 200
-    assert told.startswith(f"<Run {run.record.case.name}: {run.verdict.text()}, ")
+    assert told.startswith(f"<Run {run.record.case.name}: {run.verdict.headline()}, ")
     assert run.worst["link"] in told and run.worst["obstacle"] in told
+    unchecked = "self-collision not checked [CL531]"
+    assert str(run).startswith(told) and str(run).splitlines()[1].strip() == unchecked
+    assert run.verdict.text() == f"{run.verdict.headline()}; {unchecked}"
 
 
 @pytest.mark.parametrize("certify", [True, False])

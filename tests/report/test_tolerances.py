@@ -65,7 +65,11 @@ SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
 )  # fmt: skip
 def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     verdict, run = verdict_of(one), run_of(one)
-    assert (verdict.status, verdict.exit_code, verdict.text(str.upper)) == (status, exit_code, text)
+    assert (verdict.status, verdict.exit_code, verdict.headline(str.upper)) == (
+        status,
+        exit_code,
+        text,
+    )
     assert (run.status, run.passed) == (status, exit_code == 0)
     summary = summary_of(one)
     assert (summary["verdict"], summary["exit_code"]) == (status, exit_code)

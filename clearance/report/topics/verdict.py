@@ -41,7 +41,7 @@ def data(model: ReportModel) -> dict[str, Any]:
     verdict = model.verdict
     return {
         "verdict": verdict.status,
-        "verdict_text": verdict.text(),
+        "verdict_text": verdict.headline(),
         "measured": verdict.measured,
         "passed": verdict.passed,
         "exit_code": verdict.exit_code,
@@ -113,7 +113,7 @@ def header(content: PageContent) -> Header:
 
 def badge_text(verdict: Verdict) -> str:
     """The verdict in a few words."""
-    return capital(verdict.text(_TITLES.__getitem__))
+    return capital(verdict.headline(_TITLES.__getitem__))
 
 
 def _worst_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:

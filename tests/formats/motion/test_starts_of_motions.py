@@ -64,7 +64,7 @@ def test_a_table_of_one_row_is_a_single_pose(tmp_path, capsys, time):
     case = load_small(tmp_path, trajectory=f"time,shoulder\n{time},0.5\n")
     assert kinds(case) == []
     found = check(case)
-    assert found.verdict.text() == "clear at a single pose" and found.verdict.basis == "pose"
+    assert found.verdict.headline() == "clear at a single pose" and found.verdict.basis == "pose"
     assert run(["check", str(tmp_path / "case.yaml")]) == 0
     told = capsys.readouterr().out
     assert "CLEAR at a single pose" in told and "every moment" not in told
@@ -82,7 +82,7 @@ def test_a_goal_without_a_start_is_suspect_in_whatever_format(tmp_path):
         assert [(one.kind, one.text) for one in notices_of(case)] == [("start", says)]
         found = check(case, need="minimum")
         assert found.verdict.exit_code == 2
-        assert found.verdict.text() == "suspect (would be clear at a single pose)"
+        assert found.verdict.headline() == "suspect (would be clear at a single pose)"
 
 
 LATE = plan(point(4.0, 1.0, 0.05), point(6.0, 0.0, 0.05), names=("shoulder", "lift"))
@@ -121,7 +121,7 @@ def test_a_start_in_the_case_makes_it_a_motion(tmp_path):
     assert asked.positions.tolist() == [[-0.5, 0.02], [1.0, 0.05]]
     said = "joints start from rest in start_state at 0 s and go to the first sample at 4 s as between samples"
     assert any(said in note for note in case.notes)
-    assert check(case, need="minimum").verdict.text() == "clear"
+    assert check(case, need="minimum").verdict.headline() == "clear"
     named = load(tmp_path, GOAL, ", start_state: home", robot=", srdf: arm.srdf", arm__srdf=SRDF)
     assert named.robots[0].trajectory.positions.tolist() == asked.positions.tolist()
 

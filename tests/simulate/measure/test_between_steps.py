@@ -67,7 +67,7 @@ def test_two_waypoints_that_sweep_an_arm_through_a_post_are_contact():
 def test_the_samples_alone_say_so():
     run = cl.check(sweeping(THROUGH), certify=False)
     assert (run.status, run.verdict.basis, run.certificate) == ("clear", "samples", None)
-    assert run.verdict.text() == "clear at the samples only"
+    assert run.verdict.headline() == "clear at the samples only"
     assert run.worst == run.worst_sample
 
 

@@ -157,4 +157,4 @@ def test_a_gap_that_is_no_length_is_refused():
 def test_the_papers_method_certifies_nothing_and_the_verdict_says_so():
     case = crossing(0.1, [-0.3, 0, 0, 0, 0, 0], [-0.2, 0, 0, 0, 0, 0])
     run = cl.answer(cl.Question(case, certify=True, method="paper"))
-    assert run.certificate is None and run.verdict.text() == "clear at the samples only"
+    assert run.certificate is None and run.verdict.headline() == "clear at the samples only"
