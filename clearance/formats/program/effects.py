@@ -110,6 +110,12 @@ class Effects:
                     own = (expression for one in inner for expression in expressions_of(one))
                     yield from self.read_by(own, (*entered, name))
 
+    def beside(self, what: str, name: str) -> dict[str, Unknown]:
+        """The variables that a routine which runs beside the program may change at any time."""
+        changed = self._changed_by(self.routines[name], (name,)) if name in self.routines else ()
+        told = f"{what} {name!r} may change it at any time"
+        return {one: Unknown(f"{told}: {one!r} at {at}") for one, at in changed}
+
     def changed_in(
         self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()
     ) -> Iterator[tuple[str, Line]]:
@@ -150,8 +156,11 @@ def _calls_of(one: Statement) -> Iterator[Call]:
         yield from calls_in(part)
 
 
-def unknown_word(call: Call) -> BadProgram:
-    """The error for an instruction or a function that may do anything."""
+def unknown_word(call: Call, moves: bool | None = None) -> BadProgram:
+    """The error for an instruction or a function that may do anything, or that moves and has no value."""
+    if moves:
+        told = f"{call.name} moves the robot, and has no value"
+        return BadProgram(told, where=str(call.line), valid="the move as a statement of its own")
     return BadProgram(
         f"{call.name!r} is no known instruction, and may move the robot",
         where=str(call.line),

@@ -10,7 +10,7 @@ import copy
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 from clearance.errors import BadProgram, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait
@@ -22,11 +22,13 @@ from clearance.formats.program.expressions import (
     Name,
     Part,
     Unknown,
+    calls_in,
     is_constant,
     number,
     value_of,
 )
 from clearance.formats.program.kept import Kept
+from clearance.formats.program.language import Language
 from clearance.formats.program.remarks import Remarks
 from clearance.formats.program.statements import (
     BREAK,
@@ -59,45 +61,13 @@ MOST_CALLS = 40
 """Routines within routines."""
 
 
-class Language(Protocol):
-    """What the words of a language do."""
-
-    def moves(self, name: str) -> bool | None:
-        """Whether an instruction or a function can move the robot; None where it is not known."""
-
-    def writes(self, call: Call) -> Iterable[Expression]:
-        """The arguments of an instruction or a function that it gives a value."""
-
-    def instruct(self, call: Call, run: Execution) -> None:
-        """Does what an instruction does: a move, a setting, or a wait."""
-
-    def result_of(self, call: Call, run: Execution) -> Any:
-        """The value of a function of the language; `Unknown` where only the controller knows it."""
-
-    def value_of(self, name: str, run: Execution) -> Any:
-        """The value of a name that the language itself knows; None where it knows none."""
-
-    def items(self, values: list[Any], kind: str) -> Any:
-        """Values in brackets."""
-
-    def part_of(self, value: Any, by: Any) -> Any:
-        """A part of a value."""
-
-    def with_part(self, value: Any, by: Any, new: Any) -> None:
-        """Changes a part of a value."""
-
-    @property
-    def state(self) -> Any:
-        """What settings are in force: a loop repeats itself where it is the same."""
-
-
 @dataclass(eq=False)
 class Execution(Remarks):
     """A program that runs.
 
     Attributes:
         routines: by name. skip: names of instructions, functions and words of loops to leave out.
-        variables: of the whole program; `frames` those of routines that are entered. moves: made so far.
+        variables: of all; `frames`: of routines in use; `beside`: that threads change. moves: made so far.
     """
 
     language: Language
@@ -105,6 +75,7 @@ class Execution(Remarks):
     skip: frozenset[str]
     variables: dict[str, Any] = field(default_factory=dict)
     frames: list[dict[str, Any]] = field(init=False)
+    beside: dict[str, Unknown] = field(default_factory=dict)
     moves: list[ControllerMove | ControllerWait] = field(default_factory=list)
     _n_run: int = 0
 
@@ -125,6 +96,18 @@ class Execution(Remarks):
             if (culprit := self.effects.moving_in(name)) is not None:
                 told = f"{name} moves the robot, or changes how it moves{culprit}"
                 raise BadProgram(told, where="skip", valid="what moves nothing, or no skip")
+
+    def pass_over(self, call: Call) -> None:
+        """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
+        self.note("instructions that move nothing", f"{call.name} ({call.line})")
+        for part in (*call.args, *call.named.values()):
+            if any(one.name in self.routines for one in calls_in(part)):
+                self.evaluated(part)
+
+    def run_beside(self, what: str, name: str, line: Line) -> None:
+        """Keeps that a routine runs beside the program: it moves nothing, and what it changes is not known."""
+        self.effects.require_still(what, name, line)
+        self.beside |= self.effects.beside(what, name)
 
     def add(self, move: ControllerMove | ControllerWait) -> None:
         """A move that the robot makes.
@@ -177,7 +160,7 @@ class Execution(Remarks):
 
     def value_of(self, name: Name) -> Any:
         """The value of a variable; `Unknown` where no file that is given has it."""
-        for place in (self.frames[-1], self.variables):
+        for place in (self.beside, self.frames[-1], self.variables):
             if name.name in place:
                 return place[name.name]
         own = self.language.value_of(name.name, self)
@@ -198,8 +181,8 @@ class Execution(Remarks):
             return Unknown(f"{call.name} ({call.line}) is left out")
         if call.name in self.routines:
             return self._called(self.routines[call.name], call)[0]
-        if self.language.moves(call.name) is None:
-            raise unknown_word(call)
+        if (moves := self.language.moves(call.name)) is not False:
+            raise unknown_word(call, moves)
         return self.language.result_of(call, self)
 
     def items(self, values: list[Any], kind: str) -> Any:
@@ -239,15 +222,13 @@ class Execution(Remarks):
 
     def forget_written(self, call: Call) -> None:
         """Makes variables unknown that an instruction or a function of the language gives a value."""
-        for name in (assigned(one) for one in self.language.writes(call)):
-            if name is not None:
-                why = f"{name.name!r} is given a value by {call.name} at {call.line}"
-                self._place(name.name)[name.name] = Unknown(why)
+        for one in filter(None, map(assigned, self.language.writes(call))):
+            self._forget([(one.name, call.line)], f" by {call.name}")
 
-    def _forget(self, changed: Iterable[tuple[str, Line]]) -> None:
+    def _forget(self, changed: Iterable[tuple[str, Line]], by: str = "") -> None:
         """Makes variables unknown that lines may have changed."""
         for name, line in changed:
-            self._place(name)[name] = Unknown(f"{name!r} is given a value at {line}")
+            self._place(name)[name] = Unknown(f"{name!r} is given a value{by} at {line}")
 
     def _leave_out(self, call: Call) -> None:
         """Keeps that a call is left out, and makes variables unknown that it may have changed."""

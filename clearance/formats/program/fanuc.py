@@ -139,7 +139,7 @@ class _Fanuc:
                 if seconds > 0.0:
                     run.add(ControllerWait(call.line.number, seconds, call.line.file))
             else:
-                run.pass_over(call.name, call.line)
+                run.pass_over(call)
 
     def _move(self, call: Call, run: Execution) -> ControllerMove:
         (constant, speed), kind = call.args, MOVES[call.name]

@@ -102,12 +102,13 @@ _SPEED = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGNORECASE)
-_ASSIGNED = re.compile(
-    r"((?:R|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)", re.IGNORECASE | re.DOTALL
-)
+_ASSIGNED = re.compile(r"(?is)((?:R|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)")
 _JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
 _ENDS = ("ENDIF", "ELSE", "ENDFOR", "=")
-_TIMED = re.compile(r"\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,.*", re.IGNORECASE | re.DOTALL)
+_TIMED = re.compile(
+    r"(?i)\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,\s*"
+    r"(CALL\s+[\w-]+(\s*\([^()]*\))?|\w+\s*\[[^\]]*\]\s*=\s*[^\s,]+)"
+)
 
 
 @dataclass(frozen=True)
@@ -170,6 +171,8 @@ def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line
         kept = re.sub(r"^\s*\d*\s*:", "", row).strip()
         if not kept:
             continue
+        if parts and re.match(r"\s*\d+\s*:", row):
+            break  # the one before has no end
         line = line if parts else Line(number, file)
         parts.append(kept)
         if kept.endswith(";"):
@@ -285,11 +288,9 @@ class _Reader:
     def _action(self, line: Line, text: str) -> tuple[Statement, ...]:
         """The statements that a condition decides on; they hold no further one."""
         word = _first(text)
-        return (
-            (Unreadable(line, word, jumps=True),)
-            if word == "IF"
-            else tuple(self._simple(line, text))
-        )
+        if word == "IF":
+            return (Unreadable(line, word, jumps=True),)
+        return tuple(self._simple(line, text))
 
     def _simple(self, line: Line, text: str) -> list[Statement]:
         """A statement that holds no other."""

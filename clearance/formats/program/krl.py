@@ -185,16 +185,16 @@ class _Krl:
             elif call.args:  # an interrupt or a trigger, and what it calls
                 (called,) = (str(run.evaluated(one)) for one in call.args)
                 if called != SYSTEM:
-                    run.effects.require_still(call.name, called, call.line)
+                    run.run_beside(call.name, called, call.line)
                 run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
             else:
-                run.pass_over(call.name, call.line)
+                run.pass_over(call)
 
     # moves
 
     def _move(self, call: Call, run: Execution) -> None:
         first = call.args[0]
-        if isinstance(first, Name) and first.name in STANDS:
+        if isinstance(first, Name) and first.name in STANDS and len(call.args) == 1:
             return
         kept = {name: run.variables[name] for name in HELD}
         settings = Settings(run, call.line)
@@ -250,6 +250,8 @@ class _Krl:
         Raises:
             BadInput: where the robot is before is not known, or the tool is to turn.
         """
+        if any(re.fullmatch("E[1-6]", key) and value != 0.0 for key, value in way.items()):
+            raise BadProgram("a relative move of external axes is not read", valid="a move to them")
         if any(key in AXES for key in way):
             if self.axes is None:
                 raise BadProgram(

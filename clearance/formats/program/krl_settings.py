@@ -5,6 +5,7 @@ Not for: moves (`krl`).
 
 from __future__ import annotations
 
+import copy
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -85,6 +86,7 @@ class Settings:
 
     def set(self, name: str, value: Any, by: Any = None) -> None:
         """Sets a variable that all routines share, or a part of it."""
+        value = copy.deepcopy(value)
         if by is None:
             self.run.variables[name] = value
         else:
@@ -251,6 +253,8 @@ class Settings:
         """
         if not words:
             return 0.0
+        if kind == "ptp" and {"C_PTP", "C_DIS"} <= {*words}:  # one ends the corner, one begins it
+            return max(self.zone(kind, [word], zones) for word in ("C_PTP", "C_DIS"))
         by_length = "C_DIS" in words or ("C_SPL" in words and kind != "ptp")
         distance = self.part("$APO", "CDIS")
         if by_length and is_number(distance):

@@ -18,25 +18,29 @@ from clearance.geometry.pose import inverse, pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import quaternions_of
 from clearance.tolerance import ROUNDED_ROTATION
 
-FIELDS: Mapping[str, int] = {
-    name: i
-    for names in (
-        "x y z",
-        "q1 q2 q3 q4",
-        "trans rot robconf extax",
-        "cf1 cf4 cf6 cfx",
-        "robax",
-        "rax_1 rax_2 rax_3 rax_4 rax_5 rax_6",
-        "eax_a eax_b eax_c eax_d eax_e eax_f",
-        "robhold tframe tload",
-        "mass cog aom ix iy iz",
-        "robhold ufprog ufmec uframe oframe",
-        "v_tcp v_ori v_leax v_reax",
-        "finep pzone_tcp pzone_ori pzone_eax zone_ori zone_leax zone_reax",
+_SIX = (
+    "rax_1 rax_2 rax_3 rax_4 rax_5 rax_6",
+    "eax_a eax_b eax_c eax_d eax_e eax_f",
+    "mass cog aom ix iy iz",
+)
+RECORDS: Mapping[int, list[list[str]]] = {
+    n: [names.split() for names in own]
+    for n, *own in (
+        (2, "trans rot", "robax extax"),
+        (3, "x y z", "robhold tframe tload"),
+        (
+            4,
+            "q1 q2 q3 q4",
+            "trans rot robconf extax",
+            "cf1 cf4 cf6 cfx",
+            "v_tcp v_ori v_leax v_reax",
+        ),
+        (5, "robhold ufprog ufmec uframe oframe"),
+        (6, *_SIX),
+        (7, "finep pzone_tcp pzone_ori pzone_eax zone_ori zone_leax zone_reax"),
     )
-    for i, name in enumerate(names.split())
 }
-"""Where a field is in its record; a name is in one place in all records that have it."""
+"""The fields of records, by how many a record has; a name is in one place in all of a length."""
 
 NO_AXIS = 9e9
 """An external axis that is not there."""

@@ -33,8 +33,8 @@ from clearance.formats.program.expressions import (
     number,
 )
 from clearance.formats.program.rapid_data import (
-    FIELDS,
     NO_AXIS,
+    RECORDS,
     STANDARD,
     VALUES,
     array_of,
@@ -142,10 +142,9 @@ class Rapid:
         if not isinstance(value, list):
             raise TypeError
         if isinstance(by, str):
-            own = [fields.index(by) for fields in self.modules.records.values() if by in fields]
-            if by == "extax" and len(value) == 2:
-                return 1
-            return own[0] if own else FIELDS[by]
+            own = [one for one in self.modules.records.values() if len(one) == len(value)]
+            (place,) = {one.index(by) for one in (*own, *RECORDS.get(len(value), [])) if by in one}
+            return place
         if by != int(by) or by < 1:
             raise IndexError(by)
         return int(by) - 1
@@ -174,7 +173,7 @@ class Rapid:
         elif name == "CONNECT":
             self._connect(call, run)
         elif name in ("SingArea", "CirPathMode") and {*call.named} <= {"off", "pathframe"}:
-            run.pass_over(name, call.line)
+            run.pass_over(call)
         elif name in OTHER_MOVES:
             told = f"{name} changes where the robot goes, in a way that is not read"
             is_turned = name == "SingArea"
@@ -187,7 +186,7 @@ class Rapid:
 
     def _set(self, call: Call, run: Execution) -> None:
         """What an instruction that moves nothing changes."""
-        run.pass_over(call.name, call.line)
+        run.pass_over(call)
         if call.name == "ConfJ":
             self.checks = "off" not in call.named
         run.forget_written(call)
@@ -203,7 +202,7 @@ class Rapid:
 
     def _connect(self, call: Call, run: Execution) -> None:
         trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
-        run.effects.require_still("trap", trap, call.line)
+        run.run_beside("trap", trap, call.line)
         run.note("traps that move nothing", f"{trap} ({call.line})")
 
     def result_of(self, call: Call, run: Execution) -> Any:
@@ -247,8 +246,9 @@ class Rapid:
             "zone": call.args[rule.zone],
             "tool": call.args[rule.tool],
             "work object": call.named.get("wobj", Name("wobj0", line)),
-            "point on the arc": call.args[0],
         }
+        if rule.to == 1:
+            asked = {"point on the arc": call.args[0], **asked}
         given = {
             what: known(run.evaluated(one), line, f"the {what}") for what, one in asked.items()
         }
@@ -267,7 +267,7 @@ class Rapid:
             )
         if rule.kind != "ptp":
             move = replace(move, speed=speed, turn_speed=turn_speed, orientation="path")
-        if point > 0.0:
+        if max(point, turn) > 0.0:
             self.zones[len(run.moves)] = (point, turn)
         run.add(move)
 

@@ -224,22 +224,23 @@ class _Reader:
         )
 
     def _parameters(self) -> tuple[list[str], set[str]]:
-        """Names of parameters, and of those that are the caller's own."""
-        cursor, names, returned = self._cursor, list[str](), set[str]()
+        """Names of parameters, those that a call names last; and of those that are the caller's own."""
+        cursor, returned = self._cursor, set[str]()
+        names, optional = list[str](), list[str]()
         while not cursor.accept(")"):
-            cursor.accept("\\")
+            by_name = cursor.accept("\\", "|") is not None
             own = cursor.accept("INOUT", "VAR", "PERS", "REF")
             first = self._name("a type")
             name = self._name("a name") if cursor.next.kind == "name" else first
             if cursor.accept("{"):
                 while not cursor.accept("}"):
                     cursor.take() if cursor.next.kind != END else cursor.refuse("'}'")
-            names.append(name)
+            (optional if by_name else names).append(name)
             if own:
                 returned.add(name)
-            if not cursor.accept(",", "|") and not cursor.is_at(")", "\\"):
+            if not cursor.accept(",") and not cursor.is_at(")", "\\", "|"):
                 cursor.refuse("',' or ')'")
-        return names, returned
+        return [*names, *optional], returned
 
     def _block(self) -> tuple[Statement, ...]:
         """Statements up to what ends a block, which is not taken."""

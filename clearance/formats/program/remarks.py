@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from clearance.formats.program.tokens import Line
 from clearance.world.notice import listed
 
 
@@ -27,7 +26,3 @@ class Remarks:
     def note(self, what: str, where: str) -> None:
         """Keeps something to tell, each place once."""
         self._passed.setdefault(what, {})[where] = None
-
-    def pass_over(self, name: str, line: Line) -> None:
-        """Keeps that an instruction was passed over since it moves nothing."""
-        self.note("instructions that move nothing", f"{name} ({line})")

@@ -6,13 +6,13 @@ Sources: Universal Robots, The URScript programming language (moves, `pose_trans
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, MissingKey, at, nearest_name
+from clearance.errors import BadProgram, DuplicateName, MissingKey, at, nearest_name
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -32,7 +32,7 @@ from clearance.formats.program.expressions import (
     known,
     number,
 )
-from clearance.formats.program.statements import Assign, Statement
+from clearance.formats.program.statements import Do, Routine, Statement
 from clearance.formats.program.tokens import Line, text_of
 from clearance.formats.program.urscript_text import UrScript, script_of
 from clearance.geometry.pose import inverse, pose_from_rotation_vector
@@ -48,9 +48,9 @@ class ToolPose(list[Any]):
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """The axes that bring the tool to a pose, nearest to some."""
+    """The axes that bring the flange to a pose (4, 4) [m], nearest to some."""
 
-    pose: ToolPose
+    flange: np.ndarray
     near: list[float] | None
 
 
@@ -89,22 +89,27 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
     """
     with at(asked.shown):
         script = script_of(text_of(asked.data, asked.shown))
+        data_beside = list[Statement]()
         for file, data in asked.beside.items():
             beside = script_of(text_of(data, file), file)
-            script.routines.update(beside.routines)
+            for name in beside.routines.keys() & script.routines.keys():
+                raise DuplicateName(f"{name!r} is defined twice", where=file)
+            script.routines |= beside.routines
+            data_beside += beside.body
         tool = asked.asked.tools.get(TCP)
         language = _UrScript(None if tool is None else tool.matrix())
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
         entry = _entry(script, asked.asked.entry)
-        run.run(script.body if entry is None else _data(script.body))
+        run.run(_outside(data_beside, run.routines))
+        run.run(script.body if entry is None else _outside(script.body, run.routines))
         if entry is not None:
             run.run(script.routines[entry].body)
         return ControllerProgram(tuple(run.moves), tuple(run.notes))
 
 
-def _data(body: tuple[Statement, ...]) -> list[Statement]:
-    """The values of variables, without calls."""
-    return [one for one in body if isinstance(one, Assign)]
+def _outside(body: Iterable[Statement], routines: Mapping[str, Routine]) -> list[Statement]:
+    """What stands outside of functions, without calls of these."""
+    return [one for one in body if not (isinstance(one, Do) and one.call.name in routines)]
 
 
 def _entry(script: UrScript, asked: str | None) -> str | None:
@@ -188,7 +193,7 @@ class _UrScript:
             self.tool, self.last = _placed(pose, call.line), None
         elif call.name == "run":
             name = call.args[0].value if isinstance(call.args[0], Constant) else ""
-            run.effects.require_still("thread", name, call.line)
+            run.run_beside("thread", name, call.line)
             run.note("threads that move nothing", f"{name} ({call.line})")
         elif self.moves(call.name):
             raise BadProgram(
@@ -197,7 +202,7 @@ class _UrScript:
                 valid=f"{', '.join(_PARAMETERS)}",
             )
         else:
-            run.pass_over(call.name, call.line)
+            run.pass_over(call)
 
     def result_of(self, call: Call, run: Execution) -> Any:
         """The value of a function."""
@@ -215,7 +220,9 @@ class _UrScript:
             if isinstance(pose, Unknown):
                 return pose
             with_near = None if near is None else _six(near, call.line, "qnear")
-            return Solved(_pose(pose, call.line), with_near)
+            own = named.get("tcp", args[4] if len(args) > 4 else "")
+            tool = self._tool(call.line, False) if isinstance(own, str) else _placed(own, call.line)
+            return Solved(_placed(pose, call.line) @ inverse(tool), with_near)
         elif call.name in _VALUES:
             unknown = [one for one in args if isinstance(one, Unknown)]
             return unknown[0] if unknown else _value(call, args)
@@ -233,7 +240,7 @@ class _UrScript:
             told.get(name, usual)
             for name, usual in zip(("a", "v"), _DEFAULTS[call.name], strict=True)
         )
-        for name, value in (("a", acceleration), ("v", speed)):
+        for name, value in {"a": acceleration, "v": speed}.items():
             if not value > 0.0:
                 raise BadProgram(f"{name} is {value:g}", where=str(call.line), valid="more than 0")
         if call.name == "movep":
@@ -245,7 +252,7 @@ class _UrScript:
         ends = [key for key in _TARGETS if key in given]
         if len(ends) != (2 if call.name == "movec" else 1):
             raise MissingKey(f"{call.name} has no target", where=str(call.line))
-        targets = [_target(values[key], given[key], call.line) for key in ends]
+        targets = [_target(values[key], given[key], call.line, self.tool) for key in ends]
         is_joints = call.name == "movej"
         move = ControllerMove(
             call.line.number,
@@ -278,14 +285,15 @@ class _UrScript:
         )
 
 
-def _target(value: Any, one: Expression, line: Line) -> Target:
-    """The target that a value is, with the name that it has in the script."""
+def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None) -> Target:
+    """The target of a tool that a value is, with the name that it has in the script."""
     known(value, line, "the target")
     within = one.args[0] if isinstance(one, Call) and one.args else one
     name = within.name if isinstance(within, Name) else ""
     if isinstance(value, Solved):
         near = None if value.near is None else tuple(value.near)
-        return PoseTarget(_placed(value.pose, line), near=near, name=name)
+        pose = value.flange if tool is None else value.flange @ tool
+        return PoseTarget(pose, near=near, name=name)
     if isinstance(value, ToolPose):
         return PoseTarget(_placed(value, line), name=name)
     return AxisTarget(tuple(_six(value, line, "the target")), name=name)

@@ -131,6 +131,8 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
     [
         (FRAMES + "L P[9] 100mm/sec FINE ;", "line 8: P[9]: no position of it under /POS"),
         (FRAMES + "L PR[1] 100mm/sec FINE ;", "line 8: PR[1]: a position register"),
+        ("!pick\n 2:" + L2 + " ;", "line 6: '!pick' has no end; ';'"),
+        (L2 + " TB .1sec,CALL X(1) Offset,PR[1] ;", "line 8: OFFSET is not read"),
         (L2 + " Offset,PR[1] ;", "line 8: OFFSET is not read, and may move the target or the way"),
         (
             FRAMES + "L P[2] 100mm/sec CNT100 ;",

@@ -166,7 +166,7 @@ def test_turns_of_a_joint_move_become_ranges_of_axes():
 
 
 def test_the_case_says_what_the_files_name_only():
-    moves = "BAS(#TOOL,3)\n$BASE=BASE_DATA[9]\nLIN XP1 C_DIS\nPTP XP1 C_PTP\n"
+    moves = "BAS(#TOOL,3)\n$BASE=BASE_DATA[9]\nLIN XP1 C_DIS\nPTP XP1 C_PTP\nPTP XP1 C_PTP C_DIS\n"
     body = moves + "IF $IN[1] THEN\n$OUT[2]=TRUE\nmsg[]=text[]\nENDIF\ngrip()"
     found = program(
         body,
@@ -175,10 +175,10 @@ def test_the_case_says_what_the_files_name_only():
         zones={"C_DIS": 0.01, "C_PTP": 0.02},
         skip=["grip"],
     )
-    line, ptp = found.moves
+    line, ptp, both = found.moves
     assert place(line) == pytest.approx([1.1, 0.0, 0.05]) and line.tool[2, 3] == 0.05
-    assert (line.zone, ptp.zone) == (0.01, 0.02)
-    assert any("GRIP (line 15)" in note for note in found.notes)
+    assert (line.zone, ptp.zone, both.zone) == (0.01, 0.02, 0.02)  # the larger one where both are
+    assert any("GRIP (line 16)" in note for note in found.notes)
 
 
 @pytest.mark.parametrize("encode", ["utf-8-sig", "latin-1", "crlf"])
@@ -219,6 +219,12 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         (FRAMES + "$IPO_MODE=#TCP\nLIN XP1", "line 10: $IPO_MODE is #TCP: the tool may stand"),
         (FRAMES + "$ORI_TYPE=#JOINT\nLIN XP1", "line 10: $ORI_TYPE is #JOINT"),
         (FRAMES + "LIN XHOME", "line 9: axes are given; X, Y, Z, A, B and C"),
+        (FRAMES + LINE + "\nLIN_REL {X 1,E1 5}", "line 10: a relative move of external axes"),
+        (FRAMES + f"CIRC $POS_ACT,{{X 0,Y 9,Z 0,{DOWN}}}", "line 9: the target is not known"),
+        (
+            "INTERRUPT DECL 4 WHEN $IN[1] DO off()\nEND\nDEF off()\nPTP XHOME",
+            "INTERRUPT 'OFF' moves the robot, or may",
+        ),
         (FRAMES + "SPLINE\nSPL XP1\nENDSPLINE", "line 9: a spline is not read"),
         ("WAIT FOR $IN[3]", "line 7: WAIT FOR waits for what is not known"),
         ("IF $IN[1] THEN\nPTP XHOME\nENDIF", "line 7: IF decides on PTP at line 8"),
@@ -234,6 +240,14 @@ def test_what_the_files_do_not_decide_is_refused_with_its_line(body, told):
     with pytest.raises(cl.ClearanceError) as caught:
         read("weld.src", text, {"weld.dat": POINTS.encode()})
     assert str(caught.value).startswith("weld.src: ") and told in str(caught.value)
+
+
+def test_what_changes_a_tool_or_a_base_in_force_leaves_their_data():
+    change = "BAS(#TOOL,2)\nBAS(#BASE,1)\n$BASE.X=600\n$TOOL.Z=50\nBAS(#TOOL,0)\n$TOOL.X=9\n"
+    body = f"{change}BAS(#TOOL,2)\nBAS(#BASE,1)\nLIN XP1\nBAS(#TOOL,0)\nLIN XP1"
+    with_tool, without = moves_of(body)
+    assert place(with_tool)[0] == pytest.approx(0.5) and with_tool.tool[2, 3] == 0.2
+    assert np.array_equal(without.tool, np.eye(4))
 
 
 def test_a_base_on_another_machine_is_refused():

@@ -12,6 +12,7 @@ from clearance.formats.program.controller_program import AxisTarget
 from tests.formats.program.reading import read
 
 NONE = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
+P = f"[[0,0,0],[1,0,0,0],[0,0,0,0],{NONE}]"
 CELL = f"""%%%
   VERSION:1
   LANGUAGE:ENGLISH
@@ -95,6 +96,9 @@ def test_a_zone_is_that_of_the_point_unless_the_tool_turns():
         )
     ]
     assert sizes == [0.0, 0.0003, 0.001, 0.2, 0.0, 0.008, 0.0]
+    turning = f"MoveL [[9,0,0],[0,1,0,0],[0,0,0,0],{NONE}],v5,[FALSE,0,30,0,0,0,0],tool0;"
+    _, over, _ = moves_of(f"MoveL {P},v5,fine,tool0;\n{turning}\nMoveL {P},v5,fine,tool0;")
+    assert over.zone == 0.03  # the tool turns earlier than its point
     lines = [f"MoveL [[{i},0,0],[1,0,0,0],[0,0,0,0],{NONE}],v5,z20,tool0;" for i in range(3)]
     _, _, after_wait, _ = moves_of("\n".join([lines[0], "WaitTime 1;", *lines[1:]]))
     assert after_wait.zone == 0.02  # the tool does not turn while it waits
@@ -145,6 +149,32 @@ def test_statements_that_the_file_decides():
     assert xs == [2, 1, 11, 16, 32]
 
 
+def test_functions_run_once_wherever_they_stand():
+    line = 'MoveL next(),v100,fine,tool0;\nTPWrite "x" \\Num:=moved();\n'
+    more = f"ENDPROC\nFUNC robtarget next()\nn:=n+1;\nRETURN Offs({P},n,0,0);\nENDFUNC\nFUNC num moved()\n"
+    more += f"MoveL Offs({P},0,n,0),v100,fine,tool0;\nRETURN n;\nENDFUNC\nPROC last()"
+    found = [place(one.to) for one in moves_of(2 * line + more, "VAR num n:=0;")]
+    assert found == [pytest.approx(one) for one in ([1, 0, 0], [0, 1, 0], [2, 0, 0], [0, 2, 0])]
+
+
+def test_arguments_without_a_name_are_those_that_a_call_needs():
+    line = f"MoveL Offs({P},dx,0,h),v100,fine,tool0;"
+    more = f"ENDPROC PROC go(\\num up | num down, num dx)\nVAR num h:=1;\nIF Present(up) h:=up;\n{line}"
+    found = moves_of("go 50;\ngo \\up:=5, 60;\n" + more, "VAR num dx:=9;")
+    assert [place(one.to) for one in found] == [
+        pytest.approx(one) for one in ([50, 0, 1], [60, 0, 5])
+    ]
+
+
+def test_a_field_is_that_of_its_own_record():
+    records = "RECORD part num id; num count; num z; num x; ENDRECORD RECORD point num z; num x; num y; ENDRECORD "
+    body = f"VAR robtarget p;\np:={P};\np.trans.x:=7;\nMoveL p,v100,fine,tool0;"
+    (move,) = moves_of(body, records.split("RECORD point")[0])
+    assert place(move.to) == pytest.approx([7, 0, 0])
+    with pytest.raises(cl.ClearanceError, match="line 5: there is no part 'x'"):
+        moves_of(body, records)  # which of them is meant is not known
+
+
 def test_encodings_are_read():
     move = f"MoveAbsJ [[0,0,0,0,0,0],{NONE}],v5,fine,tool0; ! für"
     text = f"MODULE M\nPROC main()\n! Stück\n{move}\nENDPROC\nENDMODULE"
@@ -152,7 +182,6 @@ def test_encodings_are_read():
         assert [one.line for one in read("a.PRG", data.replace(b"\n", b"\r\n")).moves] == [4]
 
 
-P = f"[[0,0,0],[1,0,0,0],[0,0,0,0],{NONE}]"
 FAULTS = {
     f"MoveL {P},v100,fine,tool0": "line 4: 'ENDPROC' is given; ',', or ';' is needed",
     f"MoveL {P},v100,fine;": "line 3: MoveL has 3 of its arguments",
@@ -195,6 +224,7 @@ UNDECIDED = {
     "VAR num x:=1;\nIF di1=1 double x;": "'x' is given a value at line 4",
     "VAR num x:=1;\nVAR bool ok;\nok:=found(x);": "'a' is given a value by StrToVal at line 12",
     "VAR num x:=1;\nIF di1=1 ConfJ\\Off;": "decides on ConfJ",
+    "CONNECT i WITH t;\nx:=2;": "trap 't' may change it at any time: 'x' at line 13",
 }
 
 
@@ -202,7 +232,7 @@ UNDECIDED = {
 def test_what_only_the_controller_decides_is_never_taken_for_known(body):
     line = f"\nMoveL [[x,0,0],[1,0,0,0],[0,0,0,0],{NONE}],v100,fine,tool0;"
     more = "\nENDPROC\nPROC double(INOUT num a)\na:=a*2;\nENDPROC\nFUNC bool found(INOUT num a)\n"
-    more += 'RETURN StrToVal("1",a);\nENDFUNC\nPROC last()'
+    more += 'RETURN StrToVal("1",a);\nENDFUNC\nTRAP t x:=5; ENDTRAP PROC last()'
     with pytest.raises(cl.ClearanceError) as caught:
         moves_of(body + line + more)
     assert UNDECIDED[body] in str(caught.value)

@@ -134,6 +134,7 @@ FAULTS = {
     "def f():\n" + Q: "line 2: the file ends; 'end' is needed",
     "def f():\n" + Q + "\nend\ndef g():\n" + Q + "\nend": "entry: functions f, g are there",
     "def f():\nf()\nend\nf()": "more than 40 routines call one another",
+    "x = " + Q: "line 1: movej moves the robot, and has no value; the move as a statement",
     "movej(1 / 0)": "this has no value",
     "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
     "RPC = rpc_factory(1)\nRPC.grip(20)": "line 2: 'RPC.grip' is no known instruction",
@@ -154,13 +155,14 @@ LINE = "movel(p[x, 0, 0, 0, 0, 0])"
 UNDECIDED = {
     "a variable": "x = 1\nif get_digital_in(1):\nx = 2\nend\n" + LINE,
     "by a function": "global x = 1\ndef f():\nx = 2\nend\nif get_digital_in(1):\nf()\nend\n" + LINE,
+    "a thread": "global x = 1\nthread f():\nx = 2\nend\nrun f()\nx = 3\n" + LINE,
     "the tool": "x = 1\nif get_digital_in(1):\nset_tcp(p[1,0,0,0,0,0])\nend\n" + LINE,
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", UNDECIDED)
 def test_what_only_the_controller_decides_is_never_taken_for_known(case):
-    told = "is not known: 'x' is given a value at" if case != "the tool" else "decides on set_tcp"
+    told = "is not known: ('x' is given a value at|thread 'f' may change it)|decides on set_tcp"
     with pytest.raises(cl.ClearanceError, match=told):
         moves_of(TOOL + UNDECIDED[case])
 
@@ -185,6 +187,28 @@ def test_what_moves_nothing_is_left_out_by_name():
         moves_of(Q, skip=["movej"])
 
 
+def test_a_move_within_what_is_passed_over_is_made():
+    found = moves_of("def f():\n" + Q + "\nreturn True\nend\nset_digital_out(1, f())\ntextmsg(f())")
+    assert [one.line for one in found] == [2, 2]
+
+
+def test_solved_axes_are_of_the_tool_that_they_are_solved_for():
+    """The flange is at z = 0.3 - 0.1; another tool of 0.5 is then at 0.7, and so for the tool of the function."""
+    solve = "q = get_inverse_kin(p[0.4,0,0.3,0,0,0], [0,0,0,0,0,0]{})\n" + TOOL.replace(
+        "0.1", "0.5"
+    )
+    for own in ("", ", tcp=p[0,0,0.1,0,0,0]"):
+        before = TOOL if not own else TOOL.replace("0.1", "9")
+        (move,) = moves_of(before + solve.format(own) + "movej(q)")
+        assert place(move) == pytest.approx([0.4, 0.0, 0.7])
+
+
+def test_a_tool_that_is_set_outside_of_the_function_holds():
+    text = TOOL + "def f():\nmovel(p[0.4,0,0.3,0,0,0])\nend\nf()"
+    (move,) = moves_of(text, entry="f", tools={"tcp": {"xyz": [0.0, 0.0, 0.9]}})
+    assert move.tool[2, 3] == 0.1
+
+
 def test_a_function_is_chosen_and_files_stand_beside():
     main = "def f():\nhelp()\nend\ndef g():\nend"
     beside = {"more.script": b"def help():\n\nmovej([0,0,0,0,0,0])\nend"}
@@ -192,3 +216,5 @@ def test_a_function_is_chosen_and_files_stand_beside():
     assert (move.file, move.line) == ("more.script", 3)
     with pytest.raises(cl.ClearanceError, match="there is no function 'h'"):
         moves_of(main, entry="h")
+    with pytest.raises(cl.ClearanceError, match=r"more\.script: 'help' is defined twice"):
+        read("a.script", main + "\ndef help():\nend", beside, entry="f")
