@@ -9,6 +9,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from clearance.record.moment import Depth, Moment
 from clearance.record.record import PairMinimum, Record
+from clearance.record.status import Status
 from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 
@@ -77,6 +78,11 @@ def depth_text(depth: Depth | None) -> str:
     if depth is None:
         return "depth not computed"
     return f"{_range(depth_mm(depth.penetration), mm(depth.at_least), depth.exact)} mm deep"
+
+
+def near_mm(clearance: float, status: str, unit: str = "") -> str:
+    """A least clearance in millimetres; of bodies in contact no length, which would read as a graze."""
+    return "contact" if status == Status.CONTACT else f"{mm(clearance)}{unit}"
 
 
 def least_text(moment: Moment) -> str:

@@ -7,7 +7,7 @@ from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Compar
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import bodies_text
-from clearance.record.wording import mm
+from clearance.record.wording import near_mm
 from clearance.report.moment import name_shown
 
 HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", "why")
@@ -77,7 +77,7 @@ def comparison_cells(row: ComparedFinding) -> tuple[str, ...]:
     finding = row.finding
     both = (row.before, row.now)
     statuses = ["" if one is None else _standing(one) for one in both]
-    least = ["" if one is None or one.clearance is None else mm(one.clearance) for one in both]
+    least = ["" if one is None else _near(one) for one in both]
     who = bodies_text(finding) or finding.text or finding.kind
     return (str(row.change), *statuses, *least, name_shown(finding.rule), who, row.why)
 
@@ -88,10 +88,16 @@ def _standing(finding: Finding) -> str:
     return f"{finding.status}{excuse}"
 
 
+def _near(finding: Finding, unit: str = "") -> str:
+    """The least clearance of a finding; empty where it has none."""
+    return "" if finding.clearance is None else near_mm(finding.clearance, finding.status, unit)
+
+
 def gone_text(row: ComparedFinding) -> str:
     """A finding that only the baseline has, in one line."""
     before = row.finding
-    least = "" if before.clearance is None else f", {mm(before.clearance)} mm in the baseline"
+    near = _near(before, " mm")
+    least = f", {near} in the baseline" if near else ""
     why = f" ({row.why})" if row.why else ""
     return (
         f"{row.change}: {bodies_text(before) or before.kind}, {name_shown(before.rule)}{least}{why}"
@@ -102,6 +108,6 @@ def since_text(row: ComparedFinding | None) -> str:
     """What became of a finding, and its clearance before, in a few words."""
     if row is None:
         return ""
-    before = None if row.before is None else row.before.clearance
-    was = "" if before is None else f", was {mm(before)} mm"
+    before = "" if row.before is None else _near(row.before, " mm")
+    was = f", was {before}" if before else ""
     return f"{row.change}{was}{f': {row.why}' if row.why else ''}"

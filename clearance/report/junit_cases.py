@@ -30,8 +30,8 @@ from clearance.record.wording import (
     least_text,
     limit_mm,
     limits_text,
-    mm,
     moment_text,
+    near_mm,
     of_rule,
     seconds,
     step_text,
@@ -185,11 +185,16 @@ def _of_minimum(record: Record, judge: PairJudge, minimum: PairMinimum) -> TestR
     status = Status(judge.status_of(minimum))
     over = "at the samples " if minimum.proven is None else ""
     when = seconds(minimum.time, record.moves.at(minimum.time))
-    at = f"{over}{mm(minimum.clearance)} mm at {when}, step {step_text(minimum)}"
+    at = f"{over}{near_mm(minimum.clearance, status, ' mm')} at {when}, step {step_text(minimum)}"
     if status in (Status.VIOLATED, Status.CONTACT):
         fail = judge.limits[minimum.rule].fail
         limit = f"the fail limit{of_rule(minimum.rule)} is {limit_mm(fail)} mm"
-        return TestResult(minimum.link, name, f"clearance {at}; {limit}", LIMIT)
+        return TestResult(
+            minimum.link,
+            name,
+            f"{'' if status is Status.CONTACT else 'clearance '}{at}; {limit}",
+            LIMIT,
+        )
     near = "near miss: " if status is Status.NEAR else ""
     return TestResult(minimum.link, name, f"{near}least clearance {at}")
 

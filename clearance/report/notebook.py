@@ -19,7 +19,7 @@ from clearance.record.wording import depth_text, limits_text, mm, moment_text
 from clearance.report.blocks import Bullets, Row, Table
 from clearance.report.model import ReportModel
 from clearance.report.moment import BODIES
-from clearance.report.topics.pairs import MOST_LINES, pair_figures
+from clearance.report.topics.pairs import MOST_LINES, PairJudge, pair_figures
 
 
 def run_text(model: ReportModel) -> str:
@@ -33,9 +33,9 @@ def run_html(model: ReportModel) -> str:
 
     record, verdict = model.record, model.verdict
     limits = record.rule(record.worst.rule).limits
-    several = bool(record.case.limits.rules)
+    several, judge = bool(record.case.limits.rules), PairJudge.of(record)
     rows = [
-        Row([pair.link, pair.obstacle, *pair_figures(pair), *([pair.rule] * several)])
+        Row([pair.link, pair.obstacle, *pair_figures(pair, judge), *([pair.rule] * several)])
         for pair in model.session.motion_minima(MOST_LINES)
     ]
     return render(

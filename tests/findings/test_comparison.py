@@ -11,6 +11,7 @@ import clearance as cl
 from clearance.findings.comparison import TOLERANCE, FindingChange, compared
 from clearance.findings.finding import JOINT_LIMITS, UNPROVEN
 from clearance.findings.findings_file import FindingList
+from clearance.report.comparison_text import comparison_cells, gone_text
 from tests.findings.gates import load_gates, write_gates, write_way
 
 A, B = "gate_a", "gate_b"
@@ -161,3 +162,13 @@ def test_joints_that_are_further_beyond_their_limits_are_not_unchanged(before):
     assert [str(row.change) for row in compared(first, first).rows] == ["unchanged"]
     (row,) = compared(first, second).rows
     assert row.change == FindingChange.NOT_COMPARABLE and row.alarms and "in words" in row.why
+
+
+def test_a_pair_in_contact_has_no_length_that_reads_as_a_graze(before, tmp_path):
+    """The box is 10 mm deep in the gate; its clearance of 0 or less is not told as a distance."""
+    now = found(tmp_path / "now", {A: (-0.5, -0.01), B: (0.5, 0.1)})
+    (row,) = compared(before, now).rows
+    _, _, _, was, least, *_ = comparison_cells(row)
+    assert (was, least) == ("3.000", "contact")
+    (back,) = compared(now, found(tmp_path / "clear", {B: (0.5, 0.1)})).rows
+    assert "contact in the baseline" in gone_text(back)

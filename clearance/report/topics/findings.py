@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import bodies_text, stretch_text, waived_text, when_text
-from clearance.record.wording import count, limit_mm, mm
+from clearance.record.wording import count, limit_mm, mm, near_mm
 from clearance.report.blocks import (
     At,
     Bullets,
@@ -95,8 +95,9 @@ def _row(finding: Finding, since: ComparedFinding | None, compared: bool) -> Row
 
 def figures(finding: Finding) -> list[str]:
     """The clearance, the fail limit and what is proven, in millimetres."""
-    shown = ["" if value is None else mm(value) for value in (finding.clearance, finding.proven)]
-    return [shown[0], limit_mm(finding.fail), shown[1]]
+    near = "" if finding.clearance is None else near_mm(finding.clearance, finding.status)
+    proven = "" if finding.proven is None else mm(finding.proven)
+    return [near, limit_mm(finding.fail), proven]
 
 
 TOPIC: Topic = Topic(sections=sections)

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 from clearance.findings.self_clearance import self_clearance_of
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status, status_of
-from clearance.record.wording import mm, step_text
+from clearance.record.wording import mm, near_mm, step_text
 from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment, time_of
@@ -89,6 +89,7 @@ def lines(model: ReportModel) -> Iterator[TerminalTable]:
     record, nearest = model.record, model.session.motion_minima(MOST_LINES)
     if not nearest:
         return
+    judge = PairJudge.of(record)
     first, second = BODIES[record.sides[0]]
     at_samples = "" if all(pair.proven is not None for pair in nearest) else " at the samples"
     several = bool(record.case.limits.rules)
@@ -97,7 +98,7 @@ def lines(model: ReportModel) -> Iterator[TerminalTable]:
     heads += [">clearance mm", ">step", ">time s", *(["move"] * bool(made.robots))]
     heads += ["rule"] * several
     rows = [
-        [pair.link, pair.obstacle, *pair_figures(pair)]
+        [pair.link, pair.obstacle, *pair_figures(pair, judge)]
         + [made.at(pair.time)] * bool(made.robots)
         + [pair.rule] * several
         for pair in nearest
@@ -105,9 +106,10 @@ def lines(model: ReportModel) -> Iterator[TerminalTable]:
     yield TerminalTable(heads, rows)
 
 
-def pair_figures(pair: PairMinimum) -> list[str]:
+def pair_figures(pair: PairMinimum, judge: PairJudge) -> list[str]:
     """The least clearance of a pair [mm], its step, and its time [s]."""
-    return [mm(pair.clearance), step_text(pair), f"{pair.time:.3f}"]
+    near = near_mm(pair.clearance, judge.status_of(pair))
+    return [near, step_text(pair), f"{pair.time:.3f}"]
 
 
 @dataclass(frozen=True)
@@ -208,7 +210,7 @@ def _standing(pair: dict[str, Any], fail: Mapping[str, float]) -> tuple[int, flo
 def _title(pair: dict[str, Any]) -> str:
     by = "" if pair["rule"] == DEFAULT else f", rule {pair['rule']}: {pair['status']}"
     return (
-        f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, "
+        f"{pair['link']} - {pair['obstacle']}: {near_mm(pair['clearance'], pair['status'], ' mm')}, "
         f"step {pair['step']}{'+' * pair['between']}, {time_of(pair)}{by}"
     )
 
