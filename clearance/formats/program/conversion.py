@@ -95,9 +95,10 @@ def converted(
     checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
     notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
+    unproven = (*rests_on, *made.seeds)
     if made.compared[0] >= 0.0:  # the file itself says that it is so
-        notes, rests_on = (*notes, *rests_on), ()
-    rests_on = (*rests_on, *read.doubts)
+        notes, unproven = (*notes, *unproven), ()
+    rests_on = (*unproven, *read.doubts)
     return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on)
 
 
@@ -108,7 +109,7 @@ class _Conversion:
     Attributes:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
         others: where external axes are that no joint follows. begins_at_first: the tool begins where the first
-            move ends.
+            move ends. seeds: a line each on axes that are not those of the pose beside them.
     """
 
     read: ControllerProgram
@@ -117,6 +118,7 @@ class _Conversion:
     compared: tuple[float, float] = (-1.0, 0.0)
     others: dict[str, float] = field(default_factory=dict)
     begins_at_first: bool = False
+    seeds: list[str] = field(default_factory=list)
     _before: ControllerMove | None = None
 
     @cached_property
@@ -240,15 +242,13 @@ class _Conversion:
         made["within"] = {**self.arm.axes.ranges_of(one.to), **held}
         if one.to.near is not None:
             made["near"] = self.arm.axes.joints_of(AxisTarget(one.to.near, one.to.external))
-            self._compare(one.to, made["near"], one.tool)
+            self._compare(place_of(one), one.to, made["near"], one.tool)
         return {**made, "to": self._target(one, one.to)}
 
-    def _compare(self, to: PoseTarget, joints: Mapping[str, float], tool: np.ndarray) -> None:
-        """Keeps how far a pose is from where its axes have the tool, where the file has both.
-
-        Raises:
-            BadProgram: too far.
-        """
+    def _compare(
+        self, place: str, to: PoseTarget, joints: Mapping[str, float], tool: np.ndarray
+    ) -> None:
+        """Keeps how far a pose is from where the axes beside it have the tool; too far, they are a seed alone."""
         if self.arm.root_from_base is None:
             return
         off = inverse(self.arm.tool_at(joints, tool)) @ self.arm.root_from_base @ to.pose
@@ -257,11 +257,11 @@ class _Conversion:
             float(np.arccos(np.clip(0.5 * np.trace(off[:3, :3]) - 0.5, -1.0, 1.0))),
         )
         if way > FARTHEST_OFF or turn > MOST_TURNED:
-            raise BadProgram(
-                f"{to.name or 'its pose'} and its axes are {way * 1e3:.3g} mm and {np.degrees(turn):.3g} degrees "
-                "apart on this robot",
-                valid="axes, base, link and tools as the controller has them",
+            self.seeds.append(
+                f"{place}: the axes beside {to.name or 'its pose'} have the tool {way * 1e3:.3g} mm and "
+                f"{np.degrees(turn):.3g} degrees from it: they are taken for a seed, and confirm no axes or base"
             )
+            return
         self.compared = max(self.compared, (way, turn))
 
     def _path_move(self, one: ControllerMove) -> dict[str, Any]:
