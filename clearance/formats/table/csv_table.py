@@ -11,7 +11,7 @@ import csv
 import io
 import re
 from codecs import BOM_UTF8
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import BinaryIO, NamedTuple
 
@@ -223,17 +223,35 @@ def _blocks(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[n
             if file.read(3) != BOM_UTF8:
                 file.seek(0)
             text = io.TextIOWrapper(file, "ascii", "surrogateescape", newline="")  # as numbers are
-            rows = islice(text, _n_above(table), None)
+            rows = _closed_quotes(text, _n_above(table))
             lines = (line.translate(swap) for line in rows if line.strip("\r\n"))
             for first in lines:
                 block = chain([first], islice(lines, BLOCK - 1))
                 yield np.loadtxt(
                     block, kinds, comments=None, delimiter=table.delimiter, quotechar='"', ndmin=1
                 )
+    except ClearanceError:
+        raise
     except ValueError as error:
         raise _fault_in_rows(table, names, wanted) or BadSyntax(
             f"not a table of numbers: {error}"
         ) from None
+
+
+def _closed_quotes(text: Iterable[str], n_above: int) -> Iterator[str]:
+    """The lines below the header.
+
+    Raises:
+        BadSyntax: a quotation mark is not closed in its line, so that the rows below would be part of one cell.
+    """
+    for number, line in enumerate(islice(text, n_above, None), n_above + 1):
+        if line.count('"') % 2:
+            raise BadSyntax(
+                "a quotation mark is not closed",
+                where=f"line {number}",
+                valid="two marks round a cell, in one line",
+            )
+        yield line
 
 
 def _no_rows() -> ClearanceError:

@@ -71,6 +71,8 @@ def test_numbers_are_read_to_the_last_bit():
         ("time,,a\n0,1,2\n", BadSyntax, "column 2 of the header"),
         ("time,a\n0,1\n1\n", BadShape, "line 3: 1 columns; the header has 2"),
         ("time,a\n0,\n", BadSyntax, "line 2: '' in column 'a' is not a number"),
+        ('time,a,b\n0,1,"x\n1,2,x\n2,3,x"\n', BadSyntax, "line 2: a quotation mark is not closed"),
+        ('time,a\n0,1\n1,"2', BadSyntax, "line 3: a quotation mark is not closed"),
         ("time,a\n0,1_0\n", BadSyntax, "'1_0' in column 'a'"),
         ("time,a\n0,1\f\n", BadSyntax, r"'1\x0c' in column 'a'"),
         ("time;a\n0;1,5\n1;\x1c2,5\n", BadSyntax, r"line 3: '\x1c2,5' in column 'a'"),
