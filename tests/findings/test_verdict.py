@@ -111,6 +111,10 @@ def test_every_answer_says_the_same(name, tmp_path):
         "self-collision not checked",
     ]
     assert all(one in text for one in doubts for text in (verdict.text(), str(run)))
+    assert "Nothing was left out" not in page_of(one)
+    assert "measured against every obstacle; self-collision not checked." in page_of(
+        dataclasses.replace(one, unmeasured=())
+    )
     for reason in verdict.reasons:
         assert reason in summary["reasons"] and reason in told
 

@@ -14,7 +14,7 @@ from clearance.findings.self_clearance import self_clearance_of
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status, status_of
 from clearance.record.wording import mm, near_mm, step_text
-from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint
+from clearance.report.blocks import At, Paragraph, Row, Section, Table, capital, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment, time_of
 from clearance.report.topic import TerminalTable, Topic
@@ -239,10 +239,12 @@ def _meaning(summary: dict[str, Any]) -> str:
 def _unmeasured(summary: dict[str, Any]) -> Iterator[Paragraph | Table]:
     """Which links and pairs were left out, and why; how many for each reason, where there are many."""
     left_out, of_links = summary["unmeasured"], summary["sides"][0] == "link"
+    unchecked = [f"{name} not checked" for name in summary["not_checked"]]
     if not left_out:
-        yield Paragraph(
-            "Nothing was left out: every link with a shape was measured against every obstacle."
-        )
+        unchecked.insert(0, "every link with a shape was measured against every obstacle")
+    if unchecked:
+        yield Paragraph(f"{capital('; '.join(unchecked))}.")
+    if not left_out:
         return
     many = len(left_out) > MOST_SHOWN_AT_ONCE
     if many:
