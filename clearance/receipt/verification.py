@@ -19,7 +19,7 @@ from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import EvidenceReader, Receipt
-from clearance.world.case import Case, Limits, Omission
+from clearance.world.case import LOOKUP, Case, Limits, Omission
 from clearance.world.unproven_motion import not_proven
 
 ROUNDED = 3
@@ -76,6 +76,11 @@ class Verification:
         return not self.failure
 
     @property
+    def files(self) -> tuple[tuple[str, str], ...]:
+        """The inputs that are files; the others say which file was found for a name."""
+        return tuple(one for one in self.inputs if not one[0].startswith(LOOKUP))
+
+    @property
     def headline(self) -> str:
         """One line: the bounds that are proven, for which case; all that is not proven stands before them."""
         sampled = "SAMPLED: " if self.kind == "sampled" else ""
@@ -91,7 +96,7 @@ class Verification:
         return (
             f"{sampled}{nominal}PROVEN{self._exceptions}{not_verified}: {bounds} between all {self.n_pairs} pairs "
             f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{beside}{report}; "
-            f"{len(self.inputs)} inputs of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
+            f"{len(self.files)} input{'s' * (len(self.files) != 1)} of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
         )
 
     def _bound_text(self, rule: str) -> str:

@@ -42,7 +42,11 @@ def test_the_receipt_of_a_run_is_proven(home, capsys):
         "; verdict clear; self-collision not checked [CL531]; every byte of the report matches a fresh run; "
         "3 inputs of ../scenes/" in told
     )
-    assert "trajectory.csv" in told and "are left out" in told
+    assert (
+        "  links and pairs left out, as in the report: 6\n" in told and "trajectory.csv" not in told
+    )
+    assert run(["verify", str(home / "out"), "--inputs"]) == ExitCode.CLEAR
+    assert capsys.readouterr().out.count("trajectory.csv") == 1
 
 
 @pytest.mark.slow

@@ -262,3 +262,10 @@ print(*sorted(barred & {".".join(name.split(".")[:2]) for name in sys.modules}))
 def test_the_proof_brings_nothing_that_measures():
     done = subprocess.run([sys.executable, "-c", PROVES], capture_output=True, text=True, cwd=ROOT)
     assert (done.returncode, done.stdout.strip()) == (0, ""), done.stderr
+
+
+def test_a_search_is_no_input_file(folder):
+    found = verified(folder)
+    file, search = ("meshes/a.obj", "0" * 64), ("(lookup) mesh package://meshes/a.obj", "1" * 64)
+    found = replace(found, inputs=(search, file))
+    assert found.files == (file,) and "; 1 input of" in found.headline
