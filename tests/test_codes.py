@@ -110,6 +110,13 @@ def test_explain_prints_what_the_table_has_and_names_the_nearest_code(capsys):
     assert [line[:5] for line in capsys.readouterr().out.splitlines()] == list(GIVEN)
     assert run(["explain", "CL121x"]) == 2
     assert "did you mean 'CL121'? [CL105]" in capsys.readouterr().err
+    for kind, code in (("inside", "CL320"), ("MissingKey", "CL104")):
+        assert run(["explain", kind]) == 0
+        assert capsys.readouterr().out.startswith(code)
+    assert run(["explain", "unitz"]) == 2
+    assert "did you mean 'units'?" in capsys.readouterr().err
+    assert run(["explain", "qqq"]) == 2
+    assert "`clearance explain` lists all" in capsys.readouterr().err
 
 
 def test_suspect_input_is_accepted_by_the_code_of_its_kind():

@@ -4,26 +4,30 @@ from __future__ import annotations
 
 import click
 
-from clearance.codes import Entry, entries
+from clearance.codes import Entry, codes, entries
 
 
 @click.command()
 @click.argument("code", required=False)
 def explain(code: str | None) -> None:
-    """Explain CODE, as CL104; without it, list all codes.
+    """Explain CODE, as CL104, or a kind, as units; without it, list all.
 
     A code stands in brackets behind each error, warning and note.
     """
     table = entries()
     if code is None:
         for entry in table.values():
-            click.echo(f"{entry.code}  {entry.title}")
+            click.echo(f"{entry.code}  {entry.title}  ({entry.of})")
         return
-    found = table.get(code.upper())
+    found = table.get(code.upper()) or table.get(codes().get(code, ""))
     if found is None:
-        from clearance.errors import BadInput, nearest_name
+        from difflib import get_close_matches
 
-        raise BadInput(f"there is no code {code!r}", valid=nearest_name(code.upper(), table))
+        from clearance.errors import BadInput
+
+        near = get_close_matches(code.upper(), table, 1) or get_close_matches(code, codes(), 1)
+        hint = f"did you mean {near[0]!r}?" if near else "`clearance explain` lists all"
+        raise BadInput(f"there is no code or kind {code!r}", valid=hint)
     click.echo("\n".join(_lines(found)))
 
 
