@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from clearance.world.trajectory import Trajectory
 
 TURN_AGREES, SLIDE_AGREES = 1e-3, 1e-4
 """[rad], [m] How far a logged mimic joint may be off the position that it should follow: 1 mm at 1 m."""
+
+ALIKE = 0.85
+"""[-] Names that are misspelt agree by so much; a joint's with `_effort` behind it do not."""
 
 _NUMBERED = re.compile(r"(.*?)(\d+)")
 _LIKE_TIME = re.compile(rf"time|stamp|zeit|sec|^{re.escape(UNNAMED)}", re.IGNORECASE)
@@ -99,12 +103,27 @@ def remedy(robot: Robot, columns: Sequence[Column]) -> str:
     joints = [joint.name for joint in robot.moving_joints]
     own = [one for one in columns if one.name.removesuffix(VELOCITY) in joints]
     times = [one.header for one in columns if one.name == TIME]
-    if own and times:
+    found = {one.name: one.header for one in own}
+    left = [joint for joint in joints if joint not in found]
+    renamed = _misspelt(left, columns, own) if own else {}
+    if own and times and not renamed:
         told = flow([*times, *(one.header for one in own)])
         return f"columns: {told} reads these columns only (--columns)"
-    found = {one.name: one.header for one in own} or _joints_alike(joints, columns)
+    found = found | renamed or _joints_alike(joints, columns)
     told = flow({TIME: times[0] if times else _time_alike(columns)} | found)
     return f"columns: {told} maps each joint to its column (--columns)"
+
+
+def _misspelt(
+    joints: Sequence[str], columns: Sequence[Column], own: Sequence[Column]
+) -> dict[str, str]:
+    """The column for each joint that has none but is spelt nearly like one, with the same numbers."""
+    left, found = [one.header for one in columns if one not in own], {}
+    for joint in joints:
+        near = get_close_matches(joint, left, 1, ALIKE)
+        if near and re.findall(r"\d+", near[0]) == re.findall(r"\d+", joint):
+            found[joint] = near[0]
+    return found
 
 
 def _time_alike(columns: Sequence[Column]) -> str:

@@ -110,6 +110,15 @@ def test_the_error_on_a_log_can_be_pasted(tmp_path):
     assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
 
 
+def test_a_joint_that_is_misspelt_is_renamed_and_not_left_out(tmp_path):
+    other = TWO_JOINTS.replace("lift", "joint_of_lift")
+    own = "time,shoulder,joint_of_lfit,joint_of_lift_effort\n0,0.1,20,4\n"
+    with pytest.raises(UnknownJoint, match="unknown joint 'joint_of_lfit'") as caught:
+        load_small(tmp_path, urdf=other, trajectory=own)
+    told = "columns: {time: time, shoulder: shoulder, joint_of_lift: joint_of_lfit} maps each joint"
+    assert told in str(caught.value)
+
+
 NOT_TAKEN = [
     (",time,shoulder,lift", "[time, shoulder, lift]"),
     (",shoulder,lift", '{time: "(column 1)", shoulder: shoulder, lift: lift}'),
