@@ -111,7 +111,9 @@ def _lengths_in_words(
 _TOO_LARGE = (
     "lengths are in metres, is this millimetres (a mesh file in millimetres needs scale 0.001)?"
 )
-_TOO_SMALL = "lengths are in metres, is it scaled by 0.001 though its file is in metres?"
+_TOO_SMALL = (
+    "lengths are in metres, is it a thousand times too small (a mesh file in metres has scale 1)?"
+)
 
 
 def _odd_obstacles(case: Case, reaches: Sequence[float]) -> list[str]:

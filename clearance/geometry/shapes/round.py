@@ -93,9 +93,9 @@ def _upper_rings(radius: float, tolerance: float) -> tuple[int, np.ndarray]:
     ratio = positive(tolerance, "tolerance") / radius
     if ratio < _FINEST:
         raise BadDimension(
-            f"{tolerance:.9g} is given for radius {radius:.9g}",
-            where="tolerance",
-            valid=f"at least {_FINEST:g} of the radius",
+            f"{radius:.9g} m is too large for a tolerance of {tolerance:.9g} m",
+            where="radius",
+            valid=f"at most {tolerance / _FINEST:.9g} m; is this millimetres?",
         )
     return _fewest_faces(min(ratio, 0.25))
 
