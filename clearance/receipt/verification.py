@@ -19,6 +19,7 @@ from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import EvidenceReader, Receipt
+from clearance.record.wording import count
 from clearance.world.case import LOOKUP, Case, Limits, Omission
 from clearance.world.unproven_motion import not_proven
 
@@ -96,7 +97,8 @@ class Verification:
         return (
             f"{sampled}{nominal}PROVEN{self._exceptions}{not_verified}: {bounds} between all {self.n_pairs} pairs "
             f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{beside}{report}; "
-            f"{len(self.files)} input{'s' * (len(self.files) != 1)} of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
+            f"{count(len(self.files), 'input')} of {shown(self.source or self.name)} unchanged, "
+            f"data {self.data[:16]}"
         )
 
     def _bound_text(self, rule: str) -> str:
