@@ -81,6 +81,7 @@ def converted(
         isinstance(one, ControllerMove) and isinstance(one.to, PoseTarget) for one in read.moves
     )
     made = _Conversion(read, ControlledArm(asked, robot, read.base if has_poses else ""))
+    assert made.arm.link  # a fault of the case, and of no line
     own, starts_anywhere = made.start(start)
     made.begins_at_first = starts_anywhere
     named = list(made.moves())

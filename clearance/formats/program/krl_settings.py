@@ -117,8 +117,9 @@ class Settings:
         value = self.value(name)
         if isinstance(value, Mapping):
             return matrix_of(value, name)
-        named = re.match(r"(TOOL|BASE)_DATA\[\d+\]", why(value))
-        valid = f'program: {{{key}: {{"{named[0] if named else name}": {{xyz: […], rpy: […]}}}}}} in m and rad'
+        index = re.match(r"(?:(?:TOOL|BASE)_DATA\[)?(\d+)(?:\]| of it )", why(value))
+        named = f"{name[1:]}_DATA[{index[1]}]" if index else name
+        valid = f'program: {{{key}: {{"{named}": {{xyz: […], rpy: […]}}}}}} in m and rad'
         raise MissingKey(
             f"{name} is not known: {why(value)}", valid=f"a file beside that sets it, or {valid}"
         )

@@ -361,7 +361,7 @@ def _move(word: str, line: Line, read: Expressions) -> Call:
     if cursor.accept(","):
         targets.append(read.expression())
     named = dict[str, Expression]()
-    while cursor.next.kind != NEWLINE:
+    while cursor.accept(",") or cursor.next.kind != NEWLINE:
         if cursor.accept("WITH"):
             while True:
                 target = read.expression()
@@ -373,7 +373,7 @@ def _move(word: str, line: Line, read: Expressions) -> Call:
         word_after = cursor.expect_kind("name", "a word for the corner").text.upper()
         if not word_after.startswith("C_") and word_after not in ("#TOOL", "#BASE"):
             raise BadSyntax(
-                f"{word_after!r} is given", where=str(line), valid="C_DIS, C_PTP, WITH, or nothing"
+                f"{word_after} is not read", where=str(line), valid="C_DIS, C_PTP, WITH, or nothing"
             )
         named[word_after] = Constant(True)
     return Call(word, tuple(targets), named, line)

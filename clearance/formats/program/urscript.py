@@ -288,8 +288,8 @@ class _UrScript:
 def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None) -> Target:
     """The target of a tool that a value is, with the name that it has in the script."""
     known(value, line, "the target")
-    within = one.args[0] if isinstance(one, Call) and one.args else one
-    name = within.name if isinstance(within, Name) else ""
+    by = one.args[0] if isinstance(one, Call) and isinstance(value, Solved) and one.args else one
+    name = by.name if isinstance(by, Name) else ""
     if isinstance(value, Solved):
         near = None if value.near is None else tuple(value.near)
         pose = value.flange if tool is None else value.flange @ tool

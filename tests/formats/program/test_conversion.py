@@ -221,3 +221,4 @@ def test_what_has_no_meaning_for_the_robot_is_refused_with_its_line(moves, asked
     with pytest.raises(cl.ClearanceError) as caught:
         made(*moves, **asked)
     assert told in str(caught.value)
+    assert "link" not in told or "line 3" not in str(caught.value)

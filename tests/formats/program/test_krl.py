@@ -198,6 +198,8 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("PTP XP9", "line 7: the target is not known: 'XP9' is in no file that is given"),
         ("LIN XP1", "line 7: $TOOL is not known: TOOL_DATA[1] is not in the files"),
         ("BAS(#TOOL,0)\nBAS(#BASE,4)\nLIN XP1", 'frames: {"BASE_DATA[4]": {xyz: […], rpy: […]}}'),
+        ("BAS(#TOOL,0)\n$BASE=BASE_DATA[7]\nLIN XP1", 'program: {frames: {"BASE_DATA[7]": {'),
+        (FRAMES + "CIRC XP1,XP1,CA 90", "line 9: CA is not read; C_DIS, C_PTP, WITH, or nothing"),
         (FRAMES + "LIN XP1 C_DIS", "line 9: C_DIS: $APO.CDIS, its length, is not in the files"),
         (
             FRAMES + "$APO.CPTP=50\nPTP XP1 C_PTP",

@@ -94,6 +94,11 @@ def test_where_the_tool_is_is_known_after_a_move_that_stops():
         moves_of(text.replace("0,0])\n", "0,0], r=0.01)\n"))
 
 
+def test_a_pose_in_a_frame_is_not_called_as_the_frame():
+    text = TOOL + "t = p[1,0,0,0,0,0]\nmovel(pose_trans(t, p[0,1,0,0,0,0]))\nmovel(t)\n"
+    assert [move.to.name for move in moves_of(text)] == ["", "t"]
+
+
 def test_the_installations_tool_is_asked_for():
     with pytest.raises(cl.ClearanceError, match=r"line 1: no set_tcp .*tools: \{tcp"):
         moves_of("movel(p[1,0,0,0,0,0])")
