@@ -17,9 +17,12 @@ from clearance.world.trajectory import Trajectory
 ROUNDING = 1e-6
 """[-] Rounding of a limit: trajectories at a limit are written in six digits or more."""
 
+JUMP = 50.0
+"""[-] A joint that is this many times as fast as it may be jumps; planned paths without times are up to 15."""
+
 
 def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
-    """Joints that are faster, or accelerate more, than they may; one notice.
+    """Joints that are faster, or accelerate more, than they may; one notice, and one on jumps, which are suspect.
 
     If the robot's own file and another one limit a speed, the lower limit counts.
 
@@ -29,22 +32,30 @@ def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[N
     asked = placed.trajectory
     if asked is None or asked.n_steps < 2:
         return []
-    texts = [
-        text
+    found = [
+        excess
         for course in joint_courses(placed)
         if course.i_column is not None
-        for text in _excesses(placed, course, asked, before)
+        for excess in _excesses(placed, course, asked, before)
     ]
-    if not texts:
-        return []
-    if rule == "fail":
-        return [Notice(Severity.VIOLATED, "joint limits", listed(texts, 4))]
-    return [Notice(Severity.WARNING, "limits", listed(texts, 4))]
+    notices = []
+    jumps = [text for is_jump, text in found if is_jump]
+    if jumps:
+        asks = "does the table jump or lack rows, or are its times in another unit?"
+        text = f"CHECK LIMITS: {listed(jumps, 4)}; {asks}"
+        notices.append(Notice(Severity.SUSPECT, "limits", text))
+    texts = [text for is_jump, text in found if rule == "fail" or not is_jump]
+    if texts and rule == "fail":
+        notices.append(Notice(Severity.VIOLATED, "joint limits", listed(texts, 4)))
+    elif texts:
+        notices.append(Notice(Severity.WARNING, "limits", listed(texts, 4)))
+    return notices
 
 
 def _excesses(
     placed: PlacedRobot, course: JointCourse, asked: Trajectory, before: str
-) -> Iterator[str]:
+) -> Iterator[tuple[bool, str]]:
+    """Whether it is a jump, and what a joint exceeds in words."""
     limit, rate = motion_limit(placed, course.joint), placed.timing.rate
     if limit == NO_LIMIT:
         return
@@ -56,9 +67,11 @@ def _excesses(
     ):
         n_beyond = int((given > most * (1.0 + ROUNDING)).sum())
         if n_beyond:
+            is_jump = what == "moves at" and given.max() > JUMP * most > 0.0
             yield (
+                is_jump,
                 f"joint {before + course.joint.name!r} {what} up to {given.max():.3g} {unit_of}, its limit is "
-                f"{most:g}, in {n_beyond} of {len(given)} intervals"
+                f"{most:g}, in {n_beyond} of {len(given)} intervals",
             )
 
 

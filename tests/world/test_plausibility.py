@@ -140,6 +140,15 @@ def test_joints_beyond_their_limits():
     ]
 
 
+def test_a_joint_that_jumps_is_suspect_and_not_only_fast():
+    """2 rad in 1 ms are 2000 rad/s; a limit of 10 is exceeded 200 times, one of 1000 twice."""
+    jump = {"positions": (-1.0, 1.0), "times": (0.0, 0.001)}
+    assert reported(case_of(arm(velocity=10.0), **jump)) == [("suspect", "limits")]
+    assert reported(case_of(arm(velocity=1000.0), **jump)) == [("warning", "limits")]
+    strict = case_of(arm(velocity=10.0), **jump, limits=Limits(joints="fail"))
+    assert reported(strict) == [("suspect", "limits"), ("violated", "joint limits")]
+
+
 def test_a_robot_that_need_not_move_is_checked_too():
     far = case_of(pose=at(30.0, 30.0))
     resting = replace(far.robots[0], trajectory=None)
