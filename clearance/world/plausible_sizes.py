@@ -190,14 +190,14 @@ FAR_OFF = 5.0
 
 
 def _far_off(case: Case) -> list[Notice]:
-    """A warning on obstacles that no robot ever comes near to; on walls only where that is all there is."""
+    """A warning on obstacles that no robot ever comes near to; less strict where others are near, as in a hall."""
     reach = max(map(reach_of, case.robots))
     gaps = [min(one) for one in _gaps(case, _bases(case))]
     all_far = min(gaps, default=0.0) > FAR_OFF * reach
     far = [
         (gap, f"obstacle {one.name!r} stays {metres(gap)} m")
         for one, gap in zip(case.obstacles, gaps, strict=True)
-        if gap > FAR_OFF * reach and (all_far or gap > WALL * length_of(one.body))
+        if all_far or gap > max(2.0 * FAR_OFF * reach, WALL * length_of(one.body))
     ]
     if not far:
         return []
