@@ -87,6 +87,7 @@ class Verdict:
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
         broken: rules of the case that are broken, beside its limits of clearance.
+        worst: the most critical moment, of what fails where that is not all waived.
         nearest: the moment of least clearance of all, in one line, where that is not the most critical one.
         clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
             for one clock and all of the run.
@@ -102,6 +103,7 @@ class Verdict:
     status: str
     measured: str
     basis: str
+    worst: Moment
     reasons: tuple[str, ...] = ()
     unproven: str | None = None
     suspects: tuple[Notice, ...] = ()
@@ -232,6 +234,7 @@ def verdict_of(
     judging = record.rules if judgement is None else judgement.judging
     unproven = _unproven(record, judging)
     worst = record.worst if judgement is None else judgement.worst
+    shown = _deciding(record, worst)
     reasons = [reason for reason in (_occurring(record, worst), unproven) if reason is not None]
     open_lines = [coded_line(finding) for finding in of_tolerances]
     reasons = [*open_lines, *reasons] if measured in _PASSING else [*reasons, *open_lines]
@@ -252,6 +255,7 @@ def verdict_of(
         else _less_open(measured, [*of_tolerances, *not_proven], waiver_faults),
         measured=measured,
         basis=record.basis,
+        worst=shown,
         reasons=tuple(reasons),
         unproven=unproven,
         suspects=suspects,
@@ -261,7 +265,7 @@ def verdict_of(
         self_clearance=self_clearance_lines(record),
         unproven_motion=not_proven,
         broken=tuple(broken),
-        nearest=_nearest(record),
+        nearest=_nearest(record, shown),
         clocks=_when(record.case),
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
@@ -339,10 +343,22 @@ def _occurring(record: Record, worst: Moment | None) -> str | None:
     return _of_kind(moment_line(record, worst), CLEARANCE)
 
 
-def _nearest(record: Record) -> str | None:
+def _deciding(record: Record, judged: Moment | None) -> Moment:
+    """The most critical moment of what fails beside what is waived; else that of all."""
+    if judged is None or record.status_of(judged) in _PASSING or _same(judged, record.worst):
+        return record.worst
+    return judged
+
+
+def _same(one: Moment, other: Moment) -> bool:
+    fields = ("time", "link", "obstacle", "rule")
+    return all(getattr(one, name) == getattr(other, name) for name in fields)
+
+
+def _nearest(record: Record, worst: Moment) -> str | None:
     """The moment of least clearance, where another is more critical."""
     nearest = record.nearest
-    return None if nearest is record.worst else moment_line(record, nearest)
+    return None if nearest is worst or _same(nearest, worst) else moment_line(record, nearest)
 
 
 def _unproven(record: Record, judging: Sequence[RuleAnswer]) -> str | None:

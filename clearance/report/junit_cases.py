@@ -91,7 +91,7 @@ def results_of(model: ReportModel) -> Iterator[TestResult]:
 
 
 def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
-    worst = record.worst
+    worst = verdict.worst
     text = f"{verdict.headline()}: {least_text(worst)} at {moment_text(record, worst)}"
     waived = [f"waived: {line}" for line in verdict.waived]
     nearest = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from clearance.errors import BadDimension
-from clearance.record.record import Record
 from clearance.record.wording import depth_text, limits_text, mm, moment_text
 from clearance.report.blocks import Bullets, Row, Table
 from clearance.report.model import ReportModel
@@ -24,7 +23,7 @@ from clearance.report.topics.pairs import MOST_LINES, PairJudge, pair_figures
 
 def run_text(model: ReportModel) -> str:
     """Name, verdict, least clearance, who and when, in one line."""
-    return f"{model.record.case.name}: {model.verdict.headline()}, {_worst(model.record)}"
+    return f"{model.record.case.name}: {model.verdict.headline()}, {_worst(model)}"
 
 
 def run_html(model: ReportModel) -> str:
@@ -32,7 +31,7 @@ def run_html(model: ReportModel) -> str:
     from clearance.report.rendering import render
 
     record, verdict = model.record, model.verdict
-    limits = record.rule(record.worst.rule).limits
+    limits = record.rule(verdict.worst.rule).limits
     several, judge = bool(record.case.limits.rules), PairJudge.of(record)
     rows = [
         Row([pair.link, pair.obstacle, *pair_figures(pair, judge), *([pair.rule] * several)])
@@ -41,7 +40,7 @@ def run_html(model: ReportModel) -> str:
     return render(
         "notebook.html",
         title=f"{record.case.name}: {verdict.headline()}",
-        worst=f", {_worst(record)} ({limits_text(limits.fail, limits.warn)})",
+        worst=f", {_worst(model)} ({limits_text(limits.fail, limits.warn)})",
         beside=Bullets(verdict.reservations),
         nearest=Table(
             (*BODIES[record.sides[0]], ">mm", ">Step", ">s", *(["Rule"] * several)), rows
@@ -95,8 +94,8 @@ def _is_notebook() -> bool:
     return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
 
 
-def _worst(record: Record) -> str:
-    worst = record.worst
+def _worst(model: ReportModel) -> str:
+    record, worst = model.record, model.verdict.worst
     by = f" (rule {worst.rule!r})" if record.case.limits.rules else ""
     near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
     return f"{near}{by}, {worst.link} - {worst.obstacle} at {moment_text(record, worst)}"

@@ -176,10 +176,20 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
         }
         for pair in summary["pairs"]
     ]
+    told = {"pairs": pairs, "worst_pair": _worst_pair(summary), "curves": None}
     if curves is None:
-        return {"pairs": pairs, "curves": None}
+        return told
     rows = [_floats(row, "<f4") for row in curves.clearances]
-    return {"pairs": pairs, "curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
+    return told | {"curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
+
+
+def _worst_pair(summary: dict[str, Any]) -> int | None:
+    """The place of the pair of the most critical moment, where a waived pair hides it on the curve."""
+    if not summary["waived"] or summary["nearer"] is None:
+        return None
+    worst = [summary["worst"][key] for key in ("link", "obstacle", "rule")]
+    named = [[pair[key] for key in ("link", "obstacle", "rule")] for pair in summary["pairs"]]
+    return named.index(worst) if worst in named else None
 
 
 def _more(curves: Sequence[MoreCurve]) -> dict[str, Any]:

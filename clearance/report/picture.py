@@ -99,7 +99,7 @@ def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
     below = ", ".join([limits_text(limits.fail, limits.warn), *verdict.scope])
     lines = (
         (f"{verdict.headline(str.upper)}   {record.case.name}", 15, colour, "bold"),
-        (moment_line(record, record.worst), 12, _INK, "normal"),
+        (moment_line(record, verdict.worst), 12, _INK, "normal"),
         (below, 10, _FAINT, "normal"),
     )
     top = MARGIN

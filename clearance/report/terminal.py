@@ -62,14 +62,16 @@ def _headline(model: ReportModel) -> Text:
     """Verdict and least clearance, or the most critical moment and its rule, or the deepest contact."""
     record, verdict, limits = model.record, model.verdict, model.record.case.limits
     text = Text(verdict.headline(str.upper), style=_STYLES.get(verdict.shade, "bold red"))
-    name, worst = record.case.name, record.worst
+    name, worst = record.case.name, verdict.worst
     if worst.touches:
         told = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"
-    elif limits.rules:
+    elif limits.rules or verdict.nearest:
         told = f": {moment_line(record, worst)} ({name})"
     else:
         told = f"  {name}: least clearance {mm(worst.clearance)} mm"
         told += f" ({limits_text(limits.fail, limits.warn)})"
+        named = record.status_of(worst) != "clear"
+        told += f": {worst.link} - {worst.obstacle}" if named else ""
     told += f", {verdict.at_level}" if verdict.at_level else ""
     return text.append(told, style="default not bold")
 

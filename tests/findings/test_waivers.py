@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
+import io
 import itertools
 from datetime import date
 
 import pytest
+from rich.console import Console
 
 from clearance.case.waiver_file import load_waivers
 from clearance.errors import BadInput
+from clearance.report.model import PageContent
+from clearance.report.terminal import print_answer
+from clearance.report.topics.verdict import header
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
+from tests.report.made import page_of
+from tests.report.test_page import data_in
 
 TODAY = date(2026, 11, 1)
 FAIL = 0.005
@@ -116,6 +123,29 @@ TEXT = """
 - {between: [box, gate_a], at_least: 0.002, reason: "gives  way", by: N. N., until: 2027-03-31}
 - {case: "weld_*", rule: fence, between: ["*", gate_b], at_least: 0, reason: r, by: b, until: "2027-01-01"}
 """
+
+
+def printed(run: Run) -> list[str]:
+    console = Console(file=io.StringIO(), width=200)
+    print_answer(run.report, None, console)
+    return console.file.getvalue().splitlines()
+
+
+def test_what_fails_beside_a_waiver_is_told_first(tmp_path):
+    """Gate b fails with 4 mm; gate a is nearer with 3 mm, and waived."""
+    run = checked(tmp_path, NEAR_BOTH, waiver())
+    headline, *lines = printed(run)
+    assert "4.000 mm, below the fail limit of 5 mm: box - gate_b" in headline
+    assert next(line for line in lines if line.startswith("  worst")).endswith("box - gate_b")
+    assert any(line.startswith("  nearest") and "gate_a" in line for line in lines)
+    summary, head = run.summary, repr(header(PageContent(run.summary, run.verdict)))
+    assert summary["worst"]["obstacle"] == B and summary["nearest"]["obstacle"] == A
+    assert "box and gate_b" in head and "4.000" in head
+    assert "gate_b" in repr(run)
+    shown = data_in(page_of(run))
+    pair = shown["pairs"][shown["worst_pair"]]
+    assert [shown["bodies"][i]["name"] for i in pair["bodies"]] == ["box", B]
+    assert printed(checked(tmp_path / "alone", NEAR_A))[0].endswith("): box - gate_a")
 
 
 def test_a_file_of_waivers(tmp_path):

@@ -31,6 +31,7 @@
 
   const frameOfStep = (step) => nearest(data.steps, step);
   const frameOfTime = (time) => nearest(times, time);
+  const frameOfPair = (pair) => pair.between ? frameOfTime(pair.time) : frameOfStep(pair.step);
 
   const shown = (k) => k.toLocaleString("en");
   const betweenSteps = (step) => `between the steps ${shown(step)} and ${shown(step + 1)}`;
@@ -49,8 +50,14 @@
   // What is shown at this frame: the nearest pair, or the chosen one at the step where it comes closest.
   function told() {
     const pair = chosen === null ? null : data.pairs[chosen];
-    if (pair === null || frame !== (pair.between ? frameOfTime(pair.time) : frameOfStep(pair.step))) return null;
-    return pair;
+    return pair === null || frame !== frameOfPair(pair) ? null : pair;
+  }
+
+  // The most critical moment; that of a pair of its own where a waived pair hides it on the curve.
+  function showWorst() {
+    const place = data.worst_pair ?? null;
+    choose(place);
+    showFrame(place === null ? data.worst : frameOfPair(data.pairs[place]));
   }
 
   function showFrame(i) {
@@ -199,7 +206,7 @@
     byId("scrub").max = n - 1;
     byId("scrub").addEventListener("input", (event) => { pause(); showFrame(Number(event.target.value)); });
     byId("play").addEventListener("click", () => (playing === null ? play() : pause()));
-    byId("worst-step").addEventListener("click", () => { pause(); choose(null); showFrame(data.worst); });
+    byId("worst-step").addEventListener("click", () => { pause(); showWorst(); });
     byId("camera-gap").addEventListener("click", () => replay && replay.atGap());
     byId("camera-all").addEventListener("click", () => replay && replay.overview());
     byId("zoom-limits").addEventListener("click", (event) => {
@@ -235,11 +242,11 @@
 
   startReplay();
   connect();
-  showFrame(data.worst);
+  showWorst();
   if (replay) {
     replay.overview();
     requestAnimationFrame(() => { byId("replay-still").src = replay.image(); });
-    window.addEventListener("beforeprint", () => { pause(); showFrame(data.worst); });
+    window.addEventListener("beforeprint", () => { pause(); showWorst(); });
   }
   window.clearance = {chart, showFrame, frameOfStep, pause, state: () => ({frame, step: data.steps[frame], ...(replay ? replay.state() : {})})};
 })();

@@ -36,12 +36,15 @@ _PER = {"rad": (math.radians(1.0) * 1e3, "1°"), "m": (1.0, "1 mm")}
 
 def data(model: ReportModel) -> dict[str, Any]:
     """The worst moment of the motion, of the samples, the nearest whatever judges it, and slopes."""
-    record = model.record
+    record, worst = model.record, model.verdict.worst
+    slopes = Sensitivity(why_not="a waived pair is more critical")
+    if worst is record.worst:
+        slopes = model.details.sensitivity
     return {
-        "worst": _worst(record, record.worst),
+        "worst": _worst(record, worst),
         "worst_sample": _worst(record, record.worst_sample),
         "nearest": told_moment(record, record.nearest),
-        "sensitivity": sensitivity_data(model.details.sensitivity),
+        "sensitivity": sensitivity_data(slopes),
     }
 
 
@@ -77,7 +80,7 @@ def sensitivity_data(found: Sensitivity) -> dict[str, Any]:
 
 def lines(model: ReportModel) -> Iterator[Line]:
     """Step, time, bodies and witness points."""
-    record, worst = model.record, model.record.worst
+    record, worst = model.record, model.verdict.worst
     a, b = ("link", "obstacle") if record.sides[:2] == LINK_AND_OBSTACLE else ("a", "b")
     between = f"between the steps {worst.step} and {worst.step + 1}"
     where = between if worst.between else f"step {worst.step}"
