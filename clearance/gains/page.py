@@ -73,7 +73,7 @@ def _header(gain: Gain) -> Header:
         if label not in ("before", "after", "reached")
     ]
     return Header(
-        f"Least change of kind {gain.request.kind}",
+        f"Change of kind {gain.request.kind}",
         gain.case.name,
         _badge(gain),
         "clear" if gain.kept else "violated",
@@ -187,5 +187,10 @@ def _of_bound(gain: Gain) -> str:
 
 
 def _notes(gain: Gain, notes: Sequence[str]) -> list[str]:
-    files = "case.yaml is the changed case, with the limits of the one that it is from; gain.json has all figures."
+    named = (
+        "the changed case"
+        if gain.kept
+        else "the best that was reached, which does not keep every rule"
+    )
+    files = f"case.yaml is {named}, with the limits of the one that it is from; gain.json has all figures."
     return [_of_bound(gain), files, *notes]

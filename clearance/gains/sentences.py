@@ -196,7 +196,9 @@ def _counted(gain: Gain) -> str:
 
 def _not_kept_text(gain: Gain) -> str:
     if is_hopeless(gain):
-        return "no change of this kind can make every rule hold"
+        ends = gain.request.kind == "waypoints" and gain.request.keep_ends and not gain.request.keep
+        kept = " while the ends of the path are kept (--free-ends frees them)" if ends else ""
+        return f"no change of this kind can make every rule hold{kept}"
     if gain.request.kind == "timing":
         return _not_in_time(gain)
     return "no change of this kind was found with which every rule is proven to hold"

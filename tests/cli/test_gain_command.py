@@ -61,6 +61,9 @@ def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep", "0.9:1.1", "--out", out)
     assert code == 1 and "that moment is to be kept" in text
     assert "no change of this kind can make every rule hold" in text
+    page = (out / "gain.html").read_text()
+    assert "case.yaml is the best that was reached, which does not keep every rule" in page
+    assert "Least change" not in page and "free-ends" not in text
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--margin-mm", "20")
     assert code == 1 and "binding   tool and right have no more to give" in text
     assert "can make" not in text
