@@ -65,7 +65,8 @@ def odd_angles(what: str, rpy: Sequence[float] | None) -> list[str]:
 
 def angle_notices(odd: Sequence[str]) -> list[Notice]:
     """One notice on all odd angles."""
-    return [units(f"{listed(odd)}; angles are in radians, is this degrees?")] if odd else []
+    hint = "angles are in radians, is this degrees (90° are 1.5708 rad)?"
+    return [units(f"{listed(odd)}; {hint}")] if odd else []
 
 
 def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]:

@@ -108,6 +108,12 @@ def _suspect(texts: Sequence[str]) -> list[Notice]:
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
 
 
+_IN_DEGREES = (
+    "If so, write 'NAME [deg]' in the header of the table, or trajectory: {file: …, units: {angle: deg}} "
+    "(clearance new --units deg)"
+)
+
+
 def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
     angles: list[tuple[float, str]] = []
     lengths: list[tuple[float, str]] = []
@@ -117,7 +123,7 @@ def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
             (angles if turns(joint) else lengths).append((greatest, before + joint.name))
     texts = []
     for large, unit, hint in (
-        (angles, "rad", "angles are in radians, is this degrees?"),
+        (angles, "rad", f"angles are in radians, is this degrees? {_IN_DEGREES}"),
         (lengths, "m", "lengths are in metres, is this millimetres?"),
     ):
         large.sort(key=lambda item: -item[0])

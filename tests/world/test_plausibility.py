@@ -7,6 +7,7 @@ import pytest
 
 from clearance import box, check
 from clearance.errors import BadDimension, BadInput, UnknownJoint
+from clearance.formats.plausibility import angle_notices
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot
@@ -105,6 +106,13 @@ def test_what_is_far_from_the_robot_is_no_quiet_clear(changes, severity, says):
     found = [one for one in check(case).record.notices if one.kind == "units"]
     assert [one.severity for one in found] == [severity]
     assert says in found[0].text
+
+
+def test_angles_that_look_like_degrees_are_told_how_to_say_so():
+    (notice,) = notices_of(case_of(positions=(0.0, 45.0)))
+    assert "'NAME [deg]' in the header" in notice.text and "units: {angle: deg}" in notice.text
+    (notice,) = angle_notices(["a pose has an angle of 90 rad"])
+    assert notice.text.endswith("is this degrees (90° are 1.5708 rad)?")
 
 
 def test_a_small_box_of_a_robot_is_a_sensor():
