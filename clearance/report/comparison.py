@@ -191,8 +191,12 @@ def _changed(found: BatchComparison) -> Iterator[str]:
 
 
 def _changed_line(one: ComparedCase, row: ComparedFinding) -> str:
-    change, before, now, was, is_now, rule, who, why = comparison_cells(row)
-    stood = f"{before or 'nothing'}{f' {was} mm' if was else ''}"
-    stands = f"{now or 'nothing'}{f' {is_now} mm' if is_now else ''}"
+    change, before, now, was, is_now, rule, who, why = comparison_cells(row, " mm")
+    stood, stands = _standing_text(before, was), _standing_text(now, is_now)
     because = f" ({why})" if why else ""
     return f"{change:<14}  {one.name}: {who}: {stood} -> {stands}, {rule}{because}"
+
+
+def _standing_text(status: str, least: str) -> str:
+    """A status and the least clearance; contact is said once."""
+    return " ".join(dict.fromkeys(filter(None, (status or "nothing", least))))

@@ -72,12 +72,12 @@ def doubt_text(doubt: Doubt) -> str:
     return coded(f"{doubt.kind}{about}: {doubt.text}", doubt.code)
 
 
-def comparison_cells(row: ComparedFinding) -> tuple[str, ...]:
+def comparison_cells(row: ComparedFinding, unit: str = "") -> tuple[str, ...]:
     """A row of a table with `HEADS`."""
     finding = row.finding
     both = (row.before, row.now)
     statuses = ["" if one is None else _standing(one) for one in both]
-    least = ["" if one is None else _near(one) for one in both]
+    least = ["" if one is None else _near(one, unit) for one in both]
     who = bodies_text(finding) or finding.text or finding.kind
     return (str(row.change), *statuses, *least, name_shown(finding.rule), who, row.why)
 

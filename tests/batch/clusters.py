@@ -42,7 +42,9 @@ def ended(process: subprocess.Popen) -> tuple[str, str]:
     """Output and errors of a program once it has ended; how far it was is left out, which a busy machine tells."""
     out, err = process.communicate(timeout=LONGEST)
     lines = err.splitlines(keepends=True)
-    return out, "".join(line for line in lines if " cases measured" not in line)
+    return out, "".join(
+        line for line in lines if " cases measured" not in line and " so far" not in line
+    )
 
 
 def until(what: Callable[[], object]) -> object:

@@ -52,7 +52,7 @@ def test_an_obstacle_that_moved_is_told_case_by_case(folder, capsys):
     told = [line.split(": ", 2)[0].split() + [line.split(": ", 2)[2]] for line in lines[1:]]
     assert [words[:2] for words in told] == [["worse", f"t00{i}"] for i in (2, 3, 0, 1)]
     assert told[0][2] == "near 99.99 mm -> violated 39.99 mm, default limits"
-    assert told[1][2] == "violated 39.99 mm -> contact 0 mm, default limits"
+    assert told[1][2] == "violated 39.99 mm -> contact, default limits"
     (folder / "new").rename(folder / "then")
     (folder / "old").rename(folder / "new")
     (folder / "then").rename(folder / "old")

@@ -143,8 +143,8 @@ TIP = ["--flange", "tool_tip"]
 @pytest.mark.parametrize(
     ("more", "move", "told"),
     [
-        ([], HOME, "--flange: cell/move.script: line 1: there is no link 'tool0'"),
-        (["--flange", "hand"], HOME, "--flange: cell/move.script: line 1: there is no link 'hand'"),
+        ([], HOME, "--flange: cell/move.script: there is no link 'tool0'"),
+        (["--flange", "hand"], HOME, "--flange: cell/move.script: there is no link 'hand'"),
         (["--entry", "weld"], HOME, "--entry: cell/move.script: there is no function 'weld'"),
         ([*TIP, "--start", "home"], HOME, "--start: state 'home' is in no file; --srdf FILE"),
         (TIP, FAR, "--program: cell/move.script: line 2: the first move ends at a pose, and the joints at its "

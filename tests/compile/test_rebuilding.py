@@ -46,7 +46,8 @@ class SmallPackage:
         self.built = self.package / "compile" / "built"
         shutil.copytree(SOURCES / "compile", self.package / "compile",
                         ignore=shutil.ignore_patterns("built", "__pycache__", "*.md"))  # fmt: skip
-        shutil.copy(SOURCES / "errors.py", self.package)
+        for name in ("errors.py", "codes.py", "codes.toml"):
+            shutil.copy(SOURCES / name, self.package)
         (self.package / "kernels").mkdir()
         for name in ("__init__.py", "kernels/__init__.py"):
             (self.package / name).touch()
