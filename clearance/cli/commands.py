@@ -41,7 +41,9 @@ def clearance() -> None:
     help="Print that of summary.json, or of findings.json, in place of case files.",
 )
 def schema(results: str | None) -> None:
-    """Prints the JSON Schema of case files, with which editors complete keys and mark faults.
+    """Prints the JSON Schema of case or result files.
+
+    With it editors complete keys and mark faults.
 
     Keep it in a file and name that in a case file's first line:
     # yaml-language-server: $schema=clearance.schema.json

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     "--quiet", is_flag=True, help="Print nothing but errors; the exit code has the answer."
 )
 def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
-    """Compares two runs of a case, or two batches: report folders, their findings.json, or stores.
+    """Compares two runs of a case, or two batches.
+
+    Each is a report folder, its findings.json, or a store.
 
     Lists findings that are new, worse, unchanged, better, gone, or not comparable and why.
     Exit code: 1 if B is worse: it breaks a rule more than A did, without a waiver; its input has

@@ -41,7 +41,9 @@ SCENES = {
     help="Copy the scene into a new folder, to be edited, and check nothing.",
 )
 def demo(scene: str, out: Path | None, as_list: bool, copy_to: Path | None) -> int:
-    """Checks SCENE (default: seam), which comes with this package, and writes a report.
+    """Checks a scene that comes with the package.
+
+    Writes a report. SCENE is seam unless given.
 
     It needs no other files and no network. Without the extra 'report' the scene is checked, and
     no report is written. Exit code: that of the check, so 1 for the scene 'post'.

@@ -10,9 +10,10 @@ from clearance.codes import Entry, codes, entries
 @click.command()
 @click.argument("code", required=False)
 def explain(code: str | None) -> None:
-    """Explain CODE, as CL104, or a kind, as units; without it, list all.
+    """Explains the code of a message, as CL104.
 
-    A code stands in brackets behind each error, warning and note.
+    A code stands in brackets behind each error and warning. A kind of suspect input, as units, is
+    explained too. Without CODE, lists all.
     """
     table = entries()
     if code is None:

@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 @asked_options(Request)
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
-    """Finds the least change with which every rule of CASE is proven to hold, and a proven lower bound for it.
+    """Finds the least change that makes a case keep its rules.
+
+    The changed case is proven, and so is a lower bound of the change.
 
     waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, with --turn a turn,
     all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, for

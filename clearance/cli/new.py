@@ -212,7 +212,9 @@ def new(
     at_once: bool,
     force: bool,
 ) -> int:
-    """Writes a case into OUT_DIR from existing files: case.yaml to edit, trajectory.csv, scene.yaml.
+    """Writes a case from a robot, a motion and a scene.
+
+    OUT_DIR gets case.yaml to edit, trajectory.csv and scene.yaml.
 
     Robot and meshes stay where they are. A line is printed for each input taken and each
     assumption made, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check

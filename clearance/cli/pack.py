@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.argument("target", metavar="FILE.zip", type=OutputPath())
 @click.option("--force", is_flag=True, help="Overwrite FILE.zip.")
 def pack(what: Path, target: Path, force: bool) -> None:
-    """Writes CASE.yaml and all files that it needs into one zip.
+    """Writes a case and all its files into one zip.
 
     The zip holds robots, meshes, motions, waivers and tolerances, with their sha256 and the
     versions. `clearance check FILE.zip` takes it on any machine. With DIR, a report that

@@ -28,7 +28,9 @@ USUAL = {"need": "limit"}
 @click.argument("files", metavar="CASE.yaml...", nargs=-1, type=click.Path(path_type=Path))
 @asked_options(CheckOptions, USUAL)
 def pre_commit(files: tuple[Path, ...], **given: Any) -> int:
-    """Checks cases, and those that files list, as far as their limits; for a hook before a commit.
+    """Checks the cases among the files of a commit.
+
+    Cases that a file lists are checked too, each as far as its limits.
 
     Says what is broken and nothing else. Exit code: the greatest of `clearance check` on each.
     """

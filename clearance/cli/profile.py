@@ -34,7 +34,9 @@ def profile() -> None:
 def compare(
     a: str, b: str, out: Path | None, field: bool, limit: float | None, limit_mm: float | None
 ) -> None:
-    """Measures how far the outlines in files A and B differ: Hausdorff distance, with a proven error.
+    """Measures how far two outlines differ.
+
+    It is their Hausdorff distance, with a proven error.
 
     Lengths are in mm if a file is a swept profile or --limit-mm is given, else in the unit of the files.
 
@@ -183,7 +185,9 @@ def fit(
     out: Path,
     picture: Path | None,
 ) -> None:
-    """Changes the free dimensions of SKETCH.yaml, and its place if nothing holds it, to suit PROFILE.
+    """Fits a sketch to an outline.
+
+    Changes the free dimensions of SKETCH.yaml, and its place if nothing holds it, to suit PROFILE.
 
     PROFILE is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf).
     """
@@ -285,7 +289,9 @@ def sweep(
     out: Path,
     quiet: bool,
 ) -> None:
-    """Writes the outline that the links of CASE.yaml sweep in a plane: nothing swept lies outside it.
+    """Writes the outline that links sweep in a plane.
+
+    Nothing that the links of CASE.yaml sweep lies outside it.
 
     The motion between the samples is included, joints moving linearly, or on cubics where the
     trajectory has velocities; the outline exceeds what is swept by at most the tolerance.

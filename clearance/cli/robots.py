@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("words", metavar="[WORD]…", nargs=-1)
 def robots(words: tuple[str, ...]) -> int:
-    """Lists the robots of installed packages, or those with every WORD in their name.
+    """Lists the robots of installed packages.
+
+    With WORDs, those that have each in their name.
 
     A name stands in a case file (`urdf: example-robot-data:ur5`) or after --robot. Triangles are
     those of collision meshes, as their files state them; a file without a moving joint is no robot.

@@ -19,7 +19,7 @@ _Command = TypeVar("_Command", bound=Callable)
 
 @click.group()
 def srdf() -> None:
-    """Check, or make, the list of link pairs that are excused from self-clearance."""
+    """Checks or makes the list of excused link pairs."""
 
 
 def _robot_options(command: _Command) -> _Command:
@@ -61,7 +61,9 @@ def audit(
     xacro_args: dict[str, str],
     as_json: bool,
 ) -> int:
-    """Whether the pairs that ROBOT.srdf excuses can ever meet within the joint limits of ROBOT.urdf.
+    """Proves that excused pairs never meet.
+
+    Joints are within the limits of ROBOT.urdf, pairs those that ROBOT.srdf excuses.
 
     Each is proven separate, found to meet (with the joint positions), or left undecided. Exit code: 0
     all pairs excused as Never are proven separate, 1 one of them is not, 2 bad input.
@@ -99,7 +101,9 @@ def make(
     xacro_args: dict[str, str],
     out: Path | None,
 ) -> int:
-    """An SRDF for ROBOT.urdf: neighbours, and pairs that are proven never to meet, are excused.
+    """Writes an SRDF for ROBOT.urdf.
+
+    Neighbours, and pairs that are proven never to meet, are excused.
 
     Comments list the pairs that can meet and those that are undecided. Exit code: 0, or 2 for bad input.
     """

@@ -116,7 +116,9 @@ def verify(
     inputs: bool,
     quiet: bool,
 ) -> int:
-    """Proves the certified bound of the report in DIR again, and compares the report with a fresh run.
+    """Proves the certified bound of a report again.
+
+    The report is compared with a fresh run, too.
 
     The proof shares no code with the measurement. Limits, rules, waivers and verdict come from the
     case's files, not from the report. The first line names each file that is not verified. Exit

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 @click.argument("folder", metavar="DIR|CASE.yaml|ZIP|STORE", type=click.Path(path_type=Path))
 @click.argument("case", metavar="[CASE]", required=False)
 def view(folder: Path, case: str | None) -> None:
-    """Shows the replay of a report folder in the browser: robot, scene and connecting line.
+    """Shows the replay of a report in the browser.
+
+    It has robot, scene and connecting line.
 
     DIR is what `clearance check --out DIR` has written. A case file is checked first. ZIP is what
     `clearance pack` made of either. With STORE, which `clearance batch` has written, and the name

@@ -51,7 +51,9 @@ def workspace(
     limit_litres: float | None,
     as_json: bool,
 ) -> int:
-    """Finds the region that more than one robot passes through, whatever the timing of their trajectories.
+    """Finds the region that robots share.
+
+    It is where more than one robot passes, whatever the timing of their trajectories.
 
     The robots are those of one CASE.yaml, or of several cases of one cell, in one world frame.
     Carried parts belong to their robot. Space shared with a robot that it stands on is not
