@@ -196,8 +196,13 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
     assert "assumed   joints that nothing moves rest at 0: lift" in told
     assert told[-1] == "run       clearance check out/case.yaml --out out/report"
     text = Path("out/case.yaml").read_text()
-    assert "    lift: 0.0  # assumed: nothing moves it" in text and "urdf: ../cell/arm.urdf" in text
+    assert "#   lift: 0.0  # assumed: nothing moves it" in text and "urdf: ../cell/arm.urdf" in text
     assert "file: ../cell/cube.stl" in Path("out/scene.yaml").read_text()
+    assert run(["check", "out/case.yaml"]) in (0, 1)
+    assert (
+        "joints given neither by the trajectory nor by robot.joints stay at 0: lift"
+        in capsys.readouterr().out
+    )
 
 
 def test_how_a_file_was_read_stays_in_the_case(capsys):

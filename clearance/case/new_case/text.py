@@ -97,11 +97,16 @@ def _robot(case: CaseText) -> Iterator[str]:
 def _resting(case: CaseText) -> Iterator[str]:
     if not case.resting:
         return
-    yield "joints:  # those that the trajectory does not move"
+    assumed = {
+        name for name, value in case.resting.items() if value == 0.0 and name in case.remarks
+    }
+    mark = "# " if len(assumed) == len(case.resting) else ""
+    yield f"{mark}joints:  # those that the trajectory does not move"
     if case.states:
         yield f"  # state: {flow(case.states[0])}  # where a state says; there are {flow(case.states)}"
     for name, value in case.resting.items():
-        yield f"  {flow(name)}: {flow(value)}{_remark(case, name)}"
+        mark = "# " if name in assumed else ""  # left to the check, which notes that nobody gave it
+        yield f"{mark}  {flow(name)}: {flow(value)}{_remark(case, name)}"
 
 
 def _scene(case: CaseText) -> Iterator[str]:
