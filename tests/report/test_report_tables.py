@@ -62,7 +62,7 @@ def test_one_number_says_both_ways():
 def test_what_holds_one_way_only_says_so():
     data, text = table_of(slot(fail=0.04, off=0.0))
     assert len(data["pairs"]) == 2
-    assert "each holds one way only" in text and "As near are" in text
+    assert "each figure holds in its direction only" in text and "As near are" in text
 
 
 def test_of_bodies_in_contact_it_is_not_worked_out():

@@ -14,7 +14,7 @@ from clearance.record.names import LINK_AND_OBSTACLE
 from clearance.record.record import Record
 from clearance.record.sensitivity import Sensitivity
 from clearance.record.wording import count, joint_value, mm, other_time, seconds
-from clearance.report.blocks import Cell, Paragraph, Row, Section, Table, faint, number
+from clearance.report.blocks import Paragraph, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import (
     depth_of,
@@ -176,7 +176,7 @@ def sensitivity_blocks(given: dict[str, Any], *, several_robots: bool) -> list[T
         return [faint(f"Its slopes are not computed: {given['why_not']}.")]
     if not given["rates"]:
         return [faint("Nothing that can be moved changes it.")]
-    heads = ("Change of this clearance with", ">Moved by", ">Up, mm", ">Down, mm", "")
+    heads = ("Change of this clearance with", ">Moved by", ">Up, mm", ">Down, mm")
     rows = [_rate(rate, several_robots) for rate in given["rates"]]
     return [Table(heads, rows, tall=True), faint(_note(given))]
 
@@ -187,8 +187,7 @@ def _rate(rate: dict[str, Any], several_robots: bool) -> Row:
     if rate["kind"] == "joint":
         name = f"{rate['of']} / {rate['name']}" if several_robots else rate["name"]
     figures = [step, *(_signed(rate[way] * factor) for way in ("more", "less"))]
-    one_way = "" if rate["both_ways"] else "each holds one way only"
-    return Row([name, *map(number, figures), Cell(one_way, "faint")])
+    return Row([name, *map(number, figures)])
 
 
 def _signed(value: float) -> str:
@@ -203,6 +202,8 @@ def _note(given: dict[str, Any]) -> str:
         more = len(given["pairs"]) - len(names)
         names += [f"{more} more"] if more else []
         told = f"As near are {'; '.join(names)}: the least of them counts. {told}"
+    if not all(rate["both_ways"] for rate in given["rates"]):
+        told = f"Where up and down differ, each figure holds in its direction only. {told}"
     return told
 
 
