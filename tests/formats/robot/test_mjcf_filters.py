@@ -291,7 +291,9 @@ def test_a_new_case_places_a_free_body_where_the_model_has_it(tmp_path, monkeypa
     case = new_of(tmp_path, monkeypatch, LOWERED, ONLY_X)
     rest = case.robots[0].fixed_positions
     assert rest["root/z"] == 1.0 and rest["root/yaw"] == pytest.approx(np.pi / 2)
-    assert "root/y" not in rest and rest["j"] == pytest.approx(np.radians(20))  # left at 0, with a note
+    assert "root/y" not in rest and rest["j"] == pytest.approx(
+        np.radians(20)
+    )  # left at 0, with a note
     assert check(case, need="minimum").worst["clearance"] == pytest.approx(0.1, abs=2e-4)
     said = (
         "joints that nothing moves rest where the robot's file has them: root/z 1, root/yaw 1.5708"
