@@ -20,6 +20,13 @@ from packaging.tags import platform_tags
 
 BUILT = "clearance/compile/built"
 
+_BUILD = """
+import runpy, sys
+sys.path.insert(0, {root!r})
+runpy.run_module("clearance.compile.build", run_name="__main__", alter_sys=True)
+"""
+"""Not by PYTHONPATH: where this tree is installed already, pip's build environment takes it out of the path."""
+
 
 class KernelBuild(BuildHookInterface):
     """Builds the library of kernels before a wheel is made, or an editable installation."""
@@ -53,7 +60,7 @@ class KernelBuild(BuildHookInterface):
             name: value for name, value in os.environ.items() if not name.startswith(ours)
         }
         done = subprocess.run(
-            [sys.executable, "-P", "-m", "clearance.compile.build", *levels],
+            [sys.executable, "-P", "-c", _BUILD.format(root=str(self.root)), *levels],
             cwd=Path(self.root, BUILT).parent,
             env={**environment, "PYTHONPATH": os.pathsep.join(paths)},
             stdout=sys.stderr,
