@@ -89,11 +89,6 @@ def write_file(path: Path, content: bytes) -> None:
         file.write(content)
 
 
-def is_partial(name: str, of: str) -> bool:
-    """True for the name of a file that `written_file` has begun and not put in the place of the file `of`."""
-    return name.startswith(f".{of}-") and name.endswith(_PARTIAL)
-
-
 @contextmanager
 def written_file(path: Path) -> Iterator[BinaryIO]:
     """A file to be written part by part, which is there once it is closed; whole or not at all.
