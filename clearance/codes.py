@@ -78,6 +78,11 @@ def coded(text: str, code: str) -> str:
     return f"{text} [{code}]" if code else text
 
 
+def coded_of(text: str, of: str) -> str:
+    """A line with the code of its kind."""
+    return coded(text, codes()[of])
+
+
 def kind_of(given: str) -> str:
     """The kind that a code is of; what is no code is returned as it is."""
     return next((of for of, code in codes().items() if code == given), given)

@@ -25,7 +25,7 @@ from clearance.batch.shared_waivers import (
     failing_waivers_of_cells,
 )
 from clearance.batch.store import Store
-from clearance.codes import coded, codes
+from clearance.codes import coded_of
 from clearance.findings.doubts import UNUSED_WAIVER
 from clearance.findings.finding import NOT_PROVEN
 
@@ -171,7 +171,7 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
     ]
     rows = pa.concat_tables([CASE.empty_table(), *parts]).combine_chunks()
     faults = _waiver_faults(outcome, items, rows) if outcome.whole else ()
-    return BatchAnswer(rows, tuple(coded(fault, codes()[UNUSED_WAIVER]) for fault in faults))
+    return BatchAnswer(rows, tuple(coded_of(fault, UNUSED_WAIVER) for fault in faults))
 
 
 def in_parts(values: Sequence[Item]) -> Iterator[Sequence[Item]]:

@@ -5,13 +5,10 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from clearance.codes import coded, codes
+from clearance.codes import coded, coded_of
 from clearance.findings.doubts import (
     DISPUTED,
     SUSPECT,
@@ -25,37 +22,33 @@ from clearance.findings.finding import (
     CLEARANCE,
     NOT_PROVEN,
     PROFILE,
-    UNPROVEN,
     WAIVED_TOLERANCES,
     Finding,
 )
 from clearance.findings.finding_text import coded_line, waived_lines
 from clearance.findings.judgement import Judgement
+from clearance.findings.limit_lines import (
+    at_level_line,
+    moment_line,
+    profile_text,
+    unproven_line,
+)
 from clearance.findings.of_budget import tolerance_lines
-from clearance.findings.of_rule import code_of, why_undecided
+from clearance.findings.of_rule import code_of
 from clearance.findings.self_clearance import self_clearance_lines
-from clearance.record.certificate import contact_is_open
 from clearance.record.moment import Moment
-from clearance.record.record import ProfileAnswer, Record
-from clearance.record.rule_answer import RuleAnswer
+from clearance.record.record import Record
 from clearance.record.status import STATUSES, Status
 from clearance.record.wording import (
     clock_text,
     count,
-    depth_text,
-    gap_text,
     limit_mm,
     mm,
-    moment_text,
     not_measured_text,
-    of_rule,
-    span_text,
 )
-from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 from clearance.world.plausible_recordings import not_measured
-from clearance.world.rules import DEFAULT
 
 MOTION, SAMPLES, POSE = "motion", "samples", "pose"
 """What a verdict rests on: a proof for the continuous motion, the samples of the trajectory only, or one pose."""
@@ -232,7 +225,7 @@ def verdict_of(
     check = record.cross_check
     disputing = None if check is None or check.agrees else check
     judging = record.rules if judgement is None else judgement.judging
-    unproven = _unproven(record, judging)
+    unproven = unproven_line(record, judging)
     worst = record.worst if judgement is None else judgement.worst
     shown = _deciding(record, worst)
     reasons = [reason for reason in (_occurring(record, worst), unproven) if reason is not None]
@@ -241,14 +234,14 @@ def verdict_of(
     not_proven = tuple(one.line for one in unproven_motion(record))
     reasons = [*not_proven, *reasons] if measured in _PASSING else [*reasons, *not_proven]
     faults = () if judgement is None else judgement.faults
-    waiver_faults = tuple(_of_kind(fault, UNUSED_WAIVER) for fault in faults)
+    waiver_faults = tuple(coded_of(fault, UNUSED_WAIVER) for fault in faults)
     reasons += waiver_faults
-    kept = (_of_kind(profile_text(one), PROFILE) for one in record.profiles if not one.passed)
+    kept = (coded_of(profile_text(one), PROFILE) for one in record.profiles if not one.passed)
     broken = [f"{one.kind}: {one.line}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += [*kept, *broken, *(f"suspect {one.kind}: {one.line}" for one in suspects)]
     if disputing is not None:
         n_steps = count(len(disputing.disagreements), "step")
-        reasons.append(_of_kind(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
+        reasons.append(coded_of(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
     return Verdict(
         status=SUSPECT
         if suspects
@@ -273,13 +266,8 @@ def verdict_of(
         tolerances=_tolerances(record.case, measured, of_tolerances),
         left=_left(of_tolerances),
         with_tolerances=tolerance_lines(record),
-        at_level=_at_level(judging),
+        at_level=at_level_line(judging),
     )
-
-
-def _of_kind(text: str, kind: str) -> str:
-    """A line with the code of its kind."""
-    return coded(text, codes()[kind])
 
 
 def _less_open(measured: str, open_limits: Sequence[object], waiver_faults: Sequence[str]) -> str:
@@ -310,37 +298,11 @@ def _measured(record: Record, judgement: Judgement | None) -> str:
     return str(STATUSES[worst])
 
 
-def moment_line(record: Record, moment: Moment) -> str:
-    """How near what comes to what and when, and the limit that it is below, if it is: with its rule."""
-    limits = record.rule(moment.rule).limits
-    if moment.touches:
-        return f"contact {contact_line(record, moment)}"
-    where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
-    for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
-        if limits.below(moment.clearance, limit):
-            below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
-            return f"{mm(moment.clearance)} mm, {below}: {where}"
-    if moment.clearance <= 0.0:
-        return f"{mm(moment.clearance)} mm less padding{_judged_by(moment)}: {where}"
-    return f"{mm(moment.clearance)} mm{_judged_by(moment)}: {where}"
-
-
-def contact_line(record: Record, moment: Moment) -> str:
-    """The depth of a contact, the two bodies and the moment, and the rule that judges them, if there is one."""
-    where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
-    near = depth_text(moment.depth) if moment.depth else f"({depth_text(None)})"
-    return f"{near}{_judged_by(moment)}: {where}"
-
-
-def _judged_by(moment: Moment) -> str:
-    return "" if moment.rule == DEFAULT else f", judged by rule {moment.rule!r}"
-
-
 def _occurring(record: Record, worst: Moment | None) -> str | None:
     """The most critical moment of what decides, if it is below a limit."""
     if worst is None or record.status_of(worst) == Status.CLEAR:
         return None
-    return _of_kind(moment_line(record, worst), CLEARANCE)
+    return coded_of(moment_line(record, worst), CLEARANCE)
 
 
 def _deciding(record: Record, judged: Moment | None) -> Moment:
@@ -359,71 +321,6 @@ def _nearest(record: Record, worst: Moment) -> str | None:
     """The moment of least clearance, where another is more critical."""
     nearest = record.nearest
     return None if nearest is worst or _same(nearest, worst) else moment_line(record, nearest)
-
-
-def _unproven(record: Record, judging: Sequence[RuleAnswer]) -> str | None:
-    """The limit that the proof does not reach though nothing that was seen is below it."""
-    for name in ("fail", "warn"):
-        for rule in judging:
-            text = _not_reached(record, rule, name)
-            if text is not None:
-                return text
-    return None
-
-
-def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
-    """That a rule's limit of a name is not proven, if nothing was seen below it."""
-    certificate = rule.certificate
-    if certificate is None:
-        return None
-    step = certificate.worst_interval
-    least, limit = float(certificate.lower_bound[step]), getattr(rule.limits, name)
-    seen = np.inf if rule.worst is None else rule.worst.clearance
-    is_open = rule.limits.below(least, limit) or (limit <= 0.0 and _contact_is_open(rule))
-    if not is_open or rule.limits.below(seen, limit):
-        return None
-    start, end = map(float, record.motions[0].times[[step, step + 1]])
-    when = span_text(start, end, record.moves.over(start, end))
-    above = f"above the {name} limit of {limit_mm(limit)} mm" if limit > 0.0 else "out of contact"
-    told = (
-        f"not proven to stay {above}{of_rule(rule.name)}: at least "
-        f"{mm(least)} mm, {when}; {why_undecided(record.case)}"
-    )
-    return _of_kind(told, UNPROVEN)
-
-
-def _at_level(judging: Sequence[RuleAnswer]) -> str:
-    """A line that the least clearance of a rule equals its limit but for rounding; empty if none does."""
-    for rule, name in itertools.product(judging, ("fail", "warn")):
-        level, worst, limits = getattr(rule.limits, name), rule.worst, rule.limits
-        if worst is None or worst.touches:
-            continue
-        apart = float(np.linalg.norm(np.subtract(worst.point_link, worst.point_obstacle)))
-        if apart <= SEEN_AT_LEVEL * limits.rounding and not _contact_is_open(rule):
-            return f"touches but for rounding ({max(apart, worst.clearance):.2g} m apart)"
-        certificate = rule.certificate
-        proven = worst.clearance if certificate is None else float(certificate.lower_bound.min())
-        if level > 0.0 and not limits.below(proven, level):
-            off = abs(worst.clearance - level)
-            if off <= limits.rounding:
-                return f"equal to the {name} limit{of_rule(rule.name)} but for rounding ({off:.2g} m): kept"
-    return ""
-
-
-def _contact_is_open(rule: RuleAnswer) -> bool:
-    certificate = rule.certificate
-    return certificate is not None and bool(contact_is_open(certificate, rule.limits).any())
-
-
-def profile_text(answer: ProfileAnswer) -> str:
-    """Whether a profile is kept, how close it comes, who and when."""
-    verdict = "kept" if answer.passed else "NOT KEPT"
-    what = "distance" if answer.mode == "nearest" else "gap"
-    at = "" if answer.section is None else f" at {answer.section:g} m"
-    return (
-        f"{answer.name} ({answer.mode}, {answer.plane}{at}): {verdict}, {what} {gap_text(answer.gap)} mm, "
-        f"limit {answer.limit * 1000:g} mm, {answer.link}, step {answer.step}"
-    )
 
 
 def _warnings(record: Record, notices: tuple[Notice, ...]) -> list[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from clearance.codes import coded, codes
+from clearance.codes import coded_of
 from clearance.findings.doubts import UNUSED_WAIVER, unproven_motion
 from clearance.findings.finding import (
     CLEARANCE,
@@ -19,9 +19,10 @@ from clearance.findings.finding import (
 )
 from clearance.findings.finding_text import bodies_text, coded_line, waived_text
 from clearance.findings.judgement import Judgement
+from clearance.findings.limit_lines import moment_line, profile_text
 from clearance.findings.of_budget import budget_lines
 from clearance.findings.of_rule import code_of
-from clearance.findings.verdict import Verdict, moment_line, profile_text
+from clearance.findings.verdict import Verdict
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES, Status
@@ -103,7 +104,7 @@ def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
 def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
     for use in judgement.uses:
         fault = "UnusedWaiver" if use.fault else ""
-        text = coded(use.fault, codes()[UNUSED_WAIVER]) if fault else use.waiver.reason
+        text = coded_of(use.fault, UNUSED_WAIVER) if fault else use.waiver.reason
         yield TestResult("waiver", str(use.waiver), text, fault)
 
 

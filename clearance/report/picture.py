@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.extras import importing
-from clearance.findings.verdict import Verdict, moment_line
+from clearance.findings.limit_lines import moment_line
+from clearance.findings.verdict import Verdict
 from clearance.record.record import Record
 from clearance.record.replay import Replay
 from clearance.record.wording import limits_text

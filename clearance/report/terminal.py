@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from clearance.errors import shown
-from clearance.findings.verdict import contact_line, moment_line
+from clearance.findings.limit_lines import contact_line, moment_line
 from clearance.record.wording import limits_text, mm
 from clearance.report.model import ReportModel
 from clearance.report.topic import TerminalTable, Topic

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
-from clearance.findings.verdict import profile_text
+from clearance.findings.limit_lines import profile_text
 from clearance.record.record import ProfileAnswer
 from clearance.record.wording import gap_text
 from clearance.report.blocks import At, Inline, Picture, Row, Section, Table, faint, number
