@@ -16,16 +16,15 @@ from clearance.batch.store_files import CASES, FINDINGS
 from clearance.batch.tables import write_tables, written_answer
 from clearance.errors import unwritable
 from clearance.files import write_file
-from clearance.record.wording import count
 
 PAGE, JUNIT = "batch.html", "junit.xml"
 ANSWER = (CASES, FINDINGS, PAGE, JUNIT)
 
-UNFINISHED = "this batch is not finished"
+UNFINISHED = "this batch is not finished: {} not measured; the same command goes on"
 
 
-def withdraw_answer(store: Store, n_cases: int) -> None:
-    """Takes the answer of an older batch away, before one of so many cases is begun.
+def withdraw_answer(place: Path, text: str, fault: str = "Incomplete") -> None:
+    """Takes the answer of an older batch away from a store: JUnit and page say why there is none.
 
     Raises:
         Unwritable: there is no way or no room; what is there of the older answer is gone all the same.
@@ -33,14 +32,11 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
     from clearance.batch.page import unfinished_page
     from clearance.report.junit import write_unfinished
 
-    unfinished = (
-        f"{UNFINISHED}: of {count(n_cases, 'case')} some are not measured; the same command goes on"
-    )
-    with unwritable(store.place):
+    with unwritable(place):
         for name in ANSWER:
-            (store.place / name).unlink(missing_ok=True)
-    write_unfinished(store.place.name, unfinished, store.place / JUNIT)
-    write_file(store.place / PAGE, unfinished_page(store.place.name, unfinished).encode())
+            (place / name).unlink(missing_ok=True)
+    write_unfinished(place.name, text, place / JUNIT, fault)
+    write_file(place / PAGE, unfinished_page(place.name, text).encode())
 
 
 def write_answer(answer: BatchAnswer, store: Store) -> None:

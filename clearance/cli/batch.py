@@ -8,7 +8,15 @@ from typing import Any
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import OutputPath, asked_options, said, spelled_by
+from clearance.cli.options import (
+    AnsweringCommand,
+    OutputPath,
+    asked_options,
+    line_of,
+    said,
+    spelled_by,
+)
+from clearance.errors import ClearanceError, Incomplete
 from clearance.extras import require
 from clearance.options import made
 from clearance.run.options import CheckOptions
@@ -73,7 +81,26 @@ class _ShardParamType(click.ParamType):
         return int(first), int(second)
 
 
-@batch.command()
+def _tell_unread(given: dict[str, Any], error: click.UsageError) -> None:
+    """Says in a store that its answer is not of a command line that is not understood."""
+    if given.get("place") is not None and given.get("baseline") is None:  # which may be the same
+        _withdraw(given["place"], error)
+
+
+def _withdraw(place: Path, error: Exception | None = None) -> None:
+    """Takes an older answer away from a store, if it is one: it is not of a batch that is refused or stopped."""
+    from clearance.batch.output import UNFINISHED, withdraw_answer
+    from clearance.batch.store_files import FILE
+
+    if not (place / FILE).is_file():
+        return
+    if error is None:
+        withdraw_answer(place, UNFINISHED.format("cases are"))
+    else:
+        withdraw_answer(place, line_of(error), type(error).__name__)
+
+
+@batch.command(cls=AnsweringCommand, tell_unread=_tell_unread)
 @click.argument("arguments", metavar="MANIFEST.yaml|CASE.yaml|GLOB…", nargs=-1, required=True)
 @click.option(
     "--out",
@@ -114,39 +141,53 @@ def check(
     or that no case needs; 4 if some are not measured, as on a full disk. --baseline does not change
     it; `clearance compare` has an exit code of its own.
     """
+    own = said(CheckOptions, given)
+    if given["baseline"] is not None:
+        _require_other(given["baseline"], place)
+    _withdraw(place)
+    try:
+        return _checked(arguments, place, own, {**given, "shard": shard})
+    except (ClearanceError, click.UsageError) as error:
+        if not isinstance(error, Incomplete):
+            _withdraw(place, error)
+        raise
+
+
+def _checked(
+    arguments: tuple[str, ...], place: Path, own: dict[str, Any], given: dict[str, Any]
+) -> int:
+    from clearance.batch.compared import require_answer
     from clearance.batch.manifest import batch_of
     from clearance.batch.output import ANSWER
     from clearance.batch.store_files import FILE
     from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.files import refuse_inputs
 
-    own = said(CheckOptions, given)
     options = made(CheckOptions, own, spelled_by(CheckOptions))
     if given["jobs"] is not None and given["scheduler"] is not None:
         raise click.UsageError("--jobs is for this machine; leave it out with --scheduler")
     if given["baseline"] is not None:
-        _require_baseline(given["baseline"], place, shard)
+        if given["shard"] is not None:
+            raise click.UsageError(
+                "--baseline compares whole batches; compare once all parts are done"
+            )
+        require_answer(given["baseline"])
     batch = batch_of(arguments, own)
     files = [path for paths in options.files.values() for path in paths]
     refuse_inputs([place / name for name in (*ANSWER, FILE)], files)
-    return run_asked(batch.items, place, BatchRequest(**given, shard=shard, waivers=batch.waivers))
+    return run_asked(batch.items, place, BatchRequest(**given, waivers=batch.waivers))
 
 
-def _require_baseline(baseline: Path, place: Path, shard: tuple[int, int] | None) -> None:
-    """A batch can be held against this one once it is done.
+def _require_other(baseline: Path, place: Path) -> None:
+    """Refuses a baseline that the batch would overwrite.
 
     Raises:
-        click.UsageError, BadInput, Incomplete: why not.
+        click.UsageError: it is the store.
     """
-    from clearance.batch.compared import require_answer
-
     if baseline.resolve() == place.resolve():
         raise click.UsageError(
             "--baseline is the store that --out writes; keep the batch before in another one"
         )
-    if shard is not None:
-        raise click.UsageError("--baseline compares whole batches; compare once all parts are done")
-    require_answer(baseline)
 
 
 @batch.command()

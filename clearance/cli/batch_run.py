@@ -19,7 +19,7 @@ from clearance.batch.item import Item
 from clearance.batch.listed import write_list
 from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.outcome import Outcome
-from clearance.batch.output import withdraw_answer, write_answer
+from clearance.batch.output import UNFINISHED, withdraw_answer, write_answer
 from clearance.batch.run import Opener, Watch, run_batch, shard_of
 from clearance.batch.store import Store, merge, open_store
 from clearance.batch.workers import local_workers
@@ -65,7 +65,8 @@ def run_asked(items: Sequence[Item], place: Path, asked: BatchRequest) -> int:
     """
     tell = _silent if asked.quiet else say
     with open_store(place, shard=asked.shard) as store, store.locked(tell):
-        withdraw_answer(store, len(items))
+        n_cases = f"of {count(len(items), 'case')} some are"
+        withdraw_answer(store.place, UNFINISHED.format(n_cases))
         if asked.shard is None:
             merge(store, (), tell)
         write_list(store, items)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,7 +10,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs, output_options
-from clearance.cli.options import asked_options, said, spelled_by
+from clearance.cli.options import AnsweringCommand, asked_options, said, spelled_by
 from clearance.cli.verify import receipt_option, require_receipt, write_receipt_of
 from clearance.options import made
 from clearance.run.options import CheckOptions
@@ -23,7 +23,15 @@ if TYPE_CHECKING:
 ARGUMENTS = {"recorded": "RUN"}
 
 
-@click.command()
+def _tell_unread(given: dict[str, Any], error: click.UsageError) -> None:
+    """Tells build servers of a command line that is not understood."""
+    known: dict[str, Any] = {one.name: given.get(one.name) for one in fields(Outputs)}
+    outputs = Outputs(**known)
+    if given.get("baseline") is None:  # which may lie in --out
+        outputs.tell_unread(given.get("case_file") or Path("CASE.yaml"), error)
+
+
+@click.command(cls=AnsweringCommand, tell_unread=_tell_unread)
 @click.argument("case_file", metavar="CASE.yaml", type=click.Path(path_type=Path))
 @asked_options(CheckOptions, arguments=ARGUMENTS)
 @click.option(
@@ -67,23 +75,31 @@ def check(
     or suspect input, 3 the cross-check disagrees; the greatest that holds. --baseline does not
     change it: `clearance compare` has an exit code of its own.
     """
+    from clearance.files import refuse_inputs
+
     spelled = spelled_by(CheckOptions, ARGUMENTS)
     asked, outputs = said(CheckOptions, given), Outputs(**given)
-    outputs.require_writable()
     printed = PrintedOutput(as_json, quiet, brief)
     with outputs.refusal_told(case_file, to_stderr=as_json):
+        refuse_inputs(outputs.files, [case_file, *_files_of(baseline)])
+        outputs.withdraw_older(case_file)
+        outputs.require_writable()
+        if as_watch and receipt is not None:
+            raise click.UsageError(
+                "--watch and --receipt exclude each other: a receipt belongs to one report"
+            )
         options = made(CheckOptions, asked, spelled)
         _require_file(case_file)
 
     @outputs.refusal_told(case_file, to_stderr=as_json)
     def checked() -> ExitCode:
         from clearance.case.case_file import load_case
-        from clearance.files import refuse_inputs
         from clearance.run import Question
 
+        outputs.withdraw_older(case_file)
         question = Question.of(load_case(case_file), options, spelled)
         refuse_inputs(outputs.files, question.case.files_read)
-        before = _baseline_of(baseline, outputs.files)
+        before = _baseline_of(baseline)
         require_receipt(receipt, outputs.out, question)
         run = _answer(question, before, outputs, jobs, printed)
         write_receipt_of(run, receipt, outputs.out, case_file, options, quiet=not printed.has_words)
@@ -91,10 +107,6 @@ def check(
 
     if not as_watch:
         return checked()
-    if receipt is not None:
-        raise click.UsageError(
-            "--watch and --receipt exclude each other: a receipt belongs to one report"
-        )
     from clearance.cli.watch import watch
 
     watch(checked, outputs.out, quiet=quiet)
@@ -125,7 +137,6 @@ def _answer(
     from clearance.cli.run_rows import kept_rows
     from clearance.run import Resources, answer
 
-    outputs.withdraw_older()
     ahead = outputs.trajectory_ahead(question)
     with kept_rows(outputs.out, printed.quiet) as rows:
         with shown_progress(not printed.has_words, _passes(question)) as progress:
@@ -154,20 +165,26 @@ def _require_file(case_file: Path) -> None:
     require_file(case_file, case_file.name)
 
 
-def _baseline_of(path: Path | None, outputs: Sequence[Path]) -> FindingList | None:
+def _files_of(baseline: Path | None) -> list[Path]:
+    """The file that a baseline is read from."""
+    if baseline is None:
+        return []
+    from clearance.findings.findings_file import FILE_NAME
+
+    return [baseline / FILE_NAME if baseline.is_dir() else baseline]
+
+
+def _baseline_of(path: Path | None) -> FindingList | None:
     """The findings that a run is held against; None where no baseline is given.
 
     Raises:
         BadInput: no findings.json, or a damaged one. Incomplete: the run that was to write it was interrupted.
-        Unwritable: this run would overwrite it.
     """
     if path is None:
         return None
     from clearance.cli.run_rows import require_finished
-    from clearance.files import refuse_inputs
-    from clearance.findings.findings_file import FILE_NAME, read_findings
+    from clearance.findings.findings_file import read_findings
 
-    refuse_inputs(outputs, [path / FILE_NAME if path.is_dir() else path])
     require_finished(path)
     return read_findings(path)
 

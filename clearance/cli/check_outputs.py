@@ -6,16 +6,16 @@ Whatever can be refused is refused before anything is measured. Not for: what is
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import click
 
-from clearance.cli.options import OutputPath, in_order
-from clearance.codes import code_of_error, coded
+from clearance.cli.options import OutputPath, in_order, line_of
 from clearance.errors import Unwritable
 
 if TYPE_CHECKING:
@@ -84,13 +84,16 @@ class Outputs:
             if getattr(self, name) is not None:
                 require("report", f"--{name}")
         require_folder_place(self.out)
+        taken = {os.path.realpath(path): "is a file of the report" for path in self._report_files()}
         for name, path in self._named.items():
             require_file_place(path, f"--{name}")
             if name in _SUFFIXED and path.suffix.lower() != f".{name}":
                 raise Unwritable(
                     f"is no .{name} file", where=str(path), valid=f"--{name} needs one"
                 )
-        _ = self.files
+            own = f"is the file of --{name}"
+            if (problem := taken.setdefault(os.path.realpath(path), own)) != own:
+                raise Unwritable(problem, where=str(path), valid=f"--{name} needs another name")
 
     @property
     def _named(self) -> dict[str, Path]:
@@ -99,18 +102,8 @@ class Outputs:
 
     @property
     def files(self) -> list[Path]:
-        """The files that may be written; no two are the same.
-
-        Raises:
-            Unwritable: one would overwrite another.
-        """
-        report = self._report_files()
-        taken = {os.path.realpath(path): "is a file of the report" for path in report}
-        for name, path in self._named.items():
-            problem = taken.setdefault(os.path.realpath(path), f"is the file of --{name}")
-            if problem != f"is the file of --{name}":
-                raise Unwritable(problem, where=str(path), valid=f"--{name} needs another name")
-        return [*report, *self._named.values()]
+        """The files that may be written."""
+        return [*self._report_files(), *self._named.values()]
 
     def _report_files(self) -> list[Path]:
         if self.out is None:
@@ -119,9 +112,9 @@ class Outputs:
 
         return [self.out / name for name in OWN]
 
-    def withdraw_older(self) -> None:
-        """Says in an older report and JUnit file that there is no answer yet; a run that is stopped leaves nothing
-        green.
+    def withdraw_older(self, case_file: Path) -> None:
+        """Says in an older report, JUnit file and summary that there is no answer yet, before anything is read: a
+        run that is stopped, killed too, leaves nothing green.
 
         Raises:
             Unwritable: it cannot be written.
@@ -130,45 +123,58 @@ class Outputs:
             from clearance.report.withdrawn import withdraw_report
 
             withdraw_report(self.out)
-        if self.junit is not None and self.junit.is_file():
-            from clearance.report.junit import write_unfinished
-
-            told = "this run has not come to an end; the same command goes on"
-            write_unfinished("clearance", told, self.junit)
+        told = "this run has not come to an end; the same command goes on"
+        self._that_are_there()._write_instead(case_file, told, "Incomplete")
 
     @contextmanager
     def refusal_told(self, case_file: Path, *, to_stderr: bool) -> Iterator[None]:
         """Tells build servers what stops a run, so that nothing of an older run is taken for its answer.
 
-        A place that holds no JUnit or no summary is left as it is: it may be an input, named by mistake.
+        A place that holds no JUnit or no summary is left as it is: it may be an input, named by mistake. So is
+        one that is itself refused.
         """
         try:
             yield
         except Exception as error:
-            text = coded(
-                " ".join(str(error).split()) or type(error).__name__, code_of_error(type(error))
-            )
             with suppress(Unwritable):
-                self._tell_refusal(case_file, text, type(error).__name__, to_stderr)
+                self._tell_refusal(case_file, error, to_stderr)
             raise
 
-    def _tell_refusal(self, case_file: Path, text: str, fault: str, to_stderr: bool) -> None:
-        if self.junit is not None and _holds(self.junit, b"<testsuite"):
+    def tell_unread(self, case_file: Path, error: click.UsageError) -> None:
+        """Tells build servers of a command line that is not understood: older files say so, and no new ones."""
+        outputs = self._that_are_there()
+        with suppress(Unwritable):
+            outputs.withdraw_older(case_file)
+            outputs._tell_refusal(case_file, error, to_stderr=True)
+
+    def _that_are_there(self) -> Outputs:
+        """Without the files that do not exist."""
+        gone: dict[str, Any] = {
+            name: None for name, path in self._named.items() if not path.exists()
+        }
+        return replace(self, **gone)
+
+    def _tell_refusal(self, case_file: Path, error: Exception, to_stderr: bool) -> None:
+        text = line_of(error)
+        self._write_instead(case_file, text, type(error).__name__, getattr(error, "where", ""))
+        if self.github:
+            from clearance.report.annotations import refusal_line
+            from clearance.report.markdown import refusal_markdown
+
+            click.echo(refusal_line(case_file, text, _root()), err=to_stderr)
+            _append_to_summary(refusal_markdown(case_file.name, text))
+
+    def _write_instead(self, case_file: Path, text: str, fault: str, refused: str = "") -> None:
+        """Writes a text in place of a verdict, in JUnit and summary, but not at a place that is refused."""
+        if _holds(self.junit, rb"[\s\S]*<testsuite", refused):
             from clearance.report.junit import write_unfinished
 
             write_unfinished("clearance", text, self.junit, fault)
-        if self.summary is None and not self.github:
-            return
-        from clearance.files import write_file
-        from clearance.report.annotations import refusal_line
-        from clearance.report.markdown import refusal_markdown
+        if _holds(self.summary, rb"### .+: .+\n\n[-|] ", refused):
+            from clearance.files import write_file
+            from clearance.report.markdown import refusal_markdown
 
-        summary = refusal_markdown(case_file.name, text)
-        if self.summary is not None and _holds(self.summary, b"### "):
-            write_file(self.summary, summary.encode("utf-8"))
-        if self.github:
-            click.echo(refusal_line(case_file, text, _root()), err=to_stderr)
-            _append_to_summary(summary)
+            write_file(self.summary, refusal_markdown(case_file.name, text).encode("utf-8"))
 
     def trajectory_ahead(self, question: Question) -> WrittenTrajectory | None:
         """The trajectory file, where the motion is known before it is measured.
@@ -250,13 +256,15 @@ class Outputs:
             _annotate(run, to_stderr)
 
 
-def _holds(file: Path, sign: bytes) -> bool:
-    """Whether a file has a sign near its begin; one that is empty or not there has."""
+def _holds(file: Path | None, sign: bytes, refused: str) -> TypeGuard[Path]:
+    """Whether a file, which is not refused, begins with a sign; one that is empty or not there does."""
+    if file is None or str(file) == refused:
+        return False
     if not file.exists():
         return True
     with suppress(OSError), file.open("rb") as opened:
         begin = opened.read(1000)
-        return not begin or sign in begin
+        return not begin or re.match(sign, begin) is not None
     return False
 
 

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import click
 
+from clearance.codes import code_of_error, coded
 from clearance.errors import BadInput
 from clearance.options import SWITCH, Option, Sort, Spelling, flag_of, options_in
 
@@ -49,6 +50,44 @@ class OutputPath(click.Path):
         path = super().convert(value, param, ctx)
         assert isinstance(path, Path)  # as `path_type` says
         return path
+
+
+def line_of(error: Exception) -> str:
+    """One line on what is wrong, with its code."""
+    text = error.format_message() if isinstance(error, click.ClickException) else str(error)
+    return coded(" ".join(text.split()) or type(error).__name__, code_of_error(type(error)))
+
+
+class AnsweringCommand(click.Command):
+    """A command of which no older answer outlasts a command line that is not understood.
+
+    Args:
+        tell_unread: is called with the parameters, as far as they are understood, and what is wrong.
+    """
+
+    def __init__(
+        self,
+        *given: Any,
+        tell_unread: Callable[[dict[str, Any], click.UsageError], None],
+        **more: Any,
+    ) -> None:
+        super().__init__(*given, **more)
+        self._tell_unread = tell_unread
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """The arguments."""
+        given = [*args]
+        try:
+            return super().parse_args(ctx, args)
+        except click.UsageError as error:
+            lenient = {
+                name: True
+                for name in ("resilient_parsing", "ignore_unknown_options", "allow_extra_args")
+            }
+            self._tell_unread(
+                self.make_context(ctx.info_name, given, ctx.parent, **lenient).params, error
+            )
+            raise
 
 
 def in_order(*options: Callable[..., Any]) -> Callable[..., Any]:

@@ -47,7 +47,7 @@ def watch(check_once: Callable[[], object], out: Path | None, *, quiet: bool) ->
     try:
         while True:
             with files_opened() as opened:
-                is_bad = _checked(check_once, out)
+                is_bad = _checked(check_once)
             publish(out)
             before = dict(opened)
             if is_bad:  # a file that is missing may come
@@ -60,16 +60,12 @@ def watch(check_once: Callable[[], object], out: Path | None, *, quiet: bool) ->
         unpublish(out)
 
 
-def _checked(check_once: Callable[[], object], out: Path | None) -> bool:
-    """Checks once; True for bad input, which is said, and which an older report is marked for."""
+def _checked(check_once: Callable[[], object]) -> bool:
+    """Checks once; True for bad input, which is said."""
     try:
         check_once()
     except ClearanceError as error:
         click.echo(f"error: {error.line}", err=True)
-        if out is not None and out.is_dir():
-            from clearance.report.withdrawn import withdraw_report
-
-            withdraw_report(out)
         return True
     return False
 

@@ -6,6 +6,7 @@ import pytest
 
 from clearance.cli import run
 from tests.batch.batches import write_cell, write_path
+from tests.report.junit_schema import valid_suite
 
 
 @pytest.fixture
@@ -138,6 +139,34 @@ def test_a_mistake_is_one_line(folder, capsys, arguments, told):
     err = capsys.readouterr().err
     assert told in err and err.startswith("error: ") and err.count("\n") == 1
     assert not (folder / "store").exists()
+
+
+def test_a_batch_that_is_refused_or_stopped_leaves_no_older_answer(folder, monkeypatch):
+    asked = ("batch.yaml", "--out", "store")
+    assert batch(*asked, "--fail-mm", "5") == 0
+    older = {file: file.read_bytes() for file in (folder / "store").iterdir()}
+
+    def require_told(text: str) -> None:
+        (fault,) = valid_suite(folder / "store/junit.xml").iter("error")
+        assert text in fault.get("message") and not (folder / "store/cases.parquet").exists()
+        for file, content in older.items():
+            file.write_bytes(content)
+
+    assert batch(*asked, "--colour") == 2
+    require_told("No such option")
+    assert batch(*asked, "--scheduler", "tcp://127.0.0.1:1") == 2
+    require_told("leave it out with --scheduler")
+    assert batch(*asked, "none*.yaml") == 2
+    require_told("none*.yaml")
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("clearance.batch.manifest.batch_of", stopped)
+    assert batch(*asked) == 130
+    require_told("the same command goes on")
+    assert batch(*asked, "--baseline", "store") == 2
+    assert older == {file: file.read_bytes() for file in (folder / "store").iterdir()}
 
 
 def test_status_of_no_store_is_one_line(folder, capsys):

@@ -91,8 +91,10 @@ def test_a_baseline_is_told_and_does_not_change_the_exit_code(place, capsys):
 
 def test_a_baseline_is_not_overwritten(place, capsys):
     assert check("broken/case.yaml", "--out", "before", "--quiet") == 1
+    written = {path: path.read_bytes() for path in (place / "before").iterdir()}
     assert check("broken/case.yaml", "--out", "before", "--baseline", "before") == 2
     assert "would overwrite" in capsys.readouterr().err
+    assert written == {path: path.read_bytes() for path in (place / "before").iterdir()}
 
 
 def test_github_is_told_on_the_row_and_in_the_step_summary(place, capsys, monkeypatch):
@@ -204,19 +206,54 @@ def test_a_comparison_fails_by_suspect_input_alone(place, capsys):
     assert run(["compare", "of_suspect", "of_clear", "--quiet"]) == 0
 
 
-def test_a_run_that_is_stopped_leaves_no_older_junit(place, monkeypatch):
-    def stopped(*_: object) -> None:
-        raise KeyboardInterrupt
+ASKED = ("--junit", "junit.xml", "--summary", "own.md", "--out", "r", "--quiet")
 
-    asked = ("clear/case.yaml", "--junit", "junit.xml", "--quiet")
-    assert check(*asked) == 0
-    first = (place / "junit.xml").read_bytes()
-    monkeypatch.setattr("clearance.run.answer", stopped)
-    assert check(*asked) == 130
-    assert b'<error type="Incomplete"' in (place / "junit.xml").read_bytes()
-    monkeypatch.undo()
-    monkeypatch.chdir(place)
-    assert check(*asked) == 0 and (place / "junit.xml").read_bytes() == first
+
+def stopped(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+REFUSED = {
+    ("--colour", "red"): "No such option",
+    ("--need", "no"): "--need",
+    ("again.yaml", "more.yaml"): "unexpected extra argument",
+    ("--png", "picture.jpg"): "is no .png file",
+    ("--waivers", "no.yaml"): "there is no file",
+    ("--baseline", "no"): "there is no file",
+    ("--fail-mm", "5", "--warn-mm", "2"): "the warn limit 2 mm is below",
+}
+
+
+def test_what_is_refused_or_stopped_leaves_nothing_green(place, monkeypatch):
+    assert check("clear/case.yaml", *ASKED) == 0
+    green = {file: file.read_bytes() for file in place.rglob("*") if file.is_file()}
+
+    def require_told(text: str) -> None:
+        (fault,) = valid_suite(place / "junit.xml").iter("error")
+        assert text in fault.get("message")
+        assert (place / "own.md").read_text().startswith("### case.yaml: ERROR\n")
+        assert not (place / "r/summary.json").exists()
+        assert "what follows is older" in (place / "r/report.html").read_text()
+        (place / "r/summary.older.json").unlink()
+        for file, content in green.items():
+            file.write_bytes(content)
+
+    for more, told in REFUSED.items():
+        assert check("clear/case.yaml", *ASKED, *more) == 2
+        require_told(told)
+    for step in ("clearance.case.case_file.load_case", "clearance.run.answer"):
+        with monkeypatch.context() as during:
+            during.setattr(step, stopped)
+            assert check("clear/case.yaml", *ASKED) == 130
+        require_told("has not come to an end")
+
+
+def test_what_is_refused_makes_no_file_of_a_word_that_is_not_understood(place, capsys):
+    before = sorted(place.rglob("*"))
+    assert check("clear/case.yaml", "--junit", "--summary", "own.md", "more") == 2
+    assert sorted(place.rglob("*")) == before
+    assert check("clear/case.yaml", "--colour", "--github") == 2
+    assert capsys.readouterr().err.count("::error file=clear/case.yaml") == 1
 
 
 def test_the_hook_tells_all_that_fails(place, capsys):
