@@ -181,19 +181,19 @@ def test_flags_choose_the_configuration_and_tools_change(tmp_path):
 
 
 @pytest.mark.parametrize("is_said", [False, True])
-def test_where_the_base_is_stands_in_the_headline_unless_it_is_said(tmp_path, is_said):
-    asked = {"base": {"on": "base"}} if is_said else {}
+def test_the_base_and_how_axes_count_stand_in_the_headline_unless_said(tmp_path, is_said):
+    asked = {"base": {"on": "base"}, "axes_as": "abb"} if is_said else {}
     found = cl.load_case(controller_case(tmp_path, "a.mod", rapid("[-1,0,0,0]"), **asked))
     told = [one.text for one in notices_of(found) if one.kind == "program"]
-    assert (
-        told == [] if is_said else "assumed: a.mod: poses are seen from link 'base_link'" in told[0]
-    )
+    about = () if is_said else ("poses are seen from link 'base_link'", "axis 3 is taken to count")
+    assert len(told) == len(about)
+    assert all(f"assumed: a.mod: {one}" in text for one, text in zip(about, told, strict=True))
 
 
 def test_moves_of_handlers_stand_in_the_headline(tmp_path):
     away = "ERROR (50)\nback;\nRETRY;\nENDPROC\nPROC back()\nMoveL p10,v5,fine,tool0;\nUNDO\nRETURN;\nENDPROC"
     text = rapid("[-1,0,0,0]").replace("ENDPROC", away, 1)
-    case = controller_case(tmp_path, "a.mod", text, base={"on": "base"})
+    case = controller_case(tmp_path, "a.mod", text, base={"on": "base"}, axes_as="abb")
     (told,) = [one.text for one in notices_of(cl.load_case(case)) if one.kind == "program"]
     line = 1 + text[: text.index("MoveL p10,v5")].count("\n")
     assert told == (

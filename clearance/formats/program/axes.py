@@ -20,16 +20,20 @@ class AxisMap:
 
     Attributes:
         joints: that are free to move. rules: by joint, as the case says. numbers: the axis that a joint follows,
-            from 1. external: the name of the external axis that a joint follows instead.
+            from 1. external: the name of the external axis that a joint follows instead. third: the multiple of
+            axis 2 by which the joint of axis 3 turns beside its own, unless its rule has a `plus`.
     """
 
     joints: tuple[Joint, ...]
     rules: Mapping[str, Axis]
     numbers: Mapping[str, int]
     external: Mapping[str, str]
+    third: float = 0.0
 
     @classmethod
-    def of(cls, joints: tuple[Joint, ...], rules: Mapping[str, Axis]) -> AxisMap:
+    def of(
+        cls, joints: tuple[Joint, ...], rules: Mapping[str, Axis], third: float = 0.0
+    ) -> AxisMap:
         """The map that a case says; joints of which it does not say the axis have the others in their order.
 
         Raises:
@@ -55,7 +59,8 @@ class AxisMap:
                 )
         if len(set(external.values())) != len(external):
             raise BadProgram("an external axis is there twice", valid="each once")
-        return cls(joints, {name: rules.get(name, Axis()) for name in names}, numbers, external)
+        own_rules = {name: rules.get(name, Axis()) for name in names}
+        return cls(joints, own_rules, numbers, external, third)
 
     def joints_of(self, target: AxisTarget) -> dict[str, float]:
         """The joints [rad or m], by name.
@@ -111,7 +116,9 @@ class AxisMap:
         for row, (name, number) in enumerate(self.numbers.items()):
             rule = self.rules[name]
             offset[row], matrix[row, number - 1] = rule.offset, rule.sign
-            for other, factor in rule.plus.items():
+            usual = {2: rule.sign * self.third} if number == 3 and self.third else {}
+            plus = rule.plus if "plus" in rule.model_fields_set else usual
+            for other, factor in plus.items():
                 with at(f"{name}.plus"):
                     if not 1 <= other <= n or other == number:
                         raise BadProgram(f"axis {other} is given", valid=f"another of 1 to {n}")

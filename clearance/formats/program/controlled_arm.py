@@ -4,16 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from clearance.errors import MissingKey, UnknownLink, at, nearest_name
+from clearance.errors import BadProgram, MissingKey, UnknownLink, at, nearest_name
 from clearance.formats.program.axes import AxisMap
 from clearance.formats.program.controller_program import ControllerMove, PoseTarget
+from clearance.formats.program.conventions import CONVENTIONS, Convention
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
@@ -32,12 +33,14 @@ class ControlledArm:
 
     Attributes:
         doubt: why the robot's root link may not be the controller's base; empty where that does not matter.
+        maker: the preset of `axes_as` where the case says none.
         notes: a line each on what is assumed. assumed: of the base, where nobody says it; empty where it is known.
     """
 
     asked: ProgramFile
     robot: Robot
     doubt: str = ""
+    maker: str = "plain"
     notes: list[str] = field(default_factory=list)
     assumed: str = ""
 
@@ -70,7 +73,39 @@ class ControlledArm:
         """How joints follow axes."""
         joints = self.chain.masters
         with at("axes"):
-            return AxisMap.of(joints, self.asked.axes)
+            return AxisMap.of(
+                joints, self.asked.axes, self.convention.third if self.convention else 0.0
+            )
+
+    @property
+    def convention(self) -> Convention | None:
+        """How the controller's axes turn; None where nobody knows."""
+        return CONVENTIONS.get(self.asked.axes_as or self.maker)
+
+    def doubts_on_axes(self) -> Iterator[str]:
+        """A line each on what is assumed of axes, where the case does not say it.
+
+        Raises:
+            BadProgram: the joints are not those of `axes_as`.
+        """
+        convention, said = self.convention, self.asked.axes_as is not None
+        if convention is None or len(self.axes.numbers) != 6:
+            if not said and not self.asked.axes:
+                told = f"joints {', '.join(self.axes.numbers)} are taken to turn as the axes do"
+                yield f"{told}; axes_as: plain in the program says so"
+            return
+        base = np.eye(4) if self.root_from_base is None else self.root_from_base
+        misfit = convention.misfit(self.chain, self.axes, base)
+        if misfit and said:
+            valid = "axes: {joint: {sign: …, offset: …}} beside it, or another preset"
+            raise BadProgram(misfit, where="axes_as", valid=valid)
+        if misfit and not self.asked.axes:
+            yield f"{misfit}; axes in the program says how joints follow, e.g. {{joint: {{sign: -1}}}}"
+        else:
+            self.notes.append(misfit or f"joints turn as the axes of {convention.robots}")
+        rules = {number: self.axes.rules[name] for name, number in self.axes.numbers.items()}
+        if convention.doubt and not said and "plus" not in rules[3].model_fields_set:
+            yield convention.doubt
 
     def base(self) -> dict[str, Any]:
         """The controller's base, as a frame of a program."""

@@ -96,13 +96,15 @@ class ControllerProgram:
     Attributes:
         moves: in the order in which they are made: loops and calls are resolved. notes: a line each on what was
             assumed or passed over. base: why a robot's root link may not be the controller's base; empty where it
-            is. doubts: a line each on what the controller may move otherwise, for the headline.
+            is. doubts: a line each on what the controller may move otherwise, for the headline. maker: the preset
+            of `axes_as` that its language has.
     """
 
     moves: tuple[ControllerMove | ControllerWait, ...]
     notes: tuple[str, ...] = ()
     base: str = ""
     doubts: tuple[str, ...] = ()
+    maker: str = "plain"
 
 
 @dataclass(frozen=True, eq=False)

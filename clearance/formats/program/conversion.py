@@ -80,7 +80,8 @@ def converted(
     has_poses = any(
         isinstance(one, ControllerMove) and isinstance(one.to, PoseTarget) for one in read.moves
     )
-    made = _Conversion(read, ControlledArm(asked, robot, read.base if has_poses else ""))
+    arm = ControlledArm(asked, robot, read.base if has_poses else "", read.maker)
+    made = _Conversion(read, arm)
     assert made.arm.link  # a fault of the case, and of no line
     own, starts_anywhere = made.start(start)
     made.begins_at_first = starts_anywhere
@@ -94,9 +95,9 @@ def converted(
     }
     moves, places, names = zip(*named, strict=True)
     checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
-    notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
-    unproven = (*rests_on, *made.seeds)
+    unproven = (*rests_on, *made.doubts_on_axes(), *made.seeds)
+    notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, unproven = (*notes, *unproven), ()
     rests_on = (*unproven, *read.doubts)
@@ -312,6 +313,12 @@ class _Conversion:
             return 1.0 if one.share is None else one.share
         limits = [joint.velocity for joint in self.arm.chain.masters if joint.velocity > 0.0]
         return min(1.0, one.axis_speed / min(limits)) if np.isfinite(min(limits)) else 1.0
+
+    def doubts_on_axes(self) -> Iterator[str]:
+        """A line each on what is assumed of axes, if the moves name any."""
+        ends = [one.to for one in self._moves]
+        if any(isinstance(to, AxisTarget) or to.ranges or to.near is not None for to in ends):
+            yield from self.arm.doubts_on_axes()
 
     def assumed(self) -> Iterator[str]:
         """A line each on what the moves leave open, and how that is taken."""

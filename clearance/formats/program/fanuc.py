@@ -1,8 +1,7 @@
 """Programs of FANUC's controllers, as listings of the teach pendant (`.ls`). Millimetres and degrees.
 
 Sources: FANUC, R-30iB Operator's manual (motion instructions, W P R about fixed axes, user and tool frames);
-ROS-Industrial, fanuc (the world at the height of axis 2 as link `base`, the faceplate as `tool0`, J3 against the
-horizontal: issues 186 and fanuc_experimental 17).
+ROS-Industrial, fanuc (the world at the height of axis 2 as link `base`, the faceplate as `tool0`).
 """
 
 from __future__ import annotations
@@ -67,7 +66,8 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         counters = {one.name.name for one in statements if isinstance(one, For)}
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
         run.run(main.body)
-        return ControllerProgram(tuple(run.moves), (*run.notes, *language.notes()), base=BASE)
+        notes = (*run.notes, *language.notes())
+        return ControllerProgram(tuple(run.moves), notes, base=BASE, maker="fanuc")
 
 
 @dataclass(eq=False)
@@ -75,23 +75,17 @@ class _Fanuc:
     """The instructions of a listing.
 
     Attributes:
-        asked: what the case says. unsaid: lines whose speed is none that the file gives. has_joints: positions of
-            axes are used.
+        asked: what the case says. unsaid: lines whose speed is none that the file gives.
     """
 
     asked: ProgramFile
     unsaid: dict[str, None] = field(default_factory=dict)
-    has_joints: bool = False
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""
-        found = []
-        if self.has_joints:
-            found.append("J3 is taken to be against the horizontal: axis 3 is J3 + J2")
-        if self.unsaid:
-            lines = ", ".join([*self.unsaid][:6])
-            found.append(f"speeds that the file does not give as such are assumed ({lines})")
-        return found
+        lines = ", ".join([*self.unsaid][:6])
+        told = f"speeds that the file does not give as such are assumed ({lines})"
+        return [told] if lines else []
 
     @property
     def state(self) -> Any:
@@ -193,10 +187,8 @@ class _Fanuc:
         tool = self._frame(name, "UTOOL", one.tool, line, run, kind != "ptp" or not is_joints)
         values = {key: float(value) for key, value in one.values.items() if value is not None}
         if is_joints:
-            self.has_joints = True
-            axes = [math.radians(values[key]) for key in _JOINTS]
-            axes[2] += axes[1]
-            return AxisTarget(tuple(axes), one.external, name), tool
+            axes = tuple(math.radians(values[key]) for key in _JOINTS)
+            return AxisTarget(axes, one.external, name), tool
         x, y, z, *turns = (values[key] for key in _POSE)
         pose = pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
         frame = self._frame(name, "UFRAME", one.frame, line, run, True)

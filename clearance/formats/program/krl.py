@@ -79,7 +79,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                 run.kept.put(one.target.name, f"{one.target.name} ({one.line})", run.variables)
         run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
         notes = (*run.notes, *language.notes())
-        return ControllerProgram(tuple(run.moves), notes, doubts=(*run.doubts,))
+        return ControllerProgram(tuple(run.moves), notes, doubts=(*run.doubts,), maker="kuka")
 
 
 def _entry(names: Sequence[str], asked: str | None) -> str:

@@ -59,7 +59,7 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
         notes = (*run.notes, *language.assumed, *_on_cycles(moves))
-        return ControllerProgram(tuple(moves), notes, doubts=(*run.doubts,))
+        return ControllerProgram(tuple(moves), notes, doubts=(*run.doubts,), maker="abb")
 
 
 def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:

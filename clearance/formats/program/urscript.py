@@ -104,7 +104,7 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
         run.run(script.body if entry is None else _outside(script.body, run.routines))
         if entry is not None:
             run.run(script.routines[entry].body)
-        return ControllerProgram(tuple(run.moves), tuple(run.notes))
+        return ControllerProgram(tuple(run.moves), tuple(run.notes), maker="ur")
 
 
 def _outside(body: Iterable[Statement], routines: Mapping[str, Routine]) -> list[Statement]:

@@ -48,8 +48,9 @@ class Axis(StrictModel):
 class ProgramFile(StrictModel):
     """A program's file. All else is for languages of controllers: `entry` is the procedure that runs, `beside` are
     further files, `skip` are instructions to leave out, `link` is the flange, `base` is where the controller's
-    base stands, `axes` says how joints follow axes. `tools` (on the flange) and `frames` (on the base) are those
-    that the file names and does not hold. `zones` are radii [m] of corners for which it has a word and no length
+    base stands, `axes` says how joints follow axes, `axes_as` that axes turn as on robots of a maker (`plain`:
+    joints are the axes). `tools` (on the flange) and `frames` (on the base) are those that the file names and does
+    not hold. `zones` are radii [m] of corners for which it has a word and no length
     (`C_PTP`, `CNT50`). `step` is the most that the tool moves between samples [m].
     """
 
@@ -60,6 +61,7 @@ class ProgramFile(StrictModel):
     link: Name | None = None
     base: Frame | None = None
     axes: dict[Name, Axis] = {}
+    axes_as: Literal["abb", "abb_parallel", "fanuc", "kuka", "ur", "plain"] | None = None
     tools: dict[Name, Pose] = {}
     frames: dict[Name, Pose] = {}
     zones: dict[Name, Annotated[float, Field(gt=0)]] = {}
