@@ -230,6 +230,16 @@ def unwritable(place: Path) -> Iterator[None]:
         ) from error
 
 
+def meant_name(given: str, read: Iterable[str]) -> str:
+    """The name that is probably meant by an unknown one; "" if `given` is read, or resembles none.
+
+    Formats of others have more names than we read. A typing error among ours would hide a shape or move it.
+    """
+    small = {name.lower(): name for name in read if abs(len(name) - len(given)) <= 2}
+    close = difflib.get_close_matches(given.lower(), small, n=1, cutoff=0.75)
+    return small[close[0]] if close and small[close[0]] != given else ""
+
+
 def nearest_name(given: str, valid: Iterable[str]) -> str:
     """The remedy for a misspelt name: the nearest valid one, or the list of all, of many the nearest."""
     names = sorted(valid)

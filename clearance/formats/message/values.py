@@ -10,12 +10,32 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, BadPose, BadShape, MissingKey, NotFinite
+from clearance.errors import (
+    BadInput,
+    BadPose,
+    BadShape,
+    MissingKey,
+    NotFinite,
+    UnknownKey,
+    meant_name,
+)
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.names import checked_name
 
 Message = dict[str, Any]
+
+
+def require_spelt(given: Message, *fields: str) -> None:
+    """Refuses a field whose name resembles one that is read.
+
+    Raises:
+        UnknownKey: such a field.
+    """
+    for key in given:
+        meant = meant_name(str(key), fields)
+        if meant:
+            raise UnknownKey(f"unknown field {key!r:.60}", valid=f"did you mean {meant!r}?")
 
 
 def message(given: object, key: str) -> Message:
@@ -97,6 +117,7 @@ class Poses:
         Raises:
             BadPose: a quaternion whose length is not 1 within `tolerance.ROUNDED_ROTATION`.
         """
+        require_spelt(given, place, turn)
         xyz = numbers(given[place], "xyz", place) if given.get(place) is not None else [0.0] * 3
         turned = numbers(given[turn], "xyzw", turn) if given.get(turn) is not None else [0.0] * 4
         if not any(turned):

@@ -241,6 +241,10 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
         (sdf(world("<population/>")), "<population> places models at random"),
         (sdf(world(include(uri="https://x/y"))), "nothing is fetched"),
         (sdf(world(include(uri="cell.sdf"))), "cell.sdf includes itself"),
+        (sdf(model(link("<colision/>"))), "link l: <colision> is not read; did you mean <collision>?"),
+        (sdf(model(link(collision(), "<psoe>1 0 0 0 0 0</psoe>"))), "<psoe> is not read; did you mean <pose>?"),
+        (sdf(model("<pose relativeto='x'/>", link(collision()))), "relativeto= is not read"),
+        (sdf(model(link(at(1), at(2), collision()))), "link l: two <pose> are given; one"),
         (sdf(model(*["<model name='x'>"] * 60, *["</model>"] * 60)), "40 deep in each other"),
     ],
 )  # fmt: skip

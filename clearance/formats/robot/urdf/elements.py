@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadRobot, BadShape, MissingKey, NotFinite, at
+from clearance.errors import BadRobot, BadShape, MissingKey, NotFinite, at, meant_name
 from clearance.formats.plausibility import odd_angles
 from clearance.formats.robot.request import Geometry
 from clearance.formats.robot.robot_element import robot_element
@@ -62,6 +62,14 @@ _REQUIRED = {
 
 _SHAPES = (*_PRIMITIVES, "mesh")
 
+_SINGLE = ("origin", "axis", "limit", "mimic")
+"""Elements that stand once in another one."""
+
+_ATTRIBUTES = {
+    tag: {*_NUMBERS.get(tag, ()), *_REQUIRED.get(tag, ())} for tag in {*_NUMBERS, *_REQUIRED}
+} | {"limit": {"lower", "upper", "velocity", "effort"}}
+"""The attributes that are read, and `effort`."""
+
 
 def parse_document(data: bytes) -> Element:
     """The checked root element of a URDF document, reduced to links' shapes and joints.
@@ -76,7 +84,7 @@ def reduced_document(data: bytes) -> Element:
     """The root element of a URDF document, reduced to links' shapes and joints.
 
     Raises:
-        BadSyntax: not XML, not URDF, or a xacro file.
+        BadSyntax: not XML, not URDF, or a xacro file. BadRobot: an element whose name resembles one that is read.
     """
     root = robot_element(data, "a URDF file")
     checked_name(root.get("name") or "")
@@ -172,9 +180,37 @@ def _reduce(element: Element) -> None:
     kept = _KEPT_BELOW.get(element.tag)
     for child in list(element):
         if kept is not None and child.tag not in kept:
+            _require_unread(child, kept)
             element.remove(child)
         else:
             _reduce(child)
+
+
+def _require_unread(element: Element, read: tuple[str, ...]) -> None:
+    """Refuses an element that was meant to say something about shape or motion."""
+    parent = element.getparent()
+    owner = next(
+        (one for one in (parent, *parent.iterancestors()) if one.tag in ("link", "joint")), parent
+    )
+    where = f"{owner.tag} {owner.get('name')!r}"
+    meant = meant_name(element.tag, read)
+    if meant:
+        raise BadRobot(
+            f"<{element.tag}> is not read", where=where, valid=f"did you mean <{meant}>?"
+        )
+
+
+def _require_known(element: Element, where: str) -> None:
+    """Refuses an attribute that was meant to say something about shape or motion."""
+    read = _ATTRIBUTES.get(element.tag, ())
+    for given in element.attrib:
+        meant = "rpy" if given == "quat_xyzw" else meant_name(given, read)
+        if meant:
+            raise BadRobot(
+                f"{given}={element.get(given)!r:.60} is not read",
+                where=where,
+                valid=f"{meant}=… is needed",
+            )
 
 
 def _check_names(root: Element, kind: str) -> None:
@@ -186,6 +222,7 @@ def _check_names(root: Element, kind: str) -> None:
 
 
 def _check(element: Element, where: str) -> None:
+    _require_known(element, where)
     for attribute in _REQUIRED.get(element.tag, ()):
         if not element.get(attribute):
             raise MissingKey(f"<{element.tag}> has no {attribute}", where=where)
@@ -204,6 +241,8 @@ def _check(element: Element, where: str) -> None:
     for child in element:
         i = counted.get(child.tag, 0)
         counted[child.tag] = i + 1
+        if i and child.tag in _SINGLE and child.attrib != element.find(child.tag).attrib:
+            raise BadRobot(f"<{element.tag}> has two <{child.tag}>", where=where, valid="one")
         listed = child.tag in ("collision", "visual")
         _check(child, f"{where} {child.tag}[{i}]" if listed else f"{where} {child.tag}")
 

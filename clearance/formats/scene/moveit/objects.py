@@ -23,9 +23,16 @@ from clearance.formats.message.values import (
     messages,
     number,
     numbers,
+    require_spelt,
     text,
 )
 from clearance.formats.scene.request import SceneRequest, pose_row
+
+_FIELDS = (
+    "header", "pose", "id", "type", "primitives", "primitive_poses", "meshes", "mesh_poses", "planes",
+    "plane_poses", "subframe_names", "subframe_poses", "operation",
+)  # fmt: skip
+_FIELDS_OF_SHAPE = ("type", "dimensions", "polygon", "resource", "vertices", "triangles")
 
 _ADD = (None, 0, "0", "add", "ADD", "\0", "")
 
@@ -41,6 +48,7 @@ def object_rows(given: Message, frame: np.ndarray, meshes: SceneMeshes, poses: P
     """
     name = text(given, "id")
     with at(repr(name)):
+        require_spelt(given, *_FIELDS)
         if given.get("operation") not in _ADD:
             raise BadScene(
                 f"{given['operation']!r:.40} is given", where="operation", valid="ADD (0)"
@@ -78,6 +86,7 @@ def _placed(
         raise BadShape(f"{len(placed)} {poses_key} of {n_shapes} {key}", valid="one for each")
     for i, (where, shape) in enumerate(messages(given, key)):
         with at(where):
+            require_spelt(shape, *_FIELDS_OF_SHAPE)
             row = _primitive(shape) if key == "primitives" else _mesh(shape, meshes)
         yield row, placed[i] if placed else np.eye(4)
 

@@ -14,7 +14,16 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadDimension, BadScene, BadShape, at
-from clearance.formats.message.values import Message, Poses, items, message, messages, number, text
+from clearance.formats.message.values import (
+    Message,
+    Poses,
+    items,
+    message,
+    messages,
+    number,
+    require_spelt,
+    text,
+)
 from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
 from clearance.formats.scene.request import HeldPart, SceneContent, SceneRequest, pose_row
 from clearance.formats.text.notes import note_on_rounded
@@ -33,6 +42,11 @@ _KEYS = {
 }
 
 
+_FIELDS = (
+    *_KEYS, "name", "link_padding", "link_scale", "object_colors", "is_diff",
+)  # fmt: skip
+
+
 def is_planning_scene(raw: object) -> bool:
     """True for plain data that has what no scene of ours has."""
     return isinstance(raw, dict) and not _KEYS.isdisjoint(raw) and "obstacles" not in raw
@@ -45,14 +59,19 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         BadInput: what is not read (scale of links, cone, plane), or is no message; with its field.
     """
     with at(asked.shown):
+        require_spelt(raw, *_FIELDS)
         meshes, poses = SceneMeshes(asked), Poses()
         frames = _Frames(raw, poses)
         world = message(raw, "world")
         with at("world"):
+            require_spelt(world, "collision_objects", "octomap")
             obstacles = list(_world(world, frames, meshes, poses))
             obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
         state = message(raw, "robot_state")
         with at("robot_state"):
+            require_spelt(
+                state, "joint_state", "multi_dof_joint_state", "attached_collision_objects"
+            )
             attached, held = _attached(state, meshes, poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
         padding = _padding(raw)
@@ -126,6 +145,7 @@ def _attached(
     held: list[HeldPart] = []
     for where, given in messages(state, "attached_collision_objects"):
         with at(where):
+            require_spelt(given, "link_name", "object", "touch_links", "detach_posture", "weight")
             link = text(given, "link_name")
             touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
             for row in _held(message(given, "object"), link, meshes, poses):

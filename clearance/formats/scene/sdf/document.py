@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadScene, BadShape, BadSyntax, MissingKey, NotFinite
+from clearance.errors import BadScene, BadShape, BadSyntax, MissingKey, NotFinite, meant_name
 from clearance.formats.text.xml_document import plain_root, with_entities
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
@@ -19,6 +19,28 @@ if TYPE_CHECKING:
 NEWEST = (1, 11)
 """The newest version of SDF that is read."""
 
+_READ = {
+    "sdf": ("world", "model"),
+    "world": ("model", "include", "frame", "state", "population"),
+    "model": ("model", "link", "include", "frame", "joint", "pose"),
+    "link": ("collision", "visual", "pose"),
+    "collision": ("pose", "geometry"),
+    "include": ("uri", "name", "pose", "placement_frame"),
+    "frame": ("pose",),
+    "joint": ("child", "pose"),
+    "mesh": ("uri", "scale", "submesh"),
+    "plane": ("normal",),
+    "pose": (),
+}
+"""The elements that are read in each."""
+
+_ATTRIBUTES = {
+    "pose": ("relative_to", "frame", "rotation_format", "degrees"),
+    "model": ("name", "placement_frame"),
+    "frame": ("name", "attached_to"),
+    "include": ("merge",),
+}
+
 MOST_BYTES = 32_000_000
 """Files are text of links and names; meshes lie beside them."""
 
@@ -27,7 +49,8 @@ def sdf_element(data: bytes) -> Element:
     """The root element of an SDF document; comments are gone, and nothing in it stands for something else.
 
     Raises:
-        BadSyntax: not XML, not SDF, an entity or a document type, or too long. BadInput: a newer version.
+        BadSyntax: not XML, not SDF, an entity or a document type, or too long. BadInput: a newer version, or a
+            name that resembles one that is read.
     """
     if len(data) > MOST_BYTES:
         raise BadSyntax(f"{len(data)} bytes are given", valid=f"{MOST_BYTES} or fewer")
@@ -37,7 +60,24 @@ def sdf_element(data: bytes) -> Element:
     if root.tag not in ("sdf", "gazebo"):
         raise BadSyntax(f"the root element is <{root.tag}>", valid="<sdf> is needed")
     _require_version(root.get("version") or "")
+    for element in root.iter(*_READ):
+        _require_spelt(element)
     return root
+
+
+def _require_spelt(element: Element) -> None:
+    """Refuses what was meant to say something about shape or place."""
+    where = f"{element.tag} {element.get('name') or ''}".strip()
+    for child in map(str, (one.tag for one in element)):
+        meant = meant_name(child, _READ[element.tag])
+        if meant:
+            raise BadScene(f"<{child}> is not read", where=where, valid=f"did you mean <{meant}>?")
+    for given in element.attrib:
+        meant = meant_name(given, _ATTRIBUTES.get(element.tag, ()))
+        if meant:
+            raise BadScene(f"{given}= is not read", where=where, valid=f"did you mean {meant}=?")
+    if len(element.findall("pose")) > 1:
+        raise BadScene("two <pose> are given", where=where, valid="one")
 
 
 def name_of(element: Element) -> str:
