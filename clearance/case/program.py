@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,6 @@ from clearance.geometry.pose import inverse
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Robot
 
 
@@ -53,7 +53,7 @@ def program_motion(
     given = read.program
     with at(shown):
         own = {**given.start, **start}
-        frames = _Frames(given, placed, standing, own)
+        frames = _Frames(given, placed, standing)
         moves = tuple(_moves(read, frames))
         program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
         found = motion_of(placed.robot, program)
@@ -112,27 +112,38 @@ def _of_schema(program: schema.Program) -> ConvertedProgram:
     return ConvertedProgram(program, tuple(places), tuple(names))
 
 
+class _Place(NamedTuple):
+    """Where a frame is: its pose (4, 4) [m] on a link of the robot; on its root if that is empty."""
+
+    link: str
+    pose: np.ndarray
+
+    def on_it(self, pose: np.ndarray) -> _Place:
+        """A pose (4, 4) that is given in the frame."""
+        return _Place(self.link, self.pose @ pose)
+
+
 class _Frames:
-    """The frames of a program, seen from the robot's root."""
+    """The frames of a program, seen from links of the robot."""
 
     def __init__(
         self,
         given: schema.Program,
         placed: PlacedRobot,
         standing: Mapping[str, np.ndarray | None],
-        start: Mapping[str, float],
     ) -> None:
-        self._given, self._placed, self._standing, self._start = given, placed, standing, start
+        self._given, self._placed, self._standing = given, placed, standing
         self.used = set[str]()
 
-    def root_from(self, name: str, within: tuple[str, ...] = ()) -> np.ndarray:
-        """(4, 4) `root_from_frame` [m].
+    def place(self, name: str, within: tuple[str, ...] = ()) -> _Place:
+        """Where a frame is.
 
         Raises:
-            BadInput: a frame on what is not there, moves, or is on itself.
+            BadInput: a frame on what is not there, moves otherwise, or is on itself.
         """
+        robot, mount = self._placed.robot, self._placed.mount
         if name == schema.BASE:
-            return np.eye(4)
+            return _Place("", np.eye(4))
         if name in self._given.frames:
             if name in within:
                 raise BadProgram(
@@ -142,58 +153,54 @@ class _Frames:
                 )
             frame = self._given.frames[name]
             with at(f"frames.{name}"):
-                return np.asarray(self.root_from(frame.on, (*within, name)) @ frame.matrix())
-        own = name.removeprefix(f"{self._placed.robot.name}/")
-        if own in self._placed.robot.link_names and name not in self._standing:
-            return self._root_from_link(own)
-        if self._placed.mount is not None:
+                return self.place(frame.on, (*within, name)).on_it(frame.matrix())
+        own = name.removeprefix(f"{robot.name}/")
+        if own in robot.link_names and name not in self._standing:
+            return _Place(own, np.eye(4))
+        if mount is not None:
             raise BadProgram(
-                f"the robot stands on {self._placed.mount.on!r}, so the place of {name!r} seen from it may change",
+                f"the robot stands on {mount.on!r}, so the place of {name!r} seen from it may change",
                 valid="frames on base",
             )
+        return _Place("", inverse(self._placed.world_from_base) @ self._world_from(name))
+
+    def _world_from(self, name: str) -> np.ndarray:
+        """(4, 4) the pose of what stands [m].
+
+        Raises:
+            BadInput: it is not there, or moves.
+        """
         if name == schema.WORLD:
-            return inverse(self._placed.world_from_base)
+            return np.eye(4)
         known = (*self._given.frames, schema.WORLD, schema.BASE, *self._standing)
         if name not in self._standing:
             raise BadProgram(f"{name!r} is not there", valid=nearest_name(name, known))
-        world_from_frame = self._standing[name]
-        if world_from_frame is None:
-            valid = "a frame on what stands as long as the case runs"
+        found = self._standing[name]
+        if found is None:
+            valid = "a frame on what stands as long as the case runs, or on a link that the program moves"
             raise BadProgram(
                 f"{name!r} moves, so the place of a target on it may change", valid=valid
             )
         self.used.add(name)
-        return np.asarray(inverse(self._placed.world_from_base) @ world_from_frame)
+        return found
 
-    def _root_from_link(self, link: str) -> np.ndarray:
-        """(4, 4) a link of the robot itself that the arm does not move, as on an external axis that stays.
+    def target(self, target: schema.Target) -> _Place:
+        """Where the tool is to be."""
+        return self.place(target.frame).on_it(target.matrix())
+
+    def via(self, move: schema.ArcMove) -> np.ndarray:
+        """(3,) [m] the point of an arc, on the link that its end is on.
 
         Raises:
-            BadProgram: it moves with the arm, or nobody says where a joint above it is.
+            BadInput: it is on another.
         """
-        robot = self._placed.robot
-        root = robot.link_names[0]
-        chain = chain_between(robot, root, link)
-        names, tool = [joint.name for joint in chain.masters], self._given.tool.link
-        arm = chain_between(robot, root, tool).masters if tool in robot.link_names else ()
-        moved = [joint.name for joint in arm if joint.name in names]
-        if moved:
-            told = f"link {link!r} moves with joint {moved[0]!r} of the arm"
-            raise BadProgram(told, valid="a frame on what the arm does not move")
-        missing = [name for name in names if name not in self._start]
-        if missing:
-            told = f"the position of joint {missing[0]!r} below link {link!r} is not given"
-            raise BadProgram(told, where="start", valid="its position")
-        at_rest = np.array([[self._start[name] for name in names]])
-        return np.asarray(chain.frames(at_rest)[0, -1])
-
-    def pose(self, target: schema.Target) -> np.ndarray:
-        """(4, 4) `root_from_tool` [m]."""
-        return np.asarray(self.root_from(target.frame) @ target.matrix())
-
-    def point(self, place: schema.Point | schema.Target) -> np.ndarray:
-        """(3,) [m]."""
-        return np.asarray(self.root_from(place.frame) @ np.array([*place.xyz, 1.0]))[:3]
+        to, via = self.place(move.to.frame), self.place(move.via.frame)
+        if to.link != via.link:
+            told = (
+                f"frame {move.via.frame!r} does not move as frame {move.to.frame!r} of its end does"
+            )
+            raise BadProgram(told, where="via.frame", valid="one and the same frame")
+        return np.asarray(via.pose @ np.array([*move.via.xyz, 1.0]))[:3]
 
 
 def _moves(read: ConvertedProgram, frames: _Frames) -> Iterator[Move]:
@@ -209,26 +216,28 @@ def _move(move: schema.Move, frames: _Frames, where: str, name: str) -> Move:
     if move.tool is not None:
         return ToolChange(name, where, move.tool.matrix())
     if move.ptp is not None:
-        to = move.ptp.to
-        pose = None if to is None else frames.pose(to)
-        given = move.ptp
+        given, to = move.ptp, move.ptp.to
+        link, pose = ("", None) if to is None else frames.target(to)
         return JointMove(
-            *(name, where, given.joints, pose, given.speed, given.zone, given.near, given.within)
+            *(name, where, given.joints, pose, given.speed, given.zone, given.near, given.within),
+            seen_from=link,
         )
     path = move.circ or move.lin
     assert path is not None
     turns = path.to.turns and not (move.circ is not None and move.circ.orientation == "constant")
-    pose = frames.pose(path.to)
+    link, pose = frames.target(path.to)
     return PathMove(
         name=name,
         where=where,
         pose=pose,
         keeps_orientation=not turns,
-        via=None if move.circ is None else frames.point(move.circ.via),
+        via=None if move.circ is None else frames.via(move.circ),
         along=move.circ is not None and move.circ.orientation == "tangent",
         speed=path.speed,
         acceleration=path.acceleration,
         turn_speed=path.turn_speed,
         zone=path.zone,
         hold=dict(path.hold),
+        free=path.free,
+        seen_from=link,
     )

@@ -1,11 +1,12 @@
 """The arm of a program: how the pose of a tool follows from joints, as numbers and as power series.
 
-Poses are seen from the robot's root. Not for: which poses a program asks for (`tool_path`).
+Poses are seen from a link of the robot, its root or one that moves too. Not for: which poses a program asks for
+(`tool_path`).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,31 +15,58 @@ from clearance.errors import UnknownJoint, nearest_name
 from clearance.programs.series import ORDER, matrix_product, product, sine_and_cosine
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematic_chain import ChainJoint, KinematicChain, chain_between
+from clearance.world.mimics import range_of
 from clearance.world.robot import Joint, Robot
 from clearance.world.tool import Tool
 
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """The joints from a robot's root to its tool.
+    """The joints of a program, and its tool.
 
     Attributes:
         link: the tool is fixed to. link_from_tool: (4, 4) [m].
+        beside: names of joints that the program moves, and that are not between the root and the link.
+        seen_from: the link that poses are seen from; the root if empty.
     """
 
     robot: Robot
     link: str
     link_from_tool: np.ndarray
+    beside: tuple[str, ...] = ()
+    seen_from: str = ""
+
+    @cached_property
+    def own(self) -> tuple[Joint, ...]:
+        """The joints from the root to the tool's link that are free to move."""
+        return chain_between(self.robot, self.robot.link_names[0], self.link).masters
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The k joints that the program moves, in the order of the columns of positions."""
+        beside = (joint for joint in self.robot.moving_joints if joint.name in self.beside)
+        return (*self.own, *beside)
+
+    @cached_property
+    def ranges(self) -> np.ndarray:
+        """(k, 2) from where to where each of them can be [rad or m]."""
+        return np.array([range_of(self.robot, joint.name) for joint in self.joints]).reshape(-1, 2)
 
     @cached_property
     def chain(self) -> KinematicChain:
-        """From the root to the tool's link."""
-        return chain_between(self.robot, self.robot.link_names[0], self.link)
+        """From the link that poses are seen from to the tool's; columns are those of `joints`."""
+        start = self.seen_from or self.robot.link_names[0]
+        found = chain_between(self.robot, start, self.link)
+        columns = [self.joints.index(joint) for joint in found.masters]
+        joints = tuple(one._replace(column=columns[one.column]) for one in found.joints)
+        return replace(found, joints=joints, masters=self.joints, ranges=self.ranges)
 
-    @property
-    def joints(self) -> tuple[Joint, ...]:
-        """The k joints that are free to move, in the order of the columns of positions."""
-        return self.chain.masters
+    @cached_property
+    def follows(self) -> np.ndarray:
+        """(k,) which joints move the tool as it is seen."""
+        found = np.zeros(len(self.joints), dtype=bool)
+        found[[one.column for one in self.chain.joints]] = True
+        return found
 
     def column(self, name: str, where: str) -> int:
         """The column of a joint.
@@ -72,12 +100,19 @@ class Arm:
     def tool(self) -> Tool:
         """The tool by the joints of the arm."""
         names = tuple(joint.name for joint in self.joints)
-        link = self.robot.link_names.index(self.link)
-        return Tool(PlacedRobot(self.robot), link, names, self.link_from_tool)
+        links = self.robot.link_names
+        link, reference = links.index(self.link), links.index(self.seen_from or links[0])
+        return Tool(PlacedRobot(self.robot), link, names, self.link_from_tool, reference)
 
     def poses(self, positions: np.ndarray) -> np.ndarray:
-        """(n, 4, 4) `root_from_tool` [m] at positions (n, k) [rad or m]."""
+        """(n, 4, 4) the tool [m] at positions (n, k) [rad or m]."""
         return self.tool.poses(positions)
+
+    def place(self, pose: np.ndarray) -> str:
+        """Where a pose (4, 4) of the tool is, in words."""
+        x, y, z = pose[:3, 3]
+        seen = f", seen from {self.seen_from!r}" if self.seen_from else ""
+        return f"({x:.4g}, {y:.4g}, {z:.4g}) m{seen}"
 
     def second_rates(self, positions: np.ndarray, seen_from: np.ndarray) -> np.ndarray:
         """(n, 6, k, k) how each column of the Jacobian changes by each joint: turns seen from the tool.

@@ -4,7 +4,7 @@ refused where they cannot follow. Not for: what lies between samples (`enclosure
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -75,7 +75,7 @@ class Follower:
         solved = joints_at(self.arm.tool, poses, near, self.free)
         bad = int(np.argmax(solved.left))
         if solved.left[bad] > REACHED:
-            raise _stuck(poses[bad], near[bad])
+            raise _stuck(self.arm, poses[bad], near[bad])
         return solved.positions
 
     def _strokes(self, shares: np.ndarray) -> np.ndarray:
@@ -102,34 +102,53 @@ class Follower:
                 rates.append(self.rates_at(found[-1], share))
                 step *= 2.0
             elif (step := 0.5 * step) < SHORTEST:
-                raise _stuck(pose[0], found[-1])
+                raise _stuck(self.arm, pose[0], found[-1])
         return np.array(shares), np.array(found), np.array(rates)
 
 
 def follower_of(
-    arm: Arm, stretch: Stretch, hold: Mapping[str, float] | None, start: np.ndarray
+    arm: Arm,
+    stretch: Stretch,
+    hold: Mapping[str, float] | None,
+    start: np.ndarray,
+    free_beside: Collection[str] = (),
 ) -> Follower:
     """An arm on a stretch from where its joints are (k,), some of which are told where they go meanwhile.
 
+    Args:
+        free_beside: joints beside the arm that follow the path too; the others go only where they are told.
+
     Raises:
-        UnknownJoint: one that is told is none of the arm. BadInput: fewer than six are left.
+        UnknownJoint: one that is told is none of the program. BadInput: fewer than six are left.
     """
-    free, held = np.ones(len(start), dtype=bool), np.zeros(len(start))
+    free, held = arm.follows.copy(), np.zeros(len(start))
+    free[len(arm.own) :] = False
+    for name in free_beside:
+        column = arm.column(name, "free")
+        if column < len(arm.own) or not arm.follows[column]:
+            told = f"joint {name!r} is not between the frame of the target and the arm"
+            raise BadProgram(told, where="free", valid="a joint below a frame, beside the arm")
+        free[column] = True
     for name, value in (hold or {}).items():
         column = arm.column(name, "hold")
         free[column], held[column] = False, value - start[column]
+        low, high = arm.ranges[column]
+        if not low <= value <= high:
+            told = f"{value:.4g} is beyond the limit of joint {name!r}"
+            raise BadProgram(told, where="hold", valid=f"{low:.4g} to {high:.4g}")
     if free.sum() < 6:
         raise BadProgram(
             f"{int(free.sum())} joints are free to follow the tool's path",
-            valid="six or more; an arm of fewer goes by joint moves",
+            valid="six or more: a frame on what the arm does not move"
+            if arm.seen_from
+            else "six or more; an arm of fewer goes by joint moves",
         )
     return Follower(arm, stretch, start, free, held)
 
 
-def _stuck(pose: np.ndarray, joints: np.ndarray) -> BadProgram:
-    x, y, z = pose[:3, 3]
+def _stuck(arm: Arm, pose: np.ndarray, joints: np.ndarray) -> BadProgram:
     shown = ", ".join(f"{value:.4g}" for value in joints)
     return BadProgram(
-        f"the tool cannot go on at ({x:.4g}, {y:.4g}, {z:.4g}) m, with joints at {shown}",
+        f"the tool cannot go on at {arm.place(pose)}, with joints at {shown}",
         valid="a target within reach, and no singularity on the way",
     )

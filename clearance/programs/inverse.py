@@ -129,10 +129,9 @@ ANOTHER = (
 
 def _unreached(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.ndarray) -> BadProgram:
     """Why no joints within the ranges bring the tool to a pose: beyond reach, or in another configuration only."""
-    open_ranges = np.where((ranges[:, 0] < ranges[:, 1])[:, None], arm.chain.ranges, ranges)
+    open_ranges = np.where((ranges[:, 0] < ranges[:, 1])[:, None], arm.ranges, ranges)
     narrow = np.flatnonzero((open_ranges != ranges).any(axis=1))
-    x, y, z = wanted[:3, 3]
-    place = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
+    place = arm.place(wanted)
     if not narrow.size:
         return BadProgram(
             f"no joints within their limits bring the tool to {place}", valid="a pose within reach"

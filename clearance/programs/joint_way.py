@@ -45,10 +45,12 @@ class JointWay:
             BadProgram: no joints within their ranges. UnknownJoint: none of the arm.
         """
         if move.pose is None:
-            return cls(start, targets_of(arm, move))
-        near, ranges = start.copy(), arm.chain.ranges.copy()
+            return cls(start, targets_of(arm, move, start))
+        near, ranges = start.copy(), arm.ranges.copy()
         for name, value in move.near.items():
             near[arm.column(name, "near")] = value
+        stays = ~arm.follows
+        stays[len(arm.own) :] = True
         for name, (low, high) in move.within.items():
             column = arm.column(name, "within")
             row, joint = ranges[column], arm.joints[column]
@@ -56,6 +58,7 @@ class JointWay:
                 told = f"{range_of(joint, low, high)}, beyond its limits: {range_of(joint, *row)}"
                 raise BadProgram(f"the configuration of the target asks for {told}", valid=ANOTHER)
             row[:] = max(low, row[0]), min(high, row[1])
+        ranges[stays] = np.clip(near, *ranges.T)[stays, None]
         return cls(start, nearest_joints(arm, move.pose, near, ranges))
 
     @property
@@ -98,20 +101,20 @@ class JointWay:
         return float(high)
 
 
-def targets_of(arm: Arm, move: JointMove) -> np.ndarray:
-    """(k,) the joints that a move names.
+def targets_of(arm: Arm, move: JointMove, start: np.ndarray) -> np.ndarray:
+    """(k,) the joints that a move names; those beside the arm that it does not name stay where they are (k,).
 
     Raises:
         BadInput: not each joint of the arm, or another.
     """
-    names, given = [joint.name for joint in arm.joints], move.joints or {}
-    for name in given:
-        arm.column(name, "joints")
-    missing = [name for name in names if name not in given]
+    found, given = start.copy(), move.joints or {}
+    for name, value in given.items():
+        found[arm.column(name, "joints")] = value
+    missing = [joint.name for joint in arm.own if joint.name not in given]
     if missing:
         told = f"no target of {', '.join(missing)}"
         raise BadProgram(told, where="joints", valid="one for each joint of the arm")
-    return np.array([given[name] for name in names])
+    return found
 
 
 def fastest(joints: Sequence[Joint]) -> np.ndarray:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -14,16 +14,20 @@ import numpy as np
 from clearance.errors import BadProgram, at
 from clearance.programs.arm import Arm
 from clearance.programs.following import follower_of
-from clearance.programs.joint_way import RUN_UP, JointWay, fastest, joint_law, targets_of
-from clearance.programs.moves import SHARE_OF_WAY, JointMove, Move, PathMove, Program, Wait
+from clearance.programs.joint_way import RUN_UP, JointWay, fastest, joint_law
+from clearance.programs.moves import (
+    SHARE_OF_WAY,
+    SHORTEST,
+    JointMove,
+    Move,
+    PathMove,
+    Run,
+)
 from clearance.programs.time_law import Piece, trapezoid
 from clearance.programs.tool_path import Stretch, arc, corner, line
 
 LONGEST = 100.0
 """[m] A longer way is a mistake."""
-
-SHORTEST = 1e-9
-"""[m] and [rad] A line that is shorter, and turns less, is none."""
 
 Way = Stretch | JointWay
 """How the tool, or the joints, go in a move or in a part of one."""
@@ -75,39 +79,6 @@ class PlannedWay(NamedTuple):
     joints: np.ndarray
 
 
-Run = list[tuple[Move, Stretch | None]]
-"""Moves that follow one another without a stop, and what the tool follows in lines and arcs."""
-
-
-def runs_of(arm: Arm, program: Program, start: np.ndarray) -> list[Run]:
-    """All moves in order.
-
-    Args:
-        start: (k,) the joints at the beginning [rad or m].
-
-    Raises:
-        BadInput: an arc that is none, a zone without a next move; with the move.
-    """
-    found: list[Run] = []
-    goes_on = False
-    for move, stretch in zip(program.moves, _stretches(arm, program, start), strict=True):
-        if not goes_on:
-            found.append([])
-        found[-1].append((move, stretch))
-        goes_on = has_zone(move)
-    for move, following in zip_longest(program.moves, program.moves[1:]):
-        if has_zone(move) and (following is None or isinstance(following, Wait)):
-            with at(move.where):
-                valid = "0, or a move next"
-                raise BadProgram("a corner zone without a move after it", where="zone", valid=valid)
-    return found
-
-
-def has_zone(move: Move) -> bool:
-    """True where it is not to stop at its end."""
-    return isinstance(move, JointMove | PathMove) and move.zone > SHORTEST
-
-
 def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
     """The legs of moves that follow one another without a stop.
 
@@ -137,65 +108,63 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
     yield from _with_speeds(arm, [*legs, Leg(last, way.part(before, 1.0))])
 
 
-def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | None]:
-    """What the tool follows in each move; None where joints are told or nothing moves."""
-    pose, found = arm.poses(start[None])[0], list[Stretch | None]()
-    for move in program.moves:
-        with at(move.where):
-            if isinstance(move, PathMove):
-                found.append(own := _stretch(pose, move))
-                if not own.length <= LONGEST:
-                    raise BadProgram(f"a way of {own.length:.3g} m", valid=f"{LONGEST:g} m or less")
-                if not is_none(own):
-                    pose = own.poses(np.array([[1.0, 0.0]]))[0]
-                continue
-            found.append(None)
-            if isinstance(move, JointMove):
-                pose = (
-                    move.pose
-                    if move.pose is not None
-                    else arm.poses(targets_of(arm, move)[None])[0]
-                )
-    return found
-
-
 def is_none(way: Way) -> bool:
     """True where nothing moves: the next way begins where this one does."""
     if isinstance(way, JointWay):
         return way.share < SHORTEST or not way.whole.any()
-    return way.length < SHORTEST and way.turned < SHORTEST
-
-
-def _stretch(start: np.ndarray, move: PathMove) -> Stretch:
-    end = move.pose
-    if move.keeps_orientation:
-        end = end.copy()
-        end[:3, :3] = start[:3, :3]
-    return line(start, end) if move.via is None else arc(start, move.via, end, move.along)
+    return size_of(way) < SHORTEST
 
 
 def ways_of(arm: Arm, run: Run, start: np.ndarray) -> list[PlannedWay]:
     """How the moves of a run go, from where the joints are (k,).
 
     Raises:
-        BadInput: a target out of reach; with the move.
+        BadInput: an arc that is none, a target out of reach; with the move.
     """
-    joint_moves = [i for i, (move, _) in enumerate(run) if isinstance(move, JointMove)]
-    found, joints = list[PlannedWay](), start
-    for i, (move, stretch) in enumerate(run):
+    pose, joints, found = arm.poses(start[None])[0], start, list[PlannedWay]()
+    for i, move in enumerate(run):
+        way: Way | None = None
         with at(move.where):
-            way: Way | None = stretch
             if isinstance(move, JointMove):
                 way = JointWay.of(arm, move, joints)
                 joints = way.target
-            elif (
-                joint_moves and i < joint_moves[-1] and stretch is not None and not is_none(stretch)
-            ):
-                assert isinstance(move, PathMove)
-                follower = follower_of(arm, stretch, move.hold, joints)
-                joints = follower.positions(np.ones(1))[0]
+                pose = arm.poses(joints[None])[0]
+            elif isinstance(move, PathMove):
+                way = _stretch(arm, pose, move, joints)
+                if not is_none(way):
+                    pose = way.poses(np.array([[1.0, 0.0]]))[0]
+                    joints = _joints_after(arm, way, move, joints, run[i + 1 :])
         found.append(PlannedWay(move, way, joints))
     return found
+
+
+def _stretch(arm: Arm, start: np.ndarray, move: PathMove, joints: np.ndarray) -> Stretch:
+    """The path of a move from a pose (4, 4), where the joints are (k,).
+
+    Raises:
+        BadInput: an arc that is none, or a way that is too long.
+    """
+    end = move.pose
+    if move.keeps_orientation:
+        end = end.copy()
+        end[:3, :3] = start[:3, :3]
+    found = line(start, end) if move.via is None else arc(start, move.via, end, move.along)
+    if not found.length <= LONGEST:
+        raise BadProgram(f"a way of {found.length:.3g} m", valid=f"{LONGEST:g} m or less")
+    held = follower_of(arm, found, move.hold, joints, move.free).held
+    return replace(found, least_time=float((np.abs(held) / fastest(arm.joints)).max(initial=0.0)))
+
+
+def _joints_after(
+    arm: Arm, way: Stretch, move: PathMove, joints: np.ndarray, later: Run
+) -> np.ndarray:
+    """(k,) the joints at the end of a path; those that follow it only where later moves of the run need them."""
+    follower = follower_of(arm, way, move.hold, joints, move.free)
+    free = {joint.name for joint, is_free in zip(arm.joints, follower.free, strict=True) if is_free}
+    for one in later:
+        if isinstance(one, JointMove) or (isinstance(one, PathMove) and free & {*(one.hold or {})}):
+            return follower.positions(np.ones(1))[0]
+    return joints + follower.held
 
 
 def _cut(arm: Arm, zone: float, before: Way, after: Way) -> tuple[float, float, float]:
@@ -231,10 +200,12 @@ def _half(stretch: Stretch) -> float:
 
 
 def size_of(way: Way) -> float:
-    """The length of a way [m]; of a turn on the spot in rad, and of joints as a share of the move."""
+    """The length of a way [m]; of a turn on the spot in rad, where joints are held alone in s, and of joints as a
+    share of the move."""
     if isinstance(way, JointWay):
         return way.share
-    return way.turned if way.length < SHORTEST else way.length
+    sizes = way.length, way.turned, way.least_time
+    return next((one for one in sizes if one >= SHORTEST), 0.0)
 
 
 def _limits_of(arm: Arm, move: Move, way: Way) -> tuple[float, float]:
@@ -243,10 +214,14 @@ def _limits_of(arm: Arm, move: Move, way: Way) -> tuple[float, float]:
         assert isinstance(move, JointMove)
         return joint_law(arm.joints, way.whole, move.speed)
     assert isinstance(move, PathMove)
-    if way.length < SHORTEST:
-        return move.turn_speed, move.turn_speed / RUN_UP
-    most = min(move.speed, move.turn_speed * way.length / max(way.turned, 1e-300))
-    return most, move.acceleration
+    by_held = size_of(way) / max(way.least_time, 1e-300)
+    most, change = np.inf, np.inf
+    if way.length >= SHORTEST:
+        most = min(move.speed, move.turn_speed * way.length / max(way.turned, 1e-300))
+        change = move.acceleration
+    elif way.turned >= SHORTEST:
+        most, change = move.turn_speed, move.turn_speed / RUN_UP
+    return min(most, by_held), min(change, by_held / RUN_UP)
 
 
 def _with_speeds(arm: Arm, run: list[Leg]) -> Iterator[Leg]:
@@ -318,4 +293,4 @@ def _joint_way(arm: Arm, move: Move, side: Way, joints: np.ndarray, share: float
     if isinstance(side, JointWay):
         return side.share * side.whole
     assert isinstance(move, PathMove)
-    return follower_of(arm, side, move.hold, joints).rates_at(joints, share)
+    return follower_of(arm, side, move.hold, joints, move.free).rates_at(joints, share)

@@ -13,14 +13,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadProgram, UnknownJoint, UnknownLink, at, nearest_name
+from clearance.errors import BadDimension, BadProgram, UnknownLink, at, nearest_name
 from clearance.programs.arm import Arm
+from clearance.programs.carriers import arm_of, on_carriers, start_of
 from clearance.programs.corner import PATH_ERROR, corner_of
 from clearance.programs.following import Follower, follower_of
 from clearance.programs.inverse import joints_at
 from clearance.programs.joint_corner import JointCorner, bow
 from clearance.programs.joint_way import JointWay
-from clearance.programs.legs import Corner, Leg, PlannedWay, legs_of, runs_of, ways_of
+from clearance.programs.legs import Corner, Leg, PlannedWay, legs_of, ways_of
 from clearance.programs.moves import STEP_TURN, JointMove, Move, PathMove, Program, Wait
 from clearance.programs.path_samples import PathSamples
 from clearance.programs.time_law import Piece
@@ -67,34 +68,20 @@ def motion_of(robot: Robot, program: Program) -> ProgramMotion:
         raise UnknownLink(f"there is no link {program.link!r}", where="tool.link", valid=valid)
     if not 1e-5 <= program.step <= 1.0:
         raise BadDimension(f"a step of {program.step * 1e3:g} mm", valid="0.01 to 1000 mm")
-    arm = Arm(robot, program.link, program.link_from_tool)
-    samples = _Samples(arm, program, _start_of(robot, arm, program))
+    program = on_carriers(robot, program)
+    arm = arm_of(robot, program)
+    samples = _Samples(arm, program, start_of(arm, program))
     for part in program.parts:
-        samples.arm = arm = Arm(robot, part.link, part.link_from_tool)
-        for run in runs_of(arm, part, samples.at):
+        samples.arm = arm = replace(
+            arm, link_from_tool=part.link_from_tool, seen_from=part.seen_from
+        )
+        for run in part.runs:
             ways = ways_of(arm, run, samples.at)
             samples.note_targets(ways)
             for leg in legs_of(arm, ways):
                 with at(leg.move.where):
                     samples.add(leg)
     return samples.motion()
-
-
-def _start_of(robot: Robot, arm: Arm, program: Program) -> np.ndarray:
-    """(k,) where the joints of the arm are at first."""
-    names = [joint.name for joint in robot.moving_joints]
-    for name in program.start:
-        if name not in names:
-            valid = nearest_name(name, names)
-            raise UnknownJoint(f"unknown joint {name!r}", where="start", valid=valid)
-    missing = [joint.name for joint in arm.joints if joint.name not in program.start]
-    if missing:
-        raise BadProgram(
-            f"no position of {', '.join(missing)}",
-            where="start",
-            valid="one for each joint of the arm",
-        )
-    return np.array([program.start[joint.name] for joint in arm.joints])
 
 
 @dataclass(eq=False)
@@ -189,7 +176,7 @@ class _Samples:
 
     def _along(self, leg: Leg, stretch: Stretch, move: PathMove) -> None:
         """What the tool's path makes of the joints."""
-        follower = follower_of(self.arm, stretch, move.hold, self.at)
+        follower = follower_of(self.arm, stretch, move.hold, self.at, move.free)
         samples, wide = self._enclosed(follower, leg.pieces, self._seam)
         if leg.corner is not None:
             corner = stretch.poses(np.array([[1.0, 0.0]]))
@@ -245,7 +232,7 @@ class _Samples:
                 last = side.share * side.whole
                 continue
             assert isinstance(move, PathMove)
-            follower = follower_of(self.arm, side, move.hold, joints[-1])
+            follower = follower_of(self.arm, side, move.hold, joints[-1], move.free)
             samples, narrow = self._enclosed(follower, [Piece(1.0, 0.0, 1.0, 0.0)])
             is_proven = is_proven and not narrow.any()
             joints.append(samples.positions[-1])
@@ -305,14 +292,14 @@ class _Samples:
         Raises:
             BadInput: the first that is not, with the joint and where the tool is then.
         """
-        low, high = self.arm.chain.ranges.T
+        low, high = self.arm.ranges.T
         beyond = np.maximum(low - positions, positions - high)
         joint = int(np.argmax(beyond.max(axis=0)))
         if beyond[:, joint].max() > 0.0:
             row = int(np.argmax(beyond[:, joint] > 0.0))
-            x, y, z = self.arm.poses(positions[row : row + 1])[0, :3, 3]
+            place = self.arm.place(self.arm.poses(positions[row : row + 1])[0])
             raise BadProgram(
-                f"joint {self.arm.joints[joint].name!r} is beyond its limit at ({x:.4g}, {y:.4g}, {z:.4g}) m",
+                f"joint {self.arm.joints[joint].name!r} is beyond its limit at {place}",
                 valid=f"{low[joint]:.4g} to {high[joint]:.4g}",
             )
 

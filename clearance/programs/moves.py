@@ -1,4 +1,4 @@
-"""What a program asks of a tool: moves one after another, their targets seen from the robot's root.
+"""What a program asks of a tool: moves one after another, their targets seen from links of the robot.
 
 Not for: files (`formats`), how joints follow (`motion`).
 """
@@ -7,8 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 
 import numpy as np
+
+from clearance.errors import BadProgram, at
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +21,7 @@ class JointMove:
     Attributes:
         name: what the report calls it. where: in which file and field.
         joints: targets by name [rad or m]; None where `pose` is given. pose: (4, 4) of the tool [m].
+        seen_from: the link that the pose is seen from; the root if empty.
         speed: share of the joints' greatest speeds. acceleration: [1/s^2] of the share of the way; None for the
             default. zone: [m] radius of the corner zone at its end.
         near: joints to which those for the pose are nearest; those that are not named are where they are.
@@ -32,6 +36,7 @@ class JointMove:
     zone: float = 0.0
     near: Mapping[str, float] = field(default_factory=dict)
     within: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    seen_from: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +50,8 @@ class PathMove:
         keeps_orientation: the tool is not turned, whatever the pose says.
         speed: [m/s]. acceleration: [m/s^2]. turn_speed: [rad/s]. zone: [m] radius of the corner zone at its end.
         hold: joints that go straight to these values meanwhile [rad or m], by name.
+        free: joints beside the arm that follow the path too.
+        seen_from: the link that the pose and the point are seen from; the root if empty.
     """
 
     name: str
@@ -58,6 +65,8 @@ class PathMove:
     turn_speed: float = 1.0
     zone: float = 0.0
     hold: dict[str, float] | None = None
+    free: Sequence[str] = ()
+    seen_from: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +89,9 @@ class ToolChange:
 
 Move = JointMove | PathMove | Wait | ToolChange
 
+Run = list[Move]
+"""Moves that follow one another without a stop."""
+
 
 @dataclass(frozen=True, eq=False)
 class Program:
@@ -90,6 +102,8 @@ class Program:
         start: the joints at its beginning by name [rad or m]; joints that are not named stay where the case has
             them.
         step: [m] the most that the tool moves from sample to sample; it turns by at most `STEP_TURN`.
+        seen_from: the link that its targets are seen from, which may differ from move to move until `parts` are
+            taken; the root if empty.
     """
 
     link: str
@@ -97,18 +111,86 @@ class Program:
     moves: tuple[Move, ...]
     start: dict[str, float]
     step: float = 0.002
+    seen_from: str = ""
+
+    @property
+    def named(self) -> frozenset[str]:
+        """The joints that its moves name."""
+        named = set[str]()
+        for one in self.moves:
+            if isinstance(one, JointMove):
+                named |= {*(one.joints or {}), *one.near, *one.within}
+            elif isinstance(one, PathMove):
+                named |= {*(one.hold or {}), *one.free}
+        return frozenset(named)
 
     @property
     def parts(self) -> Iterator[Program]:
-        """Its moves with one tool after the other."""
-        tool, moves = self.link_from_tool, list[Move]()
-        for one in self.moves:
-            if isinstance(one, ToolChange):
-                yield replace(self, link_from_tool=tool, moves=tuple(moves))
-                tool, moves = one.link_from_tool, []
-            else:
-                moves.append(one)
-        yield replace(self, link_from_tool=tool, moves=tuple(moves))
+        """Its moves with one tool, and seen from one link, after the other.
+
+        Raises:
+            BadInput: a corner zone between moves that are seen from different links.
+        """
+        part = replace(self, moves=())
+        for run in self.runs:
+            if isinstance(run[0], ToolChange):
+                yield part
+                part = replace(part, link_from_tool=run[0].link_from_tool, moves=())
+                continue
+            seen_from = _seen_from(run, part.seen_from)
+            if seen_from != part.seen_from:
+                yield part
+                part = replace(part, seen_from=seen_from, moves=())
+            part = replace(part, moves=(*part.moves, *run))
+        yield part
+
+    @property
+    def runs(self) -> Iterator[Run]:
+        """Its moves, in rows that follow one another without a stop.
+
+        Raises:
+            BadInput: a corner zone without a next move; with the move.
+        """
+        run: Run = []
+        for one, following in zip_longest(self.moves, self.moves[1:]):
+            run.append(one)
+            if not has_zone(one):
+                yield run
+                run = []
+            elif not isinstance(following, JointMove | PathMove):
+                with at(one.where):
+                    told = "a corner zone without a move after it"
+                    raise BadProgram(told, where="zone", valid="0, or a move next")
+
+
+SHORTEST = 1e-9
+"""[m], [rad] and [s] A zone that is smaller is none, and a move that goes, turns and takes less."""
+
+
+def has_zone(move: Move) -> bool:
+    """True where it is not to stop at its end."""
+    return isinstance(move, JointMove | PathMove) and move.zone > SHORTEST
+
+
+def _seen_from(run: Run, before: str) -> str:
+    """The link that the targets of a run are seen from; the one before where it has none.
+
+    Raises:
+        BadInput: there are two.
+    """
+    found: str | None = None
+    for i, one in enumerate(run):
+        if not (isinstance(one, PathMove) or (isinstance(one, JointMove) and one.pose is not None)):
+            continue
+        if found not in (None, one.seen_from):
+            with at(run[i - 1].where):
+                told = (
+                    f"the next target is on {one.seen_from or 'what stands'}, which moves otherwise"
+                )
+                valid = "0 (a stop), or targets on one and the same link on both sides"
+                raise BadProgram(told, where="zone", valid=valid)
+        found = one.seen_from
+    return before if found is None else found
 
 
 SHARE_OF_WAY = 0.5

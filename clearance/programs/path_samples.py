@@ -12,6 +12,7 @@ from clearance.programs.enclosure import Intervals, deviations
 from clearance.programs.following import Follower
 from clearance.programs.moves import STEP_TURN
 from clearance.programs.time_law import Piece
+from clearance.world.robot import JointKind
 
 LEAST_IN_CORNER = 8
 """Intervals of a corner zone: with fewer, cells are wide along the path, however finely they are cut across."""
@@ -38,7 +39,8 @@ class PathSamples:
 
     @classmethod
     def of(cls, follower: Follower, pieces: Sequence[Piece], step: float) -> PathSamples:
-        """The samples along pieces, so many that the tool moves and turns by no more than a step between them.
+        """The samples along pieces, so many that the tool, and joints that are told where to go, move and turn by
+        no more than a step between them.
 
         Raises:
             BadInput: the tool cannot go on.
@@ -93,6 +95,8 @@ def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
     share = piece.duration * np.abs(piece.rates_at(np.array([0.0, piece.duration]))).max()
     turned = np.linalg.norm(stretch.turns, axis=1).sum()
     length = sum(way.length for way in stretch.ways)
-    steps = share * max(length / step, turned / STEP_TURN)
+    turns = [joint.kind is not JointKind.PRISMATIC for joint in follower.arm.joints]
+    held = np.abs(follower.held) / np.where(turns, STEP_TURN, step)
+    steps = share * max(length / step, turned / STEP_TURN, held.max())
     least = LEAST_IN_CORNER if stretch.is_corner else 1
     return max(least, int(np.ceil(steps - 1e-9)))  # rounding makes no step more

@@ -1,4 +1,4 @@
-"""Where a tool is to be: straight lines, arcs and corners between them, in the frame of the robot's root.
+"""Where a tool is to be: straight lines, arcs and corners between them, in the frame of one link.
 
 Every stretch is a sum of two strokes, s1 and s2 in [0, 1]:
 
@@ -137,15 +137,17 @@ class Stretch:
     """A part of a tool's path.
 
     Attributes:
-        start: (4, 4) `root_from_tool` at its beginning [m].
+        start: (4, 4) the tool's pose at its beginning [m].
         ways: how each stroke moves the tool's point. turns: (2, 3) rotation vectors of both [rad].
         is_corner: the strokes are those of a corner zone.
+        least_time: [s] that joints take which are told where to go meanwhile, as fast as they may.
     """
 
     start: np.ndarray
     ways: tuple[Straight | Arc, Straight | Arc]
     turns: np.ndarray
     is_corner: bool = False
+    least_time: float = 0.0
 
     @property
     def length(self) -> float:
@@ -223,7 +225,8 @@ class Stretch:
             return self
         first = self.poses(np.array([[start, 0.0]]))[0]
         way, share = self.ways[0].part(start, end), end - start
-        return replace(self, start=first, ways=(way, STILL), turns=share * self.turns)
+        turns, least_time = share * self.turns, share * self.least_time
+        return replace(self, start=first, ways=(way, STILL), turns=turns, least_time=least_time)
 
 
 def corner(before: Stretch, after: Stretch) -> Stretch:

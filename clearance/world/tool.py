@@ -1,7 +1,7 @@
 """A tool of a robot: a pose fixed to a link, where it is and how it changes with given joints.
 
-Poses are seen from the robot's root, so that what the robot stands on is none of it. Not for: what is to be kept
-of them (`gains`), joints for a pose (`programs.inverse`).
+Poses are seen from a link of the robot, its root if none is named, so that what the robot stands on is none of it.
+Not for: what is to be kept of them (`gains`), joints for a pose (`programs.inverse`).
 """
 
 from __future__ import annotations
@@ -25,12 +25,14 @@ class Tool:
     Attributes:
         placed: the robot; joints that are not named are where it has them fixed. link: its place among the links.
         joint_names: (k,) of the columns of positions. link_from_tool: (4, 4) [m].
+        reference: the place among the links of the one that poses are seen from; 0 is the root.
     """
 
     placed: PlacedRobot
     link: int
     joint_names: tuple[str, ...]
     link_from_tool: np.ndarray = field(default_factory=lambda: np.eye(4))
+    reference: int = 0
 
     @property
     def name(self) -> str:
@@ -45,22 +47,42 @@ class Tool:
     @cached_property
     def movers(self) -> tuple[tuple[int, int], ...]:
         """(link, column of positions) of each joint that moves the tool and is named."""
-        moving = [joint.name for joint in self.placed.robot.moving_joints]
-        return movers(self.links, self.link, [moving.index(name) for name in self.joint_names])
+        return self._movers_of(self.link)
 
     def all_poses(self, positions: np.ndarray) -> np.ndarray:
         """(n, links, 4, 4) `root_from_link` [m] with the named joints at (n, k) [rad or m]."""
         return poses_by_link(self.links, moving_positions(self.placed, self.joint_names, positions))
 
     def poses(self, positions: np.ndarray) -> np.ndarray:
-        """(n, 4, 4) `root_from_tool` [m]."""
-        return np.asarray(self.all_poses(positions)[:, self.link] @ self.link_from_tool)
+        """(n, 4, 4) `reference_from_tool` [m]."""
+        return self._seen(self.all_poses(positions))
 
     def poses_and_rates(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n, 4, 4) `root_from_tool` [m], and (n, 6, k) how its origin moves and how it turns by each joint."""
-        poses = self.all_poses(positions)
+        """(n, 4, 4) `reference_from_tool` [m], and (n, 6, k) how its origin moves and how it turns by each
+        joint."""
+        poses, n_columns = self.all_poses(positions), positions.shape[1]
+        at = (poses[:, self.link] @ self.link_from_tool)[:, :3, 3]
+        if not self.reference:
+            return self._seen(poses), rates_of(self.links, poses, at, self.movers, n_columns)
+        own, others = (set(self._movers_of(link)) for link in (self.link, self.reference))
+        ahead, back = (
+            rates_of(self.links, poses, at, sorted(one), n_columns)
+            for one in (own - others, others - own)
+        )
+        seen = np.swapaxes(poses[:, self.reference, :3, :3], 1, 2)[:, None]
+        rates = seen @ (ahead - back).reshape(-1, 2, 3, n_columns)
+        return self._seen(poses), rates.reshape(-1, 6, n_columns)
+
+    def _movers_of(self, link: int) -> tuple[tuple[int, int], ...]:
+        moving = [joint.name for joint in self.placed.robot.moving_joints]
+        return movers(self.links, link, [moving.index(name) for name in self.joint_names])
+
+    def _seen(self, poses: np.ndarray) -> np.ndarray:
+        """(n, 4, 4) `reference_from_tool` [m], by the poses of all links (n, links, 4, 4)."""
         tool = poses[:, self.link] @ self.link_from_tool
-        return tool, rates_of(self.links, poses, tool[:, :3, 3], self.movers, positions.shape[1])
+        if self.reference:
+            tool = np.linalg.inv(poses[:, self.reference]) @ tool
+        return np.asarray(tool)
 
 
 def movers(links: Links, link: int, columns: Sequence[int]) -> tuple[tuple[int, int], ...]:

@@ -32,7 +32,8 @@ class Tool(Pose):
 
 
 class Frame(Pose):
-    """A work frame: its pose on `world`, `base`, another frame, or an obstacle or link that stands."""
+    """A work frame: its pose on `world`, `base`, another frame, an obstacle or link that stands, or a link that
+    the program moves."""
 
     on: Name = WORLD
 
@@ -87,7 +88,8 @@ class JointMove(StrictModel):
 
 class PathMove(StrictModel):
     """What `lin` and `circ` share: speed of the tool's point [m/s], its acceleration [m/s^2], speed of a turn
-    [rad/s], radius of the corner at its end [m], and joints that go straight to values meanwhile.
+    [rad/s], radius of the corner at its end [m], and joints that go straight to values meanwhile (`hold`). Joints
+    beside the arm, as of a turntable, stay unless `hold` says where they go, or `free` that they follow too.
     """
 
     to: Target
@@ -96,6 +98,7 @@ class PathMove(StrictModel):
     turn_speed: Above0 = 1.0
     zone: Zone = 0.0
     hold: dict[Name, float] = {}
+    free: list[Name] = []
 
 
 class LinearMove(PathMove):

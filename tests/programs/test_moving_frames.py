@@ -1,0 +1,191 @@
+"""Targets on a link that moves: joints follow by the pose of the tool on that link, and are proven as elsewhere.
+
+Our arm stands beside a plate that turns about a slanted axis, both links of one robot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.programs.motion import ProgramMotion, motion_of
+from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.world.cubic import positions_along
+from clearance.world.robot import Joint, JointKind, Robot
+from tests.programs.arms import arm, turned
+from tests.programs.exact_arm import joints_for, tool_at, turn, vector_of
+from tests.programs.test_corner import circle
+
+START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
+AXIS = np.array([0.1, 0.2, 1.0]) / np.linalg.norm([0.1, 0.2, 1.0])
+BESIDE = np.eye(4)
+BESIDE[:3, :3], BESIDE[:3, 3] = turned((0.2, -0.1, 0.4)), (0.7, 0.1, 0.3)
+"""Where the plate's joint is, seen from the robot's root."""
+
+
+def with_plate(velocity: float = np.inf) -> Robot:
+    robot = arm("heron6").robot
+    root = robot.link_names[0]
+    joint = Joint(
+        "turn", JointKind.REVOLUTE, root, "plate", BESIDE, AXIS, -4.0, 4.0, velocity=velocity
+    )
+    return replace(robot, link_names=(*robot.link_names, "plate"), joints=(*robot.joints, joint))
+
+
+def plate_at(angle: float) -> np.ndarray:
+    """(4, 4) `root_from_plate`, in long double."""
+    motion = np.eye(4, dtype=np.longdouble)
+    motion[:3, :3] = turn(AXIS * np.longdouble(angle))
+    return BESIDE.astype(np.longdouble) @ motion
+
+
+def on_plate(way=(0.0, 0.0, 0.0), angle: float = 0.3, by=(0.0, 0.0, 0.0)) -> np.ndarray:
+    """(4, 4) where the tool begins, seen from the plate at an angle, and moved and turned from there."""
+    pose = np.linalg.inv(plate_at(angle).astype(float)) @ first()
+    pose[:3, 3] += way
+    pose[:3, :3] = turned(by) @ pose[:3, :3]
+    return pose
+
+
+def first() -> np.ndarray:
+    return arm("heron6").poses(np.array([START]))[0]
+
+
+def motion(moves: list[Move], robot: Robot | None = None) -> ProgramMotion:
+    one = arm("heron6")
+    joints = {joint.name: at for joint, at in zip(one.joints, START, strict=True)} | {"turn": 0.3}
+    program = Program(one.link, one.link_from_tool, tuple(moves), joints)
+    return motion_of(robot or with_plate(), program)
+
+
+def line(pose: np.ndarray, seen_from: str = "plate", **more) -> PathMove:
+    return PathMove("LIN", "moves", pose, seen_from=seen_from, **more)
+
+
+def columns(found: ProgramMotion, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 6) joints of the arm, and (n,) the angle of the plate."""
+    names = found.trajectory.joint_names
+    own = [names.index(joint.name) for joint in arm("heron6").joints]
+    return positions[:, own], positions[:, names.index("turn")]
+
+
+@pytest.mark.parametrize("by", [0.0, 0.5, -0.8])
+def test_between_samples_no_joint_is_farther_off_than_is_proven(by):
+    start, end = on_plate(), on_plate((0.05, -0.04, 0.03), by=(0.1, 0.2, -0.1))
+    arc = {"via": 0.5 * (start + end)[:3, 3] + [0.0, 0.02, 0.0], "along": False}
+    for more in ({}, arc):
+        found = motion([line(end, hold={"turn": 0.3 + by}, **more)])
+        times = found.trajectory.times
+        between = (times[:-1, None] + np.diff(times)[:, None] * [0.2, 0.5, 0.8]).ravel()[::3]
+        joints, angles = columns(found, positions_along(found.trajectory, between))
+        worst = 0.0
+        for own, angle in zip(joints, angles, strict=True):
+            if not by:
+                assert angle == 0.3
+                continue
+            share = (np.longdouble(angle) - np.longdouble(0.3)) / np.longdouble(by)
+            wanted = plate_at(angle) @ pose_at(start, end, share, more.get("via"))
+            true = joints_for(arm("heron6"), (wanted[:3, :3], wanted[:3, 3]), own)
+            worst = max(worst, float(np.abs(true - own).max()))
+        assert worst <= found.trajectory.path_error < 1e-6 and not found.trajectory.unproven
+        assert not by or found.trajectory.path_error < 3.0 * worst + 1e-12
+
+
+def pose_at(start: np.ndarray, end: np.ndarray, share: float, via: np.ndarray | None) -> np.ndarray:
+    """(4, 4) a pose on a line, or on the arc through a point, by its share, in long double."""
+    start, end = start.astype(np.longdouble), end.astype(np.longdouble)
+    found = np.eye(4, dtype=np.longdouble)
+    found[:3, :3] = turn(share * vector_of(end[:3, :3] @ start[:3, :3].T)) @ start[:3, :3]
+    found[:3, 3] = start[:3, 3] + share * (end - start)[:3, 3]
+    if via is not None:
+        centre, axis = circle(start[:3, 3], via, end[:3, 3])
+        a, b = (one[:3, 3] - centre for one in (start, end))
+        angle = np.arctan2(np.cross(a, b) @ axis, a @ b) % (2.0 * np.pi)
+        found[:3, 3] = centre + turn(share * angle * axis) @ a
+    return found
+
+
+def test_a_plate_that_stands_is_as_the_world_is():
+    ends = on_plate((0.05, -0.04, 0.03)), on_plate((0.0, -0.08, 0.03))
+    still = [line(ends[0], hold={"turn": 0.3}, zone=0.004), line(ends[1], hold={"turn": 0.3})]
+    world = plate_at(0.3).astype(float)
+    same = [line(world @ ends[0], "", zone=0.004), line(world @ ends[1], "")]
+    one, two = motion(still).trajectory, motion(same).trajectory
+    names = [two.joint_names.index(name) for name in one.joint_names]
+    assert np.abs(one.times - two.times).max() < 1e-12
+    assert np.abs(one.positions - two.positions[:, names]).max() < 1e-9
+    (a,), (b,) = one.corners, two.corners
+    for link, off in a.links.items():
+        if link != "plate":
+            assert off.way == pytest.approx(b.links[link].way, rel=1e-4)
+    assert a.links["plate"].at(1.0) < 1e-12
+
+
+def test_a_tool_that_stays_on_the_plate_turns_with_it_no_faster_than_its_joint_may():
+    found = motion([line(on_plate(), hold={"turn": 1.1})], with_plate(velocity=0.5))
+    made = found.trajectory
+    assert made.times[-1] == pytest.approx(0.8 / 0.5 + 0.25)
+    joints, angles = columns(found, positions_along(made, np.linspace(0.0, made.times[-1], 300)))
+    assert angles[0] == 0.3 and angles[-1] == 1.1
+    assert np.abs(made.velocities[:, made.joint_names.index("turn")]).max() <= 0.5 + 1e-12
+    for own, angle in zip(joints, angles, strict=True):
+        rotation, at = tool_at(arm("heron6"), own)
+        wanted = plate_at(angle) @ on_plate()
+        assert np.abs(at - wanted[:3, 3]).max() < 3e-6
+        assert np.abs(rotation - wanted[:3, :3]).max() < 3e-6
+
+
+def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
+    names = [joint.name for joint in arm("heron6").joints]
+    turned_to = dict(zip(names, START, strict=True)) | {"turn": 0.6}
+    back = dict(zip(names, START, strict=True))
+    pose = on_plate((0.0, 0.02, 0.0), angle=0.6)
+    found = motion(
+        [
+            JointMove("PTP 1", "moves[0]", joints=turned_to),
+            line(pose),
+            JointMove("PTP 3", "moves[2]", joints=back),
+            JointMove("PTP 4", "moves[3]", pose=pose, seen_from="plate"),
+            line(on_plate(angle=0.6), free=("turn",)),
+            JointMove("PTP 6", "moves[5]", pose=pose, seen_from="plate", near={"turn": 0.5}),
+        ]
+    )
+    made = found.trajectory
+    ends = np.array([positions_along(made, np.array([one.end]))[0] for one in made.moves])
+    joints, angles = columns(found, ends)
+    assert angles[:4] == pytest.approx([0.6] * 4, abs=1e-12) and angles[5] == 0.5
+    assert 1e-3 < abs(angles[4] - 0.6) < 0.1
+    for i, wanted in ((1, pose), (3, pose), (4, on_plate(angle=0.6)), (5, pose)):
+        at = arm("heron6").poses(joints[i : i + 1])[0]
+        assert np.abs(at - plate_at(angles[i]) @ wanted).max() < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("moves", "told"),
+    [
+        (
+            [line(on_plate((0.0, 0.05, 0.0)), zone=0.01), line(first(), "", hold={"turn": 0.4})],
+            "the next target is on what stands",
+        ),
+        (
+            [
+                line(on_plate((0.0, 0.05, 0.0)), hold={"turn": 0.4}, zone=0.01),
+                line(on_plate((0.05, 0.05, 0.0)), hold={"turn": 0.4}),
+            ],
+            "changes its speed at once",
+        ),
+        (
+            [line(np.eye(4), "wrist_roll")],
+            "2 joints are free .* a frame on what the arm does not move",
+        ),
+        ([line(first(), "", free=("turn",))], "'turn' is not between the frame"),
+        ([line(on_plate(), hold={"turn": 9.0})], "9 is beyond the limit of joint 'turn'"),
+        ([line(on_plate((0.0, 3.0, 0.0)), hold={"turn": 0.4})], "seen from 'plate'"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(moves, told):
+    with pytest.raises(cl.ClearanceError, match=told):
+        motion(moves)
