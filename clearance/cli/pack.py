@@ -25,10 +25,10 @@ def pack(what: Path, target: Path, force: bool) -> None:
     """Writes a case and all its files into one zip.
 
     The zip holds robots, meshes, motions, waivers and tolerances, with their sha256 and the
-    versions. `clearance check FILE.zip` takes it on any machine. With DIR, a report that
-    `clearance check --out DIR` has written, the zip holds the report and, if DIR has a receipt,
-    the inputs of its case: `clearance verify FILE.zip` and `clearance view FILE.zip` take it. The
-    same input gives the same bytes.
+    versions. `clearance check FILE.zip` takes it on any machine. DIR is a report that `clearance
+    check --out DIR` has written. The zip then holds the report and, if DIR has a receipt, the
+    inputs of its case. `clearance verify FILE.zip` and `clearance view FILE.zip` take it. The same
+    input gives the same bytes.
     """
     from clearance.case.packing import case_contents, write_pack
     from clearance.errors import Unwritable

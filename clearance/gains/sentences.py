@@ -135,7 +135,7 @@ def tool_lines(gain: Gain) -> Iterator[str]:
     if off is not None:
         yield (
             f"{off.link} is off its path by up to {_up(off.far * 1e3)} mm and {_up(math.degrees(off.turn))} deg "
-            f"at its samples, by no more than {_up(off.far_between * 1e3)} mm and "
+            f"at its samples; by no more than {_up(off.far_between * 1e3)} mm and "
             f"{_up(math.degrees(off.turn_between))} deg between them"
         )
     for one in gain.tool_moves:

@@ -20,7 +20,7 @@ _MARK = b'<header id="older">'
 _TOLD = _MARK + (
     b'<div class="title"><h1>Not finished</h1><p class="verdict violated">what follows is older</p></div>'
     b'<ul class="beside"><li>A later run into this folder has not come to its end; the same command goes on. '
-    b"This page is of the run before it.</li></ul></header>\n"
+    b"This page shows the run before it.</li></ul></header>\n"
 )
 
 

@@ -95,10 +95,18 @@ def unclear_texts(name: str, module: ast.Module) -> Iterator[str]:
         if isinstance(node, ast.ClassDef | ast.FunctionDef) and node.name in clearance.__all__:
             first = (ast.get_docstring(node) or "").partition("\n")[0]
             yield from (f"{name}, {node.name}: {fault}" for fault in unclear(first))
-    told = {id(node.value) for node in ast.walk(module) if isinstance(node, ast.Expr)}
-    for node in ast.walk(module):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in told:
-            yield from (f"{name}, line {node.lineno}: {fault}" for fault in unclear(node.value))
+    texts = {
+        node: [node] if isinstance(node, ast.Constant) else node.values
+        for node in ast.walk(module)
+        if isinstance(node, ast.Constant | ast.JoinedStr)
+    }
+    joined = {part for node, parts in texts.items() for part in parts if part is not node}
+    documented = {node.value for node in ast.walk(module) if isinstance(node, ast.Expr)}
+    for node in texts.keys() - joined - documented:
+        text = "".join(
+            str(part.value) if isinstance(part, ast.Constant) else "VALUE" for part in texts[node]
+        )
+        yield from (f"{name}, line {node.lineno}: {fault}" for fault in unclear(text))
 
 
 def test_the_guide_and_the_map_name_every_room():

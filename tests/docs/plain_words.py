@@ -49,7 +49,19 @@ WORDS = (
 )  # fmt: skip
 
 
+MOST_WORDS = 25
+"""The longest sentence that is read at once."""
+
+IN_SENTENCES = {"a", "the", "is", "of"}
+"""A list of names has none of them, and may be longer."""
+
+
 def unclear(text: str) -> list[str]:
-    """What is unclear about a text: the words that were found, and what to write instead."""
+    """What is unclear about a text: words that were found, with what to write instead, and long sentences."""
     found = ((re.search(word.pattern, text), word.instead) for word in WORDS)
-    return [f"{match[0].strip()} -> {instead}" for match, instead in found if match]
+    words = [f"{match[0].strip()} -> {instead}" for match, instead in found if match]
+    parts = [part.split() for part in re.split(r"(?<=[.;:?!]) | \| |\n", text)]
+    long = [
+        part for part in parts if len(part) > MOST_WORDS and IN_SENTENCES & {*map(str.lower, part)}
+    ]
+    return words + [f"over {MOST_WORDS} words: {' '.join(part)}" for part in long]

@@ -220,9 +220,8 @@ def _tessellation(bound: float) -> str:
     if bound == 0.0:
         return "All shapes are measured as given; none is faceted."
     return (
-        f"Round shapes are faceted from outside: the facets of a pair stand up to "
-        f"{bound * 1000:.3g} mm outside the true surfaces, so a clearance can be too small by "
-        "that much and never too large."
+        f"Round shapes are faceted from outside, by up to {bound * 1000:.3g} mm for a pair: "
+        "a clearance can be too small by that much and never too large."
     )
 
 
@@ -282,8 +281,8 @@ def _cross_check(check: dict[str, Any] | None) -> Iterator[Paragraph | Table]:
     if check["n_settled"]:
         figures += (
             f" It is off by up to {scientific_mm(check['greatest_settled'])} mm at "
-            f"{count(check['n_settled'], 'step')}, where exact arithmetic on the faces that it names, "
-            "and on those under our witness points, settles it for us."
+            f"{count(check['n_settled'], 'step')}. There exact arithmetic on the faces that it names, "
+            "and on those under our witness points, confirms ours."
         )
     yield Paragraph(figures)
     if not check["agrees"]:

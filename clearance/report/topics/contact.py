@@ -130,8 +130,8 @@ def _meaning(pairs: Sequence[dict[str, Any]]) -> str:
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
         return f"{told}Depth and volume are exact to the rounding of float64."
     return (
-        f"{told}Depth and volume that are not exact are upper bounds, with the lower bound beside them: "
-        "How sure names the substitute of bodies that are not convex, and a separation vector of closed bodies "
+        f"{told}Depth and volume that are not exact are upper bounds, with the lower bound beside them. "
+        '"How sure" names the substitute of bodies that are not convex. A separation vector of closed bodies '
         "is confirmed by their own distance after it."
     )
 
