@@ -113,7 +113,7 @@ TABLE = pa.schema([("case", pa.string()), ("key", pa.string()), *VERDICT])
 def row_of(run: Run) -> dict[str, Any]:
     """The columns of `VERDICT` for a run."""
     record, verdict = run.record, run.verdict
-    worst, times = record.worst, record.motions[0].times
+    worst, times = verdict.worst, record.motions[0].times
     certificate = record.certificate
     limits, findings = record.rule(worst.rule).limits, run.findings
     return {

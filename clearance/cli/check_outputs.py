@@ -224,11 +224,11 @@ class Outputs:
             return
         from clearance.files import write_file
 
-        replay = run.session.replay(run.rows)
+        replay = run.replay()
         if self.glb is not None:
             from clearance.report.glb import glb_of
 
-            write_file(self.glb, glb_of(run.record, replay))
+            write_file(self.glb, glb_of(run.record, replay, run.verdict.worst))
         if self.png is not None:
             from clearance.report.picture import png_of
 

@@ -41,8 +41,7 @@ def _checked(case_file: Path) -> Replay:
     """The replay of a case, which is checked."""
     from clearance.run import check
 
-    run = check(case_file)
-    return run.session.replay(run.rows)
+    return check(case_file).replay()
 
 
 def _write_case(place: Path, name: str) -> None:

@@ -62,7 +62,7 @@ class Judgement:
         findings: of all rules, the worst first. uses: of each waiver that is of this case.
         rest: what the rules come to without the pairs that are waived.
         n_of_others: waivers that are of other cases. is_rest: the pairs that are not waived; None where all are.
-        worst: the most critical moment of what decides the verdict.
+        worst, worst_sample: the most critical moment, and step, of what decides the verdict.
         worst_of: the same by rule; empty where no waiver is of this case.
     """
 
@@ -72,6 +72,7 @@ class Judgement:
     n_of_others: int = 0
     is_rest: PairTest | None = None
     worst: Moment | None = None
+    worst_sample: Moment | None = None
     worst_of: Mapping[str, Moment | None] = field(default_factory=dict)
 
     @property
@@ -106,7 +107,10 @@ def judgement_of(session: Session) -> Judgement:
     own = [waiver for waiver in record.case.waivers if waiver.is_of_case(record.case.name)]
     n_of_others = len(record.case.waivers) - len(own)
     if not own:
-        return Judgement(findings, record.rules, n_of_others=n_of_others, worst=record.worst)
+        return Judgement(
+            findings, record.rules, n_of_others=n_of_others,
+            worst=record.worst, worst_sample=record.worst_sample,
+        )  # fmt: skip
     return _with_worst(session, _WaivedRun(session, findings, tuple(own)).judgement(n_of_others))
 
 
@@ -116,7 +120,12 @@ def _with_worst(session: Session, judgement: Judgement) -> Judgement:
     for answer in judgement.judging:
         by_rule.setdefault(answer.name, []).append(answer)
     worst_of = {name: session.worst_among(answers) for name, answers in by_rule.items()}
-    return replace(judgement, worst=session.worst_among(judgement.judging), worst_of=worst_of)
+    return replace(
+        judgement,
+        worst=session.worst_among(judgement.judging),
+        worst_sample=session.worst_sample_among(judgement.judging),
+        worst_of=worst_of,
+    )
 
 
 def of_rules(session: Session, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]:

@@ -80,7 +80,8 @@ class Verdict:
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
         broken: rules of the case that are broken, beside its limits of clearance.
-        worst: the most critical moment, of what fails where that is not all waived.
+        worst, worst_sample: the most critical moment, and step: of what is not waived where that is not clear,
+            else of all. Whoever tells one moment of a run tells this one.
         nearest: the moment of least clearance of all, in one line, where that is not the most critical one.
         clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
             for one clock and all of the run.
@@ -97,6 +98,7 @@ class Verdict:
     measured: str
     basis: str
     worst: Moment
+    worst_sample: Moment
     reasons: tuple[str, ...] = ()
     unproven: str | None = None
     suspects: tuple[Notice, ...] = ()
@@ -226,9 +228,9 @@ def verdict_of(
     disputing = None if check is None or check.agrees else check
     judging = record.rules if judgement is None else judgement.judging
     unproven = unproven_line(record, judging)
-    worst = record.worst if judgement is None else judgement.worst
-    shown = _deciding(record, worst)
-    reasons = [reason for reason in (_occurring(record, worst), unproven) if reason is not None]
+    worst, sample, is_open = _most_critical(record, judgement)
+    occurring = [coded_of(moment_line(record, worst), CLEARANCE)] if is_open else []
+    reasons = [*occurring, *([] if unproven is None else [unproven])]
     open_lines = [coded_line(finding) for finding in of_tolerances]
     reasons = [*open_lines, *reasons] if measured in _PASSING else [*reasons, *open_lines]
     not_proven = tuple(one.line for one in unproven_motion(record))
@@ -248,7 +250,8 @@ def verdict_of(
         else _less_open(measured, [*of_tolerances, *not_proven], waiver_faults),
         measured=measured,
         basis=record.basis,
-        worst=shown,
+        worst=worst,
+        worst_sample=sample,
         reasons=tuple(reasons),
         unproven=unproven,
         suspects=suspects,
@@ -258,7 +261,7 @@ def verdict_of(
         self_clearance=self_clearance_lines(record),
         unproven_motion=not_proven,
         broken=tuple(broken),
-        nearest=_nearest(record, shown),
+        nearest=_nearest(record, worst),
         clocks=_when(record.case),
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
@@ -298,18 +301,15 @@ def _measured(record: Record, judgement: Judgement | None) -> str:
     return str(STATUSES[worst])
 
 
-def _occurring(record: Record, worst: Moment | None) -> str | None:
-    """The most critical moment of what decides, if it is below a limit."""
-    if worst is None or record.status_of(worst) == Status.CLEAR:
-        return None
-    return coded_of(moment_line(record, worst), CLEARANCE)
-
-
-def _deciding(record: Record, judged: Moment | None) -> Moment:
-    """The most critical moment of what fails beside what is waived; else that of all."""
-    if judged is None or record.status_of(judged) in _PASSING or _same(judged, record.worst):
-        return record.worst
-    return judged
+def _most_critical(record: Record, judgement: Judgement | None) -> tuple[Moment, Moment, bool]:
+    """The moment and the step that decide, and whether they are below a limit; of all where nothing but what is
+    waived is."""
+    if judgement is None:
+        return record.worst, record.worst_sample, record.status_of(record.worst) != Status.CLEAR
+    judged = judgement.worst
+    if judged is None or record.status_of(judged) == Status.CLEAR:
+        return record.worst, record.worst_sample, False
+    return judged, judgement.worst_sample or record.worst_sample, True
 
 
 def _same(one: Moment, other: Moment) -> bool:

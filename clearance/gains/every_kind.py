@@ -122,6 +122,6 @@ def table_lines(tried: Sequence[Trial]) -> list[str]:
 
 def _obstacle_of_worst(case: Case) -> str | None:
     """The obstacle of the most critical pair at the steps; None where it is of two links."""
-    worst = answer(Question(case, certify=False, contact="none")).record.worst
+    worst = answer(Question(case, certify=False, contact="none")).verdict.worst
     names = [one.name for one in case.obstacles]
     return next((name for name in (worst.obstacle, worst.link) if name in names), None)

@@ -135,8 +135,8 @@ def _of_run(run: Run, proven: float | None) -> dict[str, Any]:
         "verdict": run.status,
         "verdict_text": run.verdict.headline(),
         "passed": run.passed,
-        "fail": run.record.rule(run.record.worst.rule).limits.fail,
-        "worst": _moment(run.record.worst),
+        "fail": run.record.rule(run.verdict.worst.rule).limits.fail,
+        "worst": _moment(run.verdict.worst),
         "proven": proven,
     }
 

@@ -61,7 +61,7 @@ def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str
 def _chart(gain: Gain) -> dict[str, Any]:
     runs = (gain.before, gain.after)
     curves = [motion_curve(name, run) for name, run in zip(NAMES, runs, strict=True)]
-    fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
+    fail = max(run.record.rule(run.verdict.worst.rule).limits.fail for run in runs)
     called = "with margin" if gain.request.margin else "fail"
     return chart_of(curves, fail + gain.request.margin, called)
 
@@ -150,7 +150,7 @@ def _worst_moments(gain: Gain) -> Table:
 
 
 def _worst(name: str, run: Run, proven: float | None) -> Row:
-    worst = run.record.worst
+    worst = run.verdict.worst
     fail = run.record.rule(worst.rule).limits.fail
     cells: list[Content | Cell] = [
         name,

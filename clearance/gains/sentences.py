@@ -230,7 +230,7 @@ def _by_margin(gain: Gain) -> str:
 
 def _worst(run: Run) -> str:
     """The most critical moment, its limit, and the verdict."""
-    worst = run.record.worst
+    worst = run.verdict.worst
     fail = run.record.rule(worst.rule).limits.fail
     far = "touch" if worst.touches else f"{mm(worst.clearance)} mm"
     if not worst.touches and worst.clearance < 0.0:

@@ -9,7 +9,6 @@ from clearance.record.budget import BudgetMoment
 from clearance.record.levels import Event, Interval
 from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum
-from clearance.record.sensitivity import Sensitivity
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +21,6 @@ class RunDetails:
         worst: by rule, the most critical moment of what it judges, in contact the deepest.
         intervals, events, not_listed: the times below each level, when each is entered and left, and the number of
             those that are left out.
-        sensitivity: the slopes of the clearance at the worst moment.
         hints: on pairs that touch all the time. standing: names of the measured bodies that never move.
         left: by rule, the moments at which tolerances leave least, with what each error takes.
     """
@@ -33,7 +31,6 @@ class RunDetails:
     intervals: Mapping[str, Sequence[Interval]]
     events: Sequence[Event]
     not_listed: Mapping[str, int]
-    sensitivity: Sensitivity
     hints: tuple[str, ...]
     standing: frozenset[str]
     left: Mapping[str, tuple[BudgetMoment, ...]]

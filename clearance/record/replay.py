@@ -17,7 +17,7 @@ from clearance.errors import BadSyntax, MissingFile
 from clearance.world.pairs import OBSTACLE
 
 FILE_NAME = "replay.npz"
-_FORMAT = 5
+_FORMAT = 6
 
 
 LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
@@ -83,6 +83,17 @@ class EarlierBody(NamedTuple):
     shown: np.ndarray
 
 
+class DrawnMoment(NamedTuple):
+    """A moment of one pair: its frame, clearance [m], index into `STATUSES`, witness points (6,) [m] in the world
+    frame, and the places of its two bodies, -1 where one is not drawn."""
+
+    frame: int
+    clearance: float
+    status: int
+    line: tuple[float, ...]
+    bodies: tuple[int, int]
+
+
 @dataclass(frozen=True)
 class DrawnRule:
     """A rule that frames are held against: its name and its limits [m]."""
@@ -98,7 +109,7 @@ class Replay:
 
     Attributes:
         rules: what frames are held against.
-        i_worst: the frame of the most critical moment.
+        worst: the most critical moment of what decides the verdict.
         n_steps: number of steps of the record; those of `steps` that are not `between` are frames.
         shapes: vertices (n, 3) float32 [m] and triangles (m, 3) int32 of each different shape.
         poses: for each body (frames, 7) or, where it stands still, (1, 7) float32: xyz [m] and
@@ -129,7 +140,7 @@ class Replay:
     poses: tuple[np.ndarray, ...]
     shown: tuple[np.ndarray, ...]
     carries: tuple[DrawnCarry, ...]
-    i_worst: int
+    worst: DrawnMoment
     steps: np.ndarray
     times: np.ndarray
     times_b: np.ndarray
@@ -145,6 +156,11 @@ class Replay:
     contacts: tuple[DrawnContact, ...] = ()
     regions: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
 
+    @property
+    def i_worst(self) -> int:
+        """The frame of the most critical moment."""
+        return self.worst.frame
+
     def save(self, path: Path) -> None:
         """Writes everything into one compressed file; the same replay gives the same bytes."""
         arrays = {name: getattr(self, name) for name in _FRAME_ARRAYS}
@@ -157,7 +173,7 @@ class Replay:
         head = {
             "format": _FORMAT,
             "name": self.name,
-            "i_worst": self.i_worst,
+            "worst": self.worst,
             "rules": [asdict(rule) for rule in self.rules],
             "carries": [asdict(carry) for carry in self.carries],
             "n_steps": self.n_steps,
@@ -200,11 +216,16 @@ def load_replay(path: Path) -> Replay:
         ) from None
 
 
+def _moment(row: list) -> DrawnMoment:
+    frame, clearance, status, line, bodies = row
+    return DrawnMoment(frame, clearance, status, tuple(line), tuple(bodies))
+
+
 def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
     n_shapes, n_bodies = head["n_shapes"], len(head["bodies"])
     return Replay(
         name=head["name"],
-        i_worst=head["i_worst"],
+        worst=_moment(head["worst"]),
         rules=tuple(DrawnRule(**rule) for rule in head["rules"]),
         carries=tuple(DrawnCarry(**carry) for carry in head["carries"]),
         n_steps=head["n_steps"],

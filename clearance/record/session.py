@@ -11,6 +11,7 @@ from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.moment import Moment
 from clearance.record.record import Record
 from clearance.record.rule_answer import NearRows, RuleAnswer
+from clearance.record.sensitivity import Sensitivity
 
 PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 """Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
@@ -43,6 +44,12 @@ class Session(Protocol):
 
     def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
         """The most critical moment, as if there were no other rules."""
+
+    def worst_sample_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
+        """The most critical step, as if there were no other rules."""
+
+    def sensitivity(self, rules: Sequence[RuleAnswer], moment: Moment) -> Sensitivity:
+        """The slopes of the clearance at a moment that one of the rules judges, of their pairs alone."""
 
     def of_pairs(
         self, is_meant: PairTest, need: str | None = None, levels: tuple[float, ...] = ()

@@ -14,6 +14,7 @@ import trimesh
 from trimesh.visual.material import PBRMaterial
 
 from clearance.geometry.shapes import cylinder, sphere
+from clearance.record.moment import Moment
 from clearance.record.record import Record
 from clearance.record.replay import Replay
 from clearance.report.still import Still, still_of
@@ -25,9 +26,13 @@ LINE_SHARE, DOT_SHARE = 1 / 1200, 1 / 500
 """Radii of the line and its dots, of the room's diagonal."""
 
 
-def glb_of(record: Record, replay: Replay) -> bytes:
-    """The file; the same record gives the same bytes."""
-    still, worst = still_of(replay), record.worst
+def glb_of(record: Record, replay: Replay, worst: Moment) -> bytes:
+    """The file; the same record gives the same bytes.
+
+    Args:
+        worst: the most critical moment, which the replay was made with.
+    """
+    still = still_of(replay)
     taken = {body.name for body in still.bodies}
     root, line = free_name(record.case.name, taken), free_name("witness line", taken)
     base = free_name("world", {*taken, root, line})

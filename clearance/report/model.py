@@ -22,6 +22,7 @@ from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.details import RunDetails
 from clearance.record.levels import Interval
 from clearance.record.record import PairMinimum, Record
+from clearance.record.sensitivity import Sensitivity
 from clearance.record.session import Session
 
 
@@ -88,6 +89,14 @@ class ReportModel:
     def verdict(self) -> Verdict:
         """What the run comes to, why, and what that rests on."""
         return verdict_of(self.record, self.waived, self.of_tolerances)
+
+    @cached_property
+    def sensitivity(self) -> Sensitivity:
+        """The slopes of the clearance at the most critical moment of what decides the verdict."""
+        worst, judgement = self.verdict.worst, self.waived
+        decided = judgement is not None and worst is judgement.worst
+        rules = judgement.judging if judgement and decided else self.record.rules
+        return self.session.sensitivity(rules, worst)
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:

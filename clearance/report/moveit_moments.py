@@ -10,7 +10,7 @@ of which none holds all of it.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,7 +58,7 @@ class _Entry:
 def moments_of(model: ReportModel) -> dict[str, Any]:
     """The file's content."""
     record = model.record
-    entries, names = _entries(record, model.details.minima), _Names(record.case)
+    entries, names = _entries(model), _Names(record.case)
     return {
         "format": FORMAT,
         "name": record.case.name,
@@ -70,16 +70,17 @@ def moments_of(model: ReportModel) -> dict[str, Any]:
     }
 
 
-def _entries(record: Record, minima: Sequence[PairMinimum]) -> list[_Entry]:
-    """The overall worst, then all that is not clear, the worst first."""
-    worst = _of_moment(record, record.worst)
+def _entries(model: ReportModel) -> list[_Entry]:
+    """The overall worst of what decides, then all that is not clear, the worst first."""
+    record = model.record
+    worst = _of_moment(record, model.verdict.worst)
     found = {worst.is_of: worst}
     for rule in record.rules:
         if rule.worst is not None:
             one = _of_moment(record, rule.worst)
             found.setdefault(one.is_of, one)
     judge = PairJudge.of(record)
-    for minimum in minima:
+    for minimum in model.details.minima:
         one = _of_pair(record, minimum, judge.status_of(minimum))
         found.setdefault(one.is_of, one)
     limits = {rule.name: rule.limits.fail for rule in record.rules}

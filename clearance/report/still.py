@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.record.replay import LINK, MOVING, PART, STANDING, DrawnBody, Replay
+from clearance.record.replay import LINK, MOVING, PART, STANDING, DrawnBody, DrawnMoment, Replay
 from clearance.record.status import STATUSES
 
 ROBOTS, LINK_IDLE = (0x5C7390, 0x7D6796, 0x4B7F78, 0x94705C), 0xA9B4C0
@@ -95,10 +95,11 @@ class Still:
 
 def still_of(replay: Replay) -> Still:
     """The most critical moment of a replay."""
-    frame = replay.i_worst
+    worst = replay.worst
+    frame = worst.frame
     seen = [i for i in range(len(replay.bodies)) if _at(replay.shown[i], frame)]
-    colour = rgb(COLOURS[str(STATUSES[int(replay.status[frame])])])
-    nearest = [seen.index(i) for i in replay.nearest[frame].tolist() if i in seen]
+    colour = rgb(COLOURS[str(STATUSES[worst.status])])
+    nearest = [seen.index(i) for i in worst.bodies if i in seen]
     bodies = tuple(
         StillBody(
             replay.bodies[i].name,
@@ -111,12 +112,16 @@ def still_of(replay: Replay) -> Still:
         for k, i in enumerate(seen)
     )
     shapes = tuple(as_solids(*shape) for shape in replay.shapes)
-    line, room = replay.lines[frame].reshape(2, 3), _room(replay)
+    line, room = np.reshape(worst.line, (2, 3)), _room(replay)
     for contact, region in zip(replay.contacts, replay.regions, strict=True):
-        if contact.frame == frame:
+        if (contact.frame, contact.link, contact.obstacle) == (frame, *_names(replay, worst)):
             way_out = np.array(contact.start), np.array(contact.direction)
             return Still(bodies, shapes, tuple(nearest), line, colour, room, region, way_out)
     return Still(bodies, shapes, tuple(nearest), line, colour, room)
+
+
+def _names(replay: Replay, worst: DrawnMoment) -> list[str]:
+    return [replay.bodies[i].name if i >= 0 else "" for i in worst.bodies]
 
 
 def rgb(code: int) -> np.ndarray:

@@ -207,6 +207,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
     depths_asked = question.contact != "none"
     worst = WorstMoments(contacts, depths_asked and run.answer.certificate is not None)
     sample = worst.at_steps(run.rules)
+    assert sample is not None, "the nearest pair of a run is known"
     return Record(
         case=case,
         motions=motions,

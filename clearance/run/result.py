@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from clearance.findings.judgement import Judgement
     from clearance.findings.verdict import Verdict
     from clearance.record.levels import Event
+    from clearance.record.replay import Replay
     from clearance.report.model import ReportModel
     from clearance.report.notebook import ShownPage
     from clearance.report.output import Drawings
@@ -77,25 +78,25 @@ class Run:
     def worst(self) -> dict:
         """The most critical moment, as a row of `steps`: worst against its rule, or least clearance without rules.
 
+        Beside waivers it is of what decides the verdict, though a waived pair may be nearer.
+
         Bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`. If the certificate
         found a worse moment between two steps, `between` is true and `step` is the step before it. In contact it
         is the deepest moment, with its `penetration` if that is known.
         """
-        moment = self.record.worst
-        if moment is self.record.worst_sample:
-            return self.worst_sample
-        return self._of_moment(moment) | {"between": True, "status": self.record.status_of(moment)}
+        return self._of_moment(self.verdict.worst)
 
     @property
     def worst_sample(self) -> dict:
         """The row of the most critical step, with the status of that step alone: the deepest in contact, else
         the first."""
-        return self._of_moment(self.record.worst_sample)
+        return self._of_moment(self.verdict.worst_sample)
 
     def _of_moment(self, moment: Moment) -> dict:
         """The row of a moment's step, with what is so at that moment of its pair."""
         row = self._row(moment.step)
         measured = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
+        measured |= {"between": moment.between, "status": self.record.status_of(moment)}
         for sides in (SIDES, LINK_AND_OBSTACLE):
             measured |= _measured_columns(sides, moment)
         if "time_b" in row:
@@ -230,9 +231,13 @@ class Run:
     def _drawn(self, earlier: Run | None = None) -> Drawings:
         from clearance.report.output import Drawings
 
-        replay = self.session.replay(self.rows)
+        replay = self.replay()
         before = [] if earlier is None else earlier.session.earlier_motion(replay)
         return Drawings(replay, self.session.pictures, before)
+
+    def replay(self) -> Replay:
+        """The drawing data of the run."""
+        return self.session.replay(self.rows, self.verdict.worst)
 
     def show(self, height: int = 800) -> ShownPage:
         """The page of the report, with verdict, curve and replay: a notebook shows it, else the browser opens it.

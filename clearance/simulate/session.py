@@ -80,6 +80,10 @@ class MeasuringSession(MeasuredRun):
         """The most critical moment, in contact the deepest, as if there were no other rules."""
         return self._worst.among([self.measured(rule) for rule in rules])
 
+    def worst_sample_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
+        """The most critical step, in contact the deepest, as if there were no other rules."""
+        return self._worst.at_steps([self.measured(rule) for rule in rules])
+
     @cached_property
     def _worst(self) -> WorstMoments:
         record = self.record
@@ -115,12 +119,12 @@ class MeasuringSession(MeasuredRun):
         """The number of intervals of a level, and of the steps in them."""
         return intervals.extent(self, level)
 
-    @cached_property
-    def sensitivity(self) -> Sensitivity:
-        """The slopes of the clearance at the worst moment."""
+    def sensitivity(self, rules: Sequence[RuleAnswer], moment: Moment) -> Sensitivity:
+        """The slopes of the clearance at a moment that one of the rules judges, of their pairs alone."""
         from clearance.simulate.answers.sensitivity import sensitivity_of
 
-        return sensitivity_of(self)
+        own = [self.measured(rule) for rule in rules if rule.name == moment.rule]
+        return sensitivity_of(own, moment)
 
     @cached_property
     def hints(self) -> tuple[str, ...]:
@@ -132,11 +136,15 @@ class MeasuringSession(MeasuredRun):
         """The names of the measured bodies that never move."""
         return standing_bodies(self.record)
 
-    def replay(self, rows: MeasuredRows = IN_MEMORY) -> Replay:
-        """The drawing data of the run; `rows`: where its rows are."""
+    def replay(self, rows: MeasuredRows = IN_MEMORY, worst: Moment | None = None) -> Replay:
+        """The drawing data of the run.
+
+        Args:
+            rows: where its rows are. worst: the most critical moment; that of the record if it is not given.
+        """
         from clearance.simulate.replay.replay import replay_of
 
-        return replay_of(self, rows=rows)
+        return replay_of(self, rows=rows, worst=worst)
 
     def curve_moments(self) -> list[Moment]:
         """The moments between the steps that a chart shows, in order of time."""
@@ -172,7 +180,6 @@ class MeasuringSession(MeasuredRun):
             intervals=self.intervals,
             events=self.events,
             not_listed=self.not_listed,
-            sensitivity=self.sensitivity,
             hints=self.hints,
             standing=self.standing_bodies,
             left={

@@ -104,7 +104,7 @@ def moments_of(replay: Replay) -> Iterator[tuple[str, float]]:
     """Moments to look at, each with its time [s]: the worst, where each limit is entered first, pick-ups, the
     deepest contact."""
     worst = replay.i_worst
-    micrometres = math.floor(replay.clearances[worst] * 1e6)  # down: never more than was measured
+    micrometres = math.floor(replay.worst.clearance * 1e6)  # down: never more than was measured
     time = float(replay.times[worst])
     move = replay.moves[replay.move[worst]] if replay.move[worst] >= 0 else ""
     yield f"worst: {micrometres / 1000:.3f} mm at {seconds(time, move)}", time

@@ -7,16 +7,22 @@ import io
 import itertools
 from datetime import date
 
+import numpy as np
 import pytest
 from rich.console import Console
 
+from clearance.batch.rows import row_of
 from clearance.case.waiver_file import load_waivers
 from clearance.errors import BadInput
+from clearance.report.glb import glb_of
 from clearance.report.model import PageContent
+from clearance.report.moveit_moments import moments_of
+from clearance.report.still import still_of
 from clearance.report.terminal import print_answer
 from clearance.report.topics.verdict import header
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
+from clearance.view.playback import moments_of as moments_of_replay
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.report.made import page_of
@@ -146,6 +152,9 @@ def test_what_fails_beside_a_waiver_is_told_first(tmp_path):
     pair = shown["pairs"][shown["worst_pair"]]
     assert [shown["bodies"][i]["name"] for i in pair["bodies"]] == ["box", B]
     assert printed(checked(tmp_path / "alone", NEAR_A))[0].endswith("): box - gate_a")
+    near = checked(tmp_path / "near", NEAR_A | {B: (0.5, 0.015)}, waiver())
+    assert (near.status, near.worst["obstacle"]) == ("near", B)
+    assert "15.00 mm, below the warn limit of 20 mm: box - gate_b" in printed(near)[0]
 
 
 def test_a_file_of_waivers(tmp_path):
@@ -234,3 +243,26 @@ def test_a_pair_that_only_dips_between_the_steps_while_a_waived_one_is_nearer_is
     run = answer(Question(dataclasses.replace(case, waivers=(waiver(),)), today=TODAY))
     assert not run.passed and run.verdict.n_waivers == 1
     assert [f.body_b for f in run.findings if f.fails] == [B]
+
+
+def test_every_answer_of_one_moment_is_of_what_fails(tmp_path):
+    """Gate b fails with 4.5 mm while gate a, nearer and waived, is beside it: slopes are of b alone."""
+    run = checked(tmp_path, TOGETHER, waiver())
+    assert (run.worst["obstacle"], run.worst["status"]) == (B, VIOLATED)
+    assert run.worst["clearance"] == run.worst_sample["clearance"] == pytest.approx(0.0045)
+    row, (moment, *_) = row_of(run), moments_of(run.report)["moments"]
+    assert (row["body_b"], row["clearance"]) == (B, run.worst["clearance"])
+    assert [body.get("id") for body in moment["bodies"]] == [None, B]
+    slopes = run.summary["sensitivity"]
+    assert slopes["pairs"] == [["box", B]]
+    of_gates = {
+        (one["of"], one["name"]): one["more"]
+        for one in slopes["rates"]
+        if one["kind"] == "obstacle"
+    }
+    assert of_gates == pytest.approx({(B, "x"): 0.0, (B, "y"): 1.0, (B, "z"): 0.0}, abs=1e-6)
+    still, replay = still_of(run.replay()), run.replay()
+    assert [still.bodies[i].name for i in still.nearest] == ["box", B]
+    assert np.linalg.norm(still.line[1] - still.line[0]) == pytest.approx(0.0045)
+    assert f'"bodies":["box","{B}"]'.encode() in glb_of(run.record, replay, run.verdict.worst)
+    assert next(text for text, _ in moments_of_replay(replay)).startswith("worst: 4.500 mm")

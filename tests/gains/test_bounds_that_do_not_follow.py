@@ -138,5 +138,5 @@ def test_a_stretch_that_is_kept_is_kept_between_samples_too(keep, is_kept):
 
 def test_no_report_says_what_a_base_does_to_a_part_in_hand():
     wall = standing("wall", cl.box((0.1, 0.4, 0.4)), (-1.12, 0.0, 0.0))
-    rates = cl.check(part_over_to(wall)).session.sensitivity.rates
+    rates = cl.check(part_over_to(wall)).report.sensitivity.rates
     assert {rate.kind for rate in rates} == {"joint", "obstacle"}

@@ -48,7 +48,7 @@ def test_parquet_is_the_table(tmp_path):
 
 
 def table_of(case):
-    data = sensitivity_data(cl.check(case).session.sensitivity)
+    data = sensitivity_data(cl.check(case).report.sensitivity)
     return data, repr(sensitivity_blocks(data, several_robots=False))
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from clearance.findings.verdict import Verdict
 from clearance.record.certificate import Certificate
 from clearance.record.names import LINK_AND_OBSTACLE
 from clearance.record.record import CrossCheck, Disagreement, Record
@@ -125,7 +126,7 @@ def _waivers_of_others(case: Case) -> list[str]:
 def lines(model: ReportModel) -> Iterator[Line]:
     """What is proven, what facets may hide, what a peer says, notes."""
     record = model.record
-    yield from _certified_lines(record)
+    yield from _certified_lines(record, model.verdict)
     bound = tessellation_bound(record)
     if bound > 0.01 * record.worst.clearance and bound != 0.0:
         told = f"round shapes stand up to {bound * 1000:.3g} mm outside the true surfaces: a clearance can be "
@@ -145,14 +146,14 @@ def _repeats_last(notes: Sequence[str]) -> list[str]:
     return [notes[i] for i in sorted(range(len(notes)), key=lambda i: begun[i] in begun[:i])]
 
 
-def _certified_lines(record: Record) -> Iterator[Line]:
+def _certified_lines(record: Record, verdict: Verdict) -> Iterator[Line]:
     if record.certificate is None:
         yield "certified", "no: the motion between the samples is not checked"
         return
     told = certified_of(record, record.certificate)
     yield "certified", certified_text(record.moves.named(told))
-    sample = record.worst_sample
-    if record.worst is not sample:
+    sample = verdict.worst_sample
+    if verdict.worst.between:
         at = seconds(sample.time, record.moves.at(sample.time))
         near = f"{mm(sample.clearance)} mm at step {sample.step}, {at}"
         yield "samples", f"{near}: {sample.link} - {sample.obstacle}"

@@ -36,15 +36,12 @@ _PER = {"rad": (math.radians(1.0) * 1e3, "1°"), "m": (1.0, "1 mm")}
 
 def data(model: ReportModel) -> dict[str, Any]:
     """The worst moment of the motion, of the samples, the nearest whatever judges it, and slopes."""
-    record, worst = model.record, model.verdict.worst
-    slopes = Sensitivity(why_not="a waived pair is more critical")
-    if worst is record.worst:
-        slopes = model.details.sensitivity
+    record, verdict = model.record, model.verdict
     return {
-        "worst": _worst(record, worst),
-        "worst_sample": _worst(record, record.worst_sample),
+        "worst": _worst(record, verdict.worst),
+        "worst_sample": _worst(record, verdict.worst_sample),
         "nearest": told_moment(record, record.nearest),
-        "sensitivity": sensitivity_data(slopes),
+        "sensitivity": sensitivity_data(model.sensitivity),
     }
 
 

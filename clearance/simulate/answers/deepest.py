@@ -22,11 +22,10 @@ class WorstMoments:
     contacts: ContactRows | tuple[()]
     between: bool
 
-    def at_steps(self, rules: Sequence[MeasuredRule]) -> Moment:
-        """The most critical step; without rules, the first of least clearance."""
+    def at_steps(self, rules: Sequence[MeasuredRule]) -> Moment | None:
+        """The most critical step; without rules, the first of least clearance; None where none is known."""
         worst = standing_worst((rule, rule.worst_sample) for rule in rules)
-        assert worst is not None
-        return self._deepest_of(rules, worst)
+        return None if worst is None else self._deepest_of(rules, worst)
 
     def of_motion(self, rules: Sequence[MeasuredRule], sample: Moment) -> Moment:
         """The most critical moment of the motion; `sample` is `at_steps`."""

@@ -1,4 +1,4 @@
-"""What the clearance of the worst moment changes by, with each joint, base and obstacle: one-sided, exact.
+"""What the clearance of a moment changes by, with each joint, base and obstacle: one-sided, exact.
 
 The distance of two bodies has a slope each way in whatever moves them, and the two differ where several nearest
 points, or several pairs, are as near: parallel faces, a body midway between two. So every pair within `BAND` of
@@ -7,7 +7,7 @@ the nearest is measured again a step of `STEP` either way, and each way the leas
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,8 +16,8 @@ import numpy as np
 from clearance.query.pair_query import Query
 from clearance.record.moment import Moment
 from clearance.record.sensitivity import NO_SLOPE, Rate, Sensitivity
-from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
+from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.answers.transfers import Transfers
 from clearance.simulate.measure.sections import Section
 from clearance.world.case import Case
@@ -34,17 +34,16 @@ LEAST = 1e-5
 """[m] Bodies that are nearer have no lasting slope: they count as touching."""
 
 
-def sensitivity_of(run: MeasuredRun) -> Sensitivity:
-    """That of the most critical moment."""
-    moment = run.record.worst
+def sensitivity_of(rules: Sequence[MeasuredRule], moment: Moment) -> Sensitivity:
+    """That of a moment, of the pairs that some rules judge."""
     if moment.touches:
         return Sensitivity(why_not="the bodies are in contact")
     if moment.time_b is not None:
         return Sensitivity(why_not="the clocks of the bodies are not tied")
-    pairs = run.measured(run.record.rule(moment.rule)).pairs
-    if pairs is None:
+    if any(rule.pairs is None for rule in rules):
         return Sensitivity(why_not="only the nearest pair of each step is known")
-    sections = [one.section for one in pairs.answers if _covers(one.section, moment)]
+    answers = [answer for rule in rules if rule.pairs for answer in rule.pairs.answers]
+    sections = [one.section for one in answers if _covers(one.section, moment)]
     near = [found for section in sections for found in _near(section, moment)]
     if not any({*one.names} == {moment.link, moment.obstacle} for one in near):
         return Sensitivity(why_not="its pair is not measured at one time")

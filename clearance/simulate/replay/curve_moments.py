@@ -30,12 +30,12 @@ FINE = 200
 """Parts of a run; each has a frame, even if samples are farther from each other in time."""
 
 
-def curve_moments(run: MeasuredRun) -> list[Moment]:
-    """The moments, in order of time, with the most critical and the nearest of all among them."""
+def curve_moments(run: MeasuredRun, worst: Moment | None = None) -> list[Moment]:
+    """The moments, in order of time; `worst`, the most critical and the nearest of all are among them."""
     record = run.record
     if record.certificate is None:
         return []
-    reported = [one for one in (record.nearest, record.worst) if one.between]
+    reported = [one for one in (worst, record.nearest, record.worst) if one and one.between]
     found = [*_evenly(run), *_dips(run.rules), *reported]  # of one moment the last counts
     each = {(one.step, one.share): one for one in found}
     return [each[key] for key in sorted(each)]

@@ -14,9 +14,18 @@ import numpy as np
 from clearance.record.contact import StepContact
 from clearance.record.moment import Moment
 from clearance.record.record import Record
-from clearance.record.replay import LINK, DrawnBody, DrawnContact, DrawnRule, EarlierBody, Replay
+from clearance.record.replay import (
+    LINK,
+    DrawnBody,
+    DrawnContact,
+    DrawnMoment,
+    DrawnRule,
+    EarlierBody,
+    Replay,
+)
 from clearance.record.row_status import rule_places
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
+from clearance.record.status import STATUSES, Status
 from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.replay.bodies import (
     FramePlace,
@@ -40,14 +49,22 @@ MAX_FRAMES = 3000
 
 
 def replay_of(
-    run: MeasuredRun, max_frames: int = MAX_FRAMES, rows: MeasuredRows = IN_MEMORY
+    run: MeasuredRun,
+    max_frames: int = MAX_FRAMES,
+    rows: MeasuredRows = IN_MEMORY,
+    worst: Moment | None = None,
 ) -> Replay:
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
     keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
     the deepest contact, and where something changes hands, comes or goes; and moments between them:
-    where the motion is nearer, and on the way where steps are far from each other."""
-    record, steps = run.record, frame_steps(run, max_frames)
-    moments = curve_moments(run)
+    where the motion is nearer, and on the way where steps are far from each other.
+
+    Args:
+        worst: the most critical moment; that of the record if it is not given.
+    """
+    record = run.record
+    worst = worst or record.worst
+    steps, moments = frame_steps(run, max_frames, worst), curve_moments(run, worst)
     contacts, regions = drawn_contacts(run, steps)
     frames = ReplayFrames.of(record, steps, moments, rows)
     indices = bodies_of(record.case)
@@ -68,8 +85,8 @@ def replay_of(
         poses=tuple(packed(poses) for poses in drawn.poses),
         shown=tuple(_once(shown.astype(np.uint8)) for shown in drawn.shown),
         carries=carries_of(record, indices),
-        i_worst=_frame_of(record.worst, frames),
-        nearest=_nearest(bodies, frames),
+        worst=_drawn_worst(record, worst, frames, bodies),
+        nearest=_places_of(bodies, [one.pair for one in frames.places]),
         move=move.astype(np.int32),
         moves=tuple(moves),
         contacts=tuple(replace(one, frame=place_of[int(steps[one.frame])]) for one in contacts),
@@ -91,20 +108,34 @@ def _frame_of(moment: Moment, frames: ReplayFrames) -> int:
     return int(np.argmax(is_it))
 
 
-def _nearest(bodies: Sequence[DrawnBody], frames: ReplayFrames) -> np.ndarray:
-    """(frames, 2) int32 the places of the two bodies of each frame; of a name that is a link's and an obstacle's
-    the first is the link."""
+def _drawn_worst(
+    record: Record, moment: Moment, frames: ReplayFrames, bodies: Sequence[DrawnBody]
+) -> DrawnMoment:
+    """The most critical moment, of its own pair: another may be nearer in its frame, and waived."""
+    code = STATUSES.index(Status(record.status_of(moment)))
+    first, second = _places_of(bodies, [(moment.link, moment.obstacle)])[0].tolist()
+    line = (*map(float, moment.point_link), *map(float, moment.point_obstacle))
+    return DrawnMoment(
+        _frame_of(moment, frames), float(moment.clearance), code, line, (first, second)
+    )
+
+
+def _places_of(
+    bodies: Sequence[DrawnBody], named: Sequence[tuple[str | None, str | None]]
+) -> np.ndarray:
+    """(n, 2) int32 the places of the two bodies of pairs; of a name that is a link's and an obstacle's the first
+    is the link."""
     links, others = (
         {body.name: i for i, body in enumerate(bodies) if (body.kind == LINK) == is_link}
         for is_link in (True, False)
     )
     none: dict[str | None, int] = {None: -1}
     first, second = none | others | links, none | links | others
-    pairs = [(first[a], second[b]) for a, b in (one.pair for one in frames.places)]
+    pairs = [(first[a], second[b]) for a, b in named]
     return np.array(pairs, dtype=np.int32).reshape(-1, 2)
 
 
-def frame_steps(run: MeasuredRun, max_frames: int) -> np.ndarray:
+def frame_steps(run: MeasuredRun, max_frames: int, worst: Moment) -> np.ndarray:
     """(frames,) int64 increasing step indices: all, or the choice that `replay_of` describes."""
     record = run.record
     clearances = _row_margins(record)
@@ -114,7 +145,9 @@ def frame_steps(run: MeasuredRun, max_frames: int) -> np.ndarray:
     pair_steps = [minimum.step for minimum in run.pair_minima()]
     deepest = [] if record.deepest is None else [record.deepest.step]
     turns = [phase.first for phase in record.timeline.phases[1:]][: max_frames // 4]
-    reported = [moment.step for moment in (record.worst, record.nearest) if not moment.between]
+    reported = [
+        moment.step for moment in (record.worst, record.nearest, worst) if not moment.between
+    ]
     selected = {0, n_steps - 1, record.worst_step, *pair_steps, *deepest, *turns, *reported}
     edges = np.linspace(0, n_steps, max(1, (max_frames - len(selected)) // 2) + 1).astype(np.int64)
     starts = np.unique(edges[:-1])

@@ -15,7 +15,7 @@ Z = np.array([0.0, 0.0, 1.0])
 
 
 def rates_of(case):
-    found = cl.check(case).session.sensitivity
+    found = cl.check(case).report.sensitivity
     assert not found.why_not
     return found, {(rate.kind, rate.of, rate.name): rate for rate in found.rates}
 
@@ -91,7 +91,7 @@ def test_a_turn_is_as_differences_say(tilt):
 
 def test_two_that_touch_have_none():
     case = cl.Case("hit", (along_x(gantry()),), (standing("post", cl.box((0.1,) * 3), (0, 0, 0)),))
-    assert "contact" in cl.check(case).session.sensitivity.why_not
+    assert "contact" in cl.check(case).report.sensitivity.why_not
 
 
 def test_padding_changes_no_slope():

@@ -21,7 +21,7 @@ def test_a_short_run_is_kept_whole():
 @pytest.mark.parametrize("max_frames", [30, 50, 333])
 def test_a_long_run_keeps_the_least_of_every_stretch(max_frames):
     run = record(n_steps=1200)
-    kept = frame_steps(run_of(run).session, max_frames)
+    kept = frame_steps(run_of(run).session, max_frames, run.worst)
     assert len(kept) <= max_frames
     assert (np.diff(kept) > 0).all()
     assert {0, 1199, run.worst_step, *(minimum.step for minimum in run_of(run).pair_minima)} <= set(
