@@ -107,8 +107,9 @@ class WorstMoments:
 
 def _sources(low: _LowMoment) -> list[tuple[SourceKey, ErrorSource]]:
     """The loss by each error at a moment, the greatest first."""
-    section, pairs, moment = low.section, low.section.pairs, _measured(low)
-    case, budget = section.section.phase.case, pairs.budget
+    section, moment = low.section, _measured(low)
+    case, budget = section.section.phase.case, section.pairs.budget
+    pairs = _alone(low)
     by_key: dict[SourceKey, list[Slope]] = {}
     for slope in slopes(case, budget, _witness(low, moment)):
         by_key.setdefault(slope.key, []).append(slope)
@@ -131,9 +132,16 @@ def _deviation(own: list[Slope], budget: Budget) -> float:
     return float(np.sqrt(sum(float(variance_of(slope, budget)[0]) for slope in own)))
 
 
-def _at(pairs: PairsWithErrors, low: _LowMoment) -> float:
-    """[m] the bound on all pairs at a moment."""
-    found = pairs.at(low.moments, np.array([low.pair]), np.array([np.nan]))
+def _alone(low: _LowMoment) -> PairsWithErrors:
+    """The pair without all others: one of those could be nearer as soon as an error is taken away."""
+    pairs = low.section.pairs
+    what = replace(pairs.what, pairs=(pairs.what.pairs[low.pair],))
+    return PairsWithErrors(what, pairs.budget)
+
+
+def _at(alone: PairsWithErrors, low: _LowMoment) -> float:
+    """[m] the bound on a pair alone at a moment."""
+    found = alone.at(low.moments, np.zeros(1, dtype=np.int64), np.array([np.nan]))
     return float(found.proven[0])
 
 

@@ -153,3 +153,14 @@ def test_sources_are_told_for_each_moment():
         assert one.proven == pytest.approx(0.004, abs=EXACT)
         assert one.expected == pytest.approx(0.004 / np.sqrt(3.0), abs=EXACT)
         assert one.largest == pytest.approx((0.01,), rel=0.003)  # twice as much is left as is asked
+
+
+def test_an_error_takes_its_own_loss_though_another_pair_is_next():
+    """Two walls, 0.1 mm apart, may each stand 10 mm nearer: without the error of one, the other is the nearest."""
+    near, far = wall(END - 0.1), wall(END - 0.1001)
+    far = replace(far, body=replace(far.body, name="far"))
+    placed = ObstacleTolerance(PlacementTolerance(0.01))
+    case = replace(slid(Budget({}, {"wall": placed, "far": placed})), obstacles=(cube(), near, far))
+    run = cl.check(case)
+    (source,) = run.session.error_sources(run.record.budget[0]).sources
+    assert (source.owner, source.proven) == ("wall", pytest.approx(0.01, abs=EXACT))

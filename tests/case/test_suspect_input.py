@@ -142,6 +142,11 @@ def test_the_usual_is_not_suspect(tmp_path):
     [
         ('xyz="0 0 0.1" rpy="0 0 0"', 'rpy="0 0 90"', "joint 'shoulder' has an angle of 90 rad"),
         ('xyz="0 0 0.1" rpy="0 0 0"', 'rpy="0 0 5"', "joint 'shoulder' has an angle of 5 rad"),
+        (
+            'lower="-1" upper="1"',
+            'lower="-140" upper="140"',
+            "joint 'shoulder' has a limit of 140 rad",
+        ),
         ('xyz="0 0 0.1" rpy="0 0 0"', 'xyz="0 0 50"', "joint 'shoulder' stands 50 m away"),
         ('xyz="0 0 0.5"', 'xyz="0 0 500"', "the shape of link 'upper' stands 500 m away"),
     ],

@@ -276,7 +276,7 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
             OBJECT % "meshes: [{vertices: [[0, 0, 0]], triangles: [[0, 0, 1]]}]",
             "triangle [0, 0, 1] of 1 vertices",
         ),
-        (OBJECT % f"{SPHERE}, primitve_poses: [{{}}]", "unknown field 'primitve_poses'; did you mean 'primitive_poses'?"),
+        (OBJECT % f"{SPHERE}, primitve_poses: [{{}}]", "'primitve_poses'; did you mean 'primitive_poses'?"),
         (OBJECT % f"{SPHERE}, pose: {{postion: [1, 0, 0]}}", "unknown field 'postion'; did you mean 'position'?"),
         ("world: {collision_object: []}", "world: unknown field 'collision_object'"),
         (OBJECT % "meshes: [{resource: none.stl}]", "there is no mesh 'none.stl'"),

@@ -134,9 +134,20 @@ def checked_document(root: Element) -> Element:
     return root
 
 
-def odd_origins(root: Element) -> list[str]:
-    """The elements of a checked document whose origins have angles that look like degrees."""
+TURNS = 4.0 * math.pi
+"""[rad] No revolute joint turns farther than this from its zero; one that may is continuous."""
+
+UNLIMITED = 720.0
+"""[rad] Limits above this stand for none: 1000, 9999, 1e16."""
+
+
+def odd_angles_of(root: Element) -> list[str]:
+    """The elements of a checked document whose origins or limits have angles that look like degrees."""
     odd = []
+    for limit in root.iterfind("joint[@type='revolute']/limit"):
+        ends = [abs(number(limit, end, 0.0)) for end in ("lower", "upper")]
+        if TURNS < max(ends) <= UNLIMITED:
+            odd.append(f"joint {limit.getparent().get('name')!r} has a limit of {max(ends):g} rad")
     for origin in root.iter("origin"):
         owner = origin.getparent()
         if owner.tag != "joint":

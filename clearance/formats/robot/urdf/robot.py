@@ -25,7 +25,7 @@ from clearance.formats.robot.tree import links_from_root
 from clearance.formats.robot.urdf.axis_check import axis_notices
 from clearance.formats.robot.urdf.elements import (
     checked_document,
-    odd_origins,
+    odd_angles_of,
     reduced_document,
     without_empty_shapes,
 )
@@ -86,7 +86,7 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         reader = ShapeReader(request, meshes)
         bodies = [body for link in links if (body := _body(link, reader)) is not None]
         notices = [
-            *angle_notices(odd_origins(root)),
+            *angle_notices(odd_angles_of(root)),
             *reader.notices(),
             *axis_notices(links, bodies, ordered, reader),
             *unseen(kinds, request.geometry),
