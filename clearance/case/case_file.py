@@ -21,6 +21,7 @@ from clearance.case.allow import (
     require_patterns,
 )
 from clearance.case.case_document import ScenePlace, read_schema
+from clearance.case.case_list import refuse_folder
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.packed import require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
@@ -162,6 +163,7 @@ class CellFile:
 
 
 def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
+    refuse_folder(path)
     meshes = MeshStore(files)
     given, scene_at = read_schema(path, files, model)
     entries = given.entries()

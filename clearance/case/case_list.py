@@ -1,11 +1,15 @@
-"""A file that is a case, or lists cases by patterns: which cases it means. Not for: reading them (`case_file`)."""
+"""A file that is a case, or lists cases by patterns: which cases it means; and which lie in a folder.
+
+Not for: reading them (`case_file`).
+"""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
-from clearance.errors import BadInput, MissingFile
+from clearance.errors import NEAREST_NAMES, BadInput, MissingFile
 from clearance.formats.files.input_files import read_bytes
 from clearance.plain_yaml import parse_yaml
 
@@ -32,12 +36,35 @@ def cases_in(path: Path) -> list[Path]:
     return list(found)
 
 
+_OF_CASE = re.compile(rb"^(robots?|cell)\s*:", re.MULTILINE)
+"""A key at the start of a line that case files have."""
+
+
+def refuse_folder(path: Path) -> None:
+    """Refuses a folder where a case file is needed, and names the cases in it.
+
+    Raises:
+        MissingFile: it is one.
+    """
+    if not path.is_dir():
+        return
+    found = [*path.glob("*.yaml"), *path.glob("*.yml"), *path.glob("*/case.yaml")]
+    cases = [one for one in sorted(found) if one.is_file() and _OF_CASE.search(one.read_bytes())]
+    beside = [one for one in cases if one.parent == path] or cases
+    named = [one for one in beside if one == path / "case.yaml"] or beside
+    told = ", ".join(str(one) for one in named[:NEAREST_NAMES])
+    more = f" and {len(named) - NEAREST_NAMES} more" if len(named) > NEAREST_NAMES else ""
+    valid = f"a case in it: {told}{more}" if named else "no case is in it; a case file is needed"
+    raise MissingFile(f"{str(path)!r} is a folder", valid=valid)
+
+
 def mapping_in(path: Path) -> dict[str, Any]:
     """What is in a YAML file, unchecked.
 
     Raises:
         MissingFile, BadSyntax: no YAML file. BadInput: no mapping is in it.
     """
+    refuse_folder(path)
     content = parse_yaml(read_bytes(path, path.name), path.name)
     if not isinstance(content, dict):
         raise BadInput("no mapping", where=path.name, valid="a case, or cases: [a pattern, …]")

@@ -160,8 +160,10 @@ def _require_file(case_file: Path) -> None:
     Raises:
         MissingFile: as when it is read.
     """
+    from clearance.case.case_list import refuse_folder
     from clearance.formats.files.input_files import require_file
 
+    refuse_folder(case_file)
     require_file(case_file, case_file.name)
 
 

@@ -13,7 +13,9 @@ from pathlib import Path
 import pytest
 
 import clearance.crosscheck as crosscheck
+from clearance.case.case_file import load_case
 from clearance.cli import run
+from clearance.errors import MissingFile
 from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY
 from tests.cart import URDF
@@ -204,6 +206,21 @@ def test_a_case_that_is_not_there(folder, capsys):
 def test_bad_arguments_are_one_line_and_exit_2(folder, capsys, arguments, named):
     (folder / "link").symlink_to("nowhere")
     assert_refused(folder, check(capsys, *arguments), named)
+
+
+def test_a_folder_names_the_cases_in_it(folder, capsys):
+    """The case of that name, or else all; a file without a robot is none."""
+    (folder / "other.yaml").write_text(CASE)
+    (folder / "scene.yaml").write_text("obstacles: []\n")
+    (folder / "empty").mkdir()
+    for given, told in ((".", "a case in it: case.yaml ["), ("empty", "no case is in it")):
+        assert_refused(folder, check(capsys, case=given), told)
+    (folder / "case.yaml").rename(folder / "empty" / "case.yaml")
+    assert_refused(folder, check(capsys, case="."), "a case in it: other.yaml [")
+    (folder / "other.yaml").unlink()
+    assert_refused(folder, check(capsys, case="."), "a case in it: empty/case.yaml [")
+    with pytest.raises(MissingFile, match="a case in it: "):
+        load_case(folder / "empty")
 
 
 def assert_refused(folder: Path, done: tuple[int, str, str], named: str) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -108,8 +108,12 @@ def brought_path(given: str) -> Path | None:
     if folder is None:
         raise Unavailable(f"{given!r} needs the package {provider.name}", valid=provider.installs)
     path = folder / rest.lstrip("/")
-    if path.is_file() or "/" in rest or Path(rest).suffix:
+    if path.is_file():
         return path
+    if "/" in rest or Path(rest).suffix:
+        if path.exists():
+            return path
+        raise _missing(provider.name, f"file {rest!r}", rest, _files(folder, Path(rest).suffix))
     known = robot_names(folder)
     found = known.get(rest, [])
     if len(found) == 1:
@@ -118,13 +122,19 @@ def brought_path(given: str) -> Path | None:
         raise MissingFile(f"{given!r} may be any of several", valid=f"one of {', '.join(found)}")
     if path.exists():
         return path
-    raise MissingFile(f"{provider.name} brings no robot {rest!r}", valid=nearest_name(rest, known))
+    raise _missing(provider.name, f"robot {rest!r}", rest, known)
+
+
+def _missing(provider: str, told: str, given: str, known: Iterable[str]) -> MissingFile:
+    """What a package does not bring, with the nearest name of what it does."""
+    valid = f"{nearest_name(given, known)} (`clearance robots {provider}` lists its robots)"
+    return MissingFile(f"{provider} brings no {told}", valid=valid)
 
 
 def robot_names(folder: Path) -> dict[str, list[str]]:
     """The paths of the URDF files below a folder, by the names that they go by: that of the file, if it says which
     robot it is; also without `_robot` at its end where no file has that name."""
-    paths = sorted(path.relative_to(folder).as_posix() for path in _urdf_files(folder))
+    paths = sorted(_files(folder, ".urdf"))
     names: dict[str, list[str]] = {}
     for path in paths:
         stem = Path(path).stem
@@ -134,10 +144,12 @@ def robot_names(folder: Path) -> dict[str, list[str]]:
     return names
 
 
-def _urdf_files(folder: Path) -> Iterator[Path]:
+def _files(folder: Path, suffix: str) -> Iterator[str]:
+    """The files below a folder that end so, as seen from it, with `/`."""
     for place, folders, files in os.walk(folder):
         folders[:] = [one for one in folders if one != ".git"]
-        yield from (Path(place, file) for file in files if file.endswith(".urdf"))
+        own = Path(place).relative_to(folder)
+        yield from ((own / file).as_posix() for file in files if file.endswith(suffix))
 
 
 def brought_folders() -> dict[str, str]:
