@@ -8,6 +8,7 @@ know. Not for: programming errors of our own, which stay `AssertionError`.
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,8 +19,24 @@ MOST_NAMES, NEAREST_NAMES = 40, 5
 """Valid names that a message lists in full, and those that it lists of more."""
 
 
+_UNPACKED: list[str] = []
+"""Folders that packed files lie in for as long as this process lasts, each with the separator at its end."""
+
+
+def names_within(folder: Path) -> None:
+    """Lets messages name what lies in a folder, into which a file is unpacked, as seen from it."""
+    _UNPACKED.append(f"{folder}{os.sep}")
+
+
+def is_unpacked(path: str) -> bool:
+    """Whether a file lies in such a folder."""
+    return path.startswith(tuple(_UNPACKED))
+
+
 def shown(text: str) -> str:
-    """The text with everything escaped that a terminal would not show as it is."""
+    """The text with everything escaped that a terminal would not show as it is, and without unpacked folders."""
+    for folder in _UNPACKED:
+        text = text.replace(folder, "")
     if text.isprintable():
         return text
     return "".join(

@@ -5,6 +5,7 @@ Not for: reading them (`case_file`).
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -46,7 +47,7 @@ def refuse_folder(path: Path) -> None:
     Raises:
         MissingFile: it is one.
     """
-    if not path.is_dir():
+    if not os.path.isdir(path):
         return
     found = [*path.glob("*.yaml"), *path.glob("*.yml"), *path.glob("*/case.yaml")]
     cases = [one for one in sorted(found) if one.is_file() and _OF_CASE.search(one.read_bytes())]

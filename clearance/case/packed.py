@@ -23,7 +23,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from clearance.errors import BadPack, at
+from clearance.errors import BadPack, at, names_within
 from clearance.formats.files.input_files import regular_file
 from clearance.formats.files.mesh_paths import VARIABLES
 from clearance.formats.files.place import Place, reading_in
@@ -148,6 +148,7 @@ def unpacked(path: Path) -> Iterator[Unpacked | None]:
 def _unpacked(path: Path, sha256: str) -> Unpacked:
     """The zip with this sha256; once in a process."""
     folder = Path(tempfile.mkdtemp(prefix="clearance-"))
+    names_within(folder)
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     try:
         with zipfile.ZipFile(path) as archive:

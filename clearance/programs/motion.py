@@ -125,7 +125,7 @@ class _Samples:
         if self.spans and self.spans[-1].name == leg.move.name:
             self.spans[-1] = replace(self.spans[-1], end=self.now)
         else:
-            self.spans.append(MoveSpan(leg.move.name, began, self.now))
+            self.spans.append(MoveSpan(leg.move.name, began, self.now, leg.move.where))
 
     def note_targets(self, ways: Sequence[PlannedWay]) -> None:
         """Says which joints are taken in moves to a pose."""

@@ -7,12 +7,14 @@ summary (`markdown`).
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from clearance.errors import is_unpacked
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import coded_line
 from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
@@ -102,21 +104,42 @@ def _in_property(text: str) -> str:
 
 @dataclass(frozen=True)
 class TrajectoryRow:
-    """A row of a trajectory file; `line` counts from 1, and is None where the file is no table."""
+    """A row of a trajectory file, or a line of a program.
+
+    Attributes:
+        line: from 1; None where the file has no rows or lines, or lies in a zip, which is then the path.
+    """
 
     path: str
     line: int | None
 
 
 def row_of(record: Record, finding: Finding) -> TrajectoryRow | None:
-    """The row at or before the moment of a finding, in the file of the robot that it is of, or of the first one
-    that has one; None where no trajectory is from a file."""
+    """The row at or before the moment of a finding, or the move of a program then, in the file of its robot, or of
+    the first one that has one; None where no trajectory is from a file."""
     own = [placed for placed in record.case.robots if placed.trajectory_path]
     if not own or finding.time is None:
         return None
     placed = next((one for one in own if _is_of(record, one, finding)), own[0])
-    sample = sample_at(placed, finding.time)
-    return TrajectoryRow(placed.trajectory_path, line_of_sample(placed.trajectory_path, sample))
+    path, files = placed.trajectory_path, {one.path: one.read_from for one in record.case.sources}
+    if is_unpacked(path):
+        return TrajectoryRow(files[record.case.sources[0].path], None)
+    if not placed.given_trajectory.moves:
+        return TrajectoryRow(path, line_of_sample(path, sample_at(placed, finding.time)))
+    place = _OF_MOVE.fullmatch(_move_at(placed, finding.time))
+    if place is None:
+        return TrajectoryRow(path, None)
+    return TrajectoryRow(files.get(place["file"], path), int(place["line"]))
+
+
+_OF_MOVE = re.compile(r"(?:(?P<file>.+) )?line (?P<line>\d+)")
+
+
+def _move_at(placed: PlacedRobot, time: float) -> str:
+    """Where the move of a program at a time of the run [s] stands: the first that ends then or later."""
+    own = _own_time(placed, time)
+    moves = placed.given_trajectory.moves
+    return next((one.where for one in moves if own <= one.end > one.start), moves[-1].where)
 
 
 def _is_of(record: Record, placed: PlacedRobot, finding: Finding) -> bool:
@@ -127,10 +150,17 @@ def _is_of(record: Record, placed: PlacedRobot, finding: Finding) -> bool:
 
 def sample_at(placed: PlacedRobot, time: float) -> int:
     """The last sample of a robot's table at or before a time of the run [s]; the first before all of them."""
+    own = _own_time(placed, time)
+    rounding = 1e-9 * max(1.0, abs(own))
+    times = placed.given_trajectory.times
+    return max(0, int(np.searchsorted(times, own + rounding, side="right")) - 1)
+
+
+def _own_time(placed: PlacedRobot, time: float) -> float:
+    """A time of the run [s] as its trajectory counts it."""
     times, timing = placed.given_trajectory.times, placed.timing
     own = (time - timing.start) * timing.rate
     span = float(times[-1] - times[0])
     if timing.after == "loop" and span > 0.0 and own > times[-1]:
         own = float(times[0]) + (own - float(times[0])) % span
-    rounding = 1e-9 * max(1.0, abs(own))
-    return max(0, int(np.searchsorted(times, own + rounding, side="right")) - 1)
+    return own

@@ -50,11 +50,13 @@ class MoveSpan:
 
     Attributes:
         name: of the move. start, end: [s] of the trajectory's own time.
+        where: it stands in its program: `line 14`, with the file before it where that is another.
     """
 
     name: str
     start: float
     end: float
+    where: str = ""
 
 
 @dataclass(frozen=True)

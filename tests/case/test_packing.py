@@ -15,6 +15,7 @@ import pytest
 import clearance as cl
 from clearance.case import packed
 from clearance.case.packing import BEGIN, case_contents, write_pack
+from clearance.cli import run
 from clearance.errors import BadInput, BadPack, MissingFile
 from tests.formats.making import ARM, CASE, cube_stl, write_case
 
@@ -232,6 +233,29 @@ def test_a_zip_that_is_cut_off_is_refused(tmp_path, share):
     path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
     with pytest.raises(BadPack, match=r"cell\.zip: the zip is damaged or cut off"):
         cl.load_case(path)
+
+
+def test_no_message_shows_where_a_zip_is_unpacked(tmp_path, capsys):
+    """A report in which a file is missing; a case that breaks its limit, which is annotated on the zip."""
+    (tmp_path / "cell").mkdir()
+    case, zip_file = write_case(tmp_path / "cell"), tmp_path / "cell.zip"
+    write_pack(case_contents(case), zip_file, {})
+    assert (
+        run(["check", str(zip_file), "--fail-mm", "1900", "--warn-mm", "1900", "--github", "-q"])
+        == 1
+    )
+    assert f"::error file={zip_file},title=" in capsys.readouterr().out
+    check = ["check", str(case), "--out", str(tmp_path / "r"), "--receipt", "--quiet"]
+    assert run(check) == 0 and run(["pack", str(tmp_path / "r"), str(tmp_path / "r.zip")]) == 0
+    with zipfile.ZipFile(tmp_path / "r.zip") as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    gone = next(name for name in members if name.endswith("r/summary.json"))
+    manifest = json.loads(members.pop("clearance-pack.json"))
+    del members[gone], manifest["files"][gone]
+    zipped(tmp_path, manifest, members).rename(tmp_path / "r.zip")
+    capsys.readouterr()
+    assert run(["verify", str(tmp_path / "r.zip")]) == 2
+    assert capsys.readouterr().err.startswith(f"error: r.zip: {gone}: there is none; ")
 
 
 def test_other_zips_and_packed_cases_are_told_apart(tmp_path, parts):

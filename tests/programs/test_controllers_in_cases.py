@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import yaml
 
 import clearance as cl
 from clearance.geometry.quaternions import quaternions_of
+from clearance.report.annotations import row_of
 from clearance.world.plausibility import notices_of
 from tests.programs.arms import FILES
 from tests.programs.test_programs_in_cases import START, case, far, tool_at
@@ -215,3 +217,35 @@ def test_flags_that_no_configuration_has_are_refused_with_what_to_do(tmp_path, f
     told = str(caught.value)
     assert "a.mod: line 7: the configuration of the target asks for joint_1 " in told
     assert why in told and r"ConfJ\Off" in told
+
+
+def test_a_finding_is_annotated_on_the_line_of_its_move_in_its_file(tmp_path):
+    """Lines by hand: the joint move that takes time is on 7, the line that does is on 5 of the other module."""
+    text = rapid("[-1,0,0,0]")
+    head, *lines = [line for line in text.splitlines() if "MoveL" in line]
+    lines = [
+        "MODULE Sub",
+        "  PROC away()",
+        "    ! out and on",
+        head,
+        *lines,
+        "  ENDPROC",
+        "ENDMODULE",
+    ]
+    (tmp_path / "sub.mod").write_text("\n".join(lines) + "\n")
+    text = "".join(
+        line.replace(line.strip(), "away;") if line.strip() == head.strip() else line
+        for line in text.splitlines(keepends=True)
+        if "MoveL" not in line or line.strip() == head.strip()
+    )
+    case = controller_case(tmp_path, "a.mod", text, beside=["sub.mod"])
+    case.write_text(case.read_text().replace("fail: 0.0", "fail: 9.0\n  warn: 9.0"))
+    run = cl.check(case, certify=False)
+    rows = [
+        row_of(run.record, replace(run.findings[0], time=(one.start + one.end) / 2))
+        for one in run.record.case.robots[0].trajectory.moves
+        if one.end > one.start
+    ]
+    assert [(Path(row.path).name, row.line) for row in rows] == [
+        ("a.mod", 7), ("sub.mod", 5)
+    ]  # fmt: skip
