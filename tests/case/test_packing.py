@@ -241,7 +241,20 @@ def test_no_message_shows_where_a_zip_is_unpacked(tmp_path, capsys):
     case, zip_file = write_case(tmp_path / "cell"), tmp_path / "cell.zip"
     write_pack(case_contents(case), zip_file, {})
     assert (
-        run(["check", str(zip_file), "--fail-mm", "1900", "--warn-mm", "1900", "--github", "-q"])
+        run(
+            [
+                "check",
+                str(zip_file),
+                "--fail-mm",
+                "1900",
+                "--warn-mm",
+                "1900",
+                "--github",
+                "-q",
+                "--accept",
+                "units",
+            ]
+        )
         == 1
     )
     assert f"::error file={zip_file},title=" in capsys.readouterr().out
