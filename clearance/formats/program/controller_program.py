@@ -63,6 +63,7 @@ class ControllerMove:
         speed: of the tool's point [m/s]; acceleration [m/s^2]; turn_speed [rad/s]; None for the default.
         share: for `ptp`, of the joints' greatest speeds. axis_speed: for `ptp`, of the axis that leads [rad/s].
         zone: radius of the corner at the end [m]; 0 stops there. file: where it stands, if beside the program's.
+        own: the number of its line that the controller shows, if that is another.
     """
 
     line: int
@@ -78,6 +79,7 @@ class ControllerMove:
     axis_speed: float | None = None
     zone: float = 0.0
     file: str = ""
+    own: int = 0
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,7 @@ class ControllerWait:
     line: int
     seconds: float
     file: str = ""
+    own: int = 0
 
 
 @dataclass(frozen=True, eq=False)

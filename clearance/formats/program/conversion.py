@@ -369,7 +369,7 @@ def _names(read: ControllerProgram) -> Iterator[str]:
     times = Counter[str]()
     for one in read.moves:
         kind = one.kind.upper() if isinstance(one, ControllerMove) else "WAIT"
-        name = f"{kind} {place_of(one).replace('line ', '')}"
+        name = f"{kind} {one.file} {one.own or one.line}".replace("  ", " ")
         times[name] += 1
         again = f" ({times[name]})" if times[name] > 1 else ""
         to = one.to.name if isinstance(one, ControllerMove) else ""

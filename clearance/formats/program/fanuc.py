@@ -131,7 +131,7 @@ class _Fanuc:
             elif call.name == WAIT:
                 seconds = number(run.evaluated(call.args[0]), call.line, "the time")
                 if seconds > 0.0:
-                    run.add(ControllerWait(call.line.number, seconds, call.line.file))
+                    run.add(ControllerWait(call.line.number, seconds, call.line.file, call.line.own))
             else:
                 run.pass_over(call)
 
@@ -161,6 +161,7 @@ class _Fanuc:
             via=ends[0][0] if kind == "circ" else None,
             zone=self._zone(motion.end),
             file=call.line.file,
+            own=call.line.own,
             **self._speed(kind, motion.unit, run.evaluated(speed), call.line),
         )
 

@@ -171,9 +171,10 @@ def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line
         kept = re.sub(r"^\s*\d*\s*:", "", row).strip()
         if not kept:
             continue
-        if parts and re.match(r"\s*\d+\s*:", row):
+        own = re.match(r"\s*(\d+)\s*:", row)
+        if parts and own:
             break  # the one before has no end
-        line = line if parts else Line(number, file)
+        line = line if parts else Line(number, file, int(own[1]) if own else 0)
         parts.append(kept)
         if kept.endswith(";"):
             text = " ".join(parts)[:-1].strip()

@@ -10,10 +10,15 @@ from clearance.errors import BadSyntax
 
 
 class Line(NamedTuple):
-    """A line of a program, from 1; of a file beside the program's own, if that is named."""
+    """A line of a program, from 1; of a file beside the program's own, if that is named.
+
+    Attributes:
+        own: the number that the controller itself shows, if the file writes it.
+    """
 
     number: int
     file: str = ""
+    own: int = 0
 
     def __str__(self) -> str:
         return f"{self.file} line {self.number}".lstrip()

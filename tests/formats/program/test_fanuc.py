@@ -71,6 +71,7 @@ WAIT   1.50(sec) ;
     degrees = [10.0, 20.0, -5.0, 0.0, -45.0, 30.0]
     assert np.degrees(home.to.axes) == pytest.approx(degrees) and home.share == 0.5
     assert [move.line for move in found.moves] == [9, 10, 11, 13, 15]
+    assert [move.own for move in found.moves] == [4, 5, 6, 8, 10]
     # x of the frame is the robot's y
     assert place(line) == pytest.approx([0.5, 0.1, 0.25]) and line.tool[2, 3] == 0.1
     # R 90 in a frame turned by 90 degrees about z, after W 180: x back, y along, z down
@@ -79,7 +80,7 @@ WAIT   1.50(sec) ;
     assert (line.speed, line.zone, line.to.name) == (0.25, 0.02, "P[2]")
     assert next_.speed == pytest.approx(0.05) and next_.zone == 0.01
     assert arc.via.pose[:3, 3] == pytest.approx([0.5, 0.1, 0.25])
-    assert place(arc) == pytest.approx([0.4, 0.2, 0.25]) and wait == ControllerWait(15, 1.5)
+    assert place(arc) == pytest.approx([0.4, 0.2, 0.25]) and wait == ControllerWait(15, 1.5, own=10)
     told = "\n".join(found.notes)
     assert "DO (line 12)" in told and "TB, TA, DB" in told
 
