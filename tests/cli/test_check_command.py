@@ -187,8 +187,9 @@ def test_bad_input_is_one_line_and_exit_2(folder, capsys, fault):
     assert_refused(folder, check(capsys, "--out", "report"), named)
 
 
-def test_a_case_that_is_not_there(folder, capsys):
-    assert_refused(folder, check(capsys, "--out", "report", case="gone.yaml"), "gone.yaml")
+@pytest.mark.parametrize(("case", "named"), [("gone.yaml",) * 2, ("caf\udce9.yaml", "not UTF-8")])
+def test_a_case_that_is_not_there(folder, capsys, case, named):
+    assert_refused(folder, check(capsys, "--out", "report", case=case), named)
 
 
 @pytest.mark.parametrize(
@@ -201,6 +202,8 @@ def test_a_case_that_is_not_there(folder, capsys):
         (("--out", "/proc/report"), "/proc/report"),
         (("--out", "link/deeper"), "leads nowhere"),
         (("--junit", "."), "--junit"),
+        (("--out", "n" * 300), "name too long"),
+        (("--junit", "n" * 250), "name too long"),  # with what is put around it while it is written
     ],
 )
 def test_bad_arguments_are_one_line_and_exit_2(folder, capsys, arguments, named):
@@ -246,21 +249,3 @@ def test_an_interrupted_run_leaves_the_older_report_marked_as_such(folder, capsy
     assert "what follows is older" in left.pop("report.html").decode()
     before.pop("report.html")
     assert left == before and not list(folder.glob("**/*.partial"))
-
-
-def test_each_pass_has_its_own_bar(monkeypatch):
-    from rich import progress as rich_progress
-
-    from clearance.cli.progress import shown_progress
-
-    told = []
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    monkeypatch.setattr(
-        rich_progress.Progress,
-        "update",
-        lambda bars, task, **values: told.append((task, values["completed"])),
-    )
-    with shown_progress(False, ["measuring", "certifying", "cross-checking"]) as progress:
-        for done in (5, 10, 5, 10, 1, 10):
-            progress(done, 10)
-    assert told == [(0, 5), (0, 10), (1, 5), (1, 10), (2, 1), (2, 10)]

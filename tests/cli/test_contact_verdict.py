@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-
 import pytest
 
 from clearance.cli import run
@@ -32,27 +30,6 @@ def test_the_verdict_names_the_deepest_contact(folder, capsys):
     assert told.startswith("CONTACT")
     line = "step 2, slider in wall: 50.00 mm deep, 2000 cm³ shared; separation vector of the link"
     assert f"{line} (-50.00, 0.00, 0.00) mm" in told
-
-
-@pytest.mark.slow
-def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
-    case = str(folder / "case.yaml")
-    assert run(["check", case, "--contact", "none"]) == 1
-    assert "deepest" not in capsys.readouterr().out
-    for how, empty in (
-        ("none", [True, True]),
-        ("events", [True, False]),
-        ("every", [False, False]),
-    ):
-        assert run(["check", case, "--contact", how, "--out", str(folder / how), "--quiet"]) == 1
-        with (folder / how / "contacts.csv").open(newline="") as file:
-            assert [row["penetration"] == "" for row in csv.DictReader(file)] == empty
-        with (folder / how / "steps.csv").open(newline="") as file:
-            assert [row["penetration"] == "" for row in csv.DictReader(file)] == [
-                True,
-                *empty,
-                True,
-            ]
 
 
 def test_the_headline_says_how_deep(folder, capsys):

@@ -109,10 +109,3 @@ def test_what_cannot_be_written_is_refused_before_anything_is_measured(
     told = capsys.readouterr()
     assert told.out == "" and told.err.count("\n") == 1 and said in told.err
     assert files(folder) == before
-
-
-def test_a_missing_library_is_named_before_anything_is_measured(folder, capsys, monkeypatch):
-    monkeypatch.setattr("clearance.extras.is_installed", lambda library: library != "matplotlib")
-    assert run(["check", "case.yaml", "--png", "worst.png"]) == 2
-    assert "--png needs matplotlib" in capsys.readouterr().err
-    assert run(["check", "case.yaml", "--glb", "worst.glb"]) == 0

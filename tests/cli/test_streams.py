@@ -9,16 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from clearance.cli import run
 from tests.cli.test_check_command import CASE, PATH, ROOT, URDF
 
 pytestmark = [
     pytest.mark.cold,
     pytest.mark.skipif(not Path("/dev/full").exists(), reason="other shells and devices"),
 ]
-
-LONG = "n" * 300
-JUST_LEGAL = "n" * 250
-"""With what is put before and behind it while it is written, too long."""
 
 
 @pytest.fixture(scope="module")
@@ -42,12 +39,7 @@ def ended(folder: Path, line: str, **environment: str) -> tuple[int, str]:
 
 FAILING = {
     "clearance check case.yaml >/dev/full": "No space left",
-    "clearance --help >/dev/full": "No space left",
     "clearance check case.yaml --json >&-": "standard output is closed",
-    "clearance check $'caf\\xe9.yaml'": "not UTF-8",
-    f"clearance check case.yaml --out {LONG}": "name too long",
-    f"clearance check case.yaml --quiet --junit {JUST_LEGAL}": "name too long",
-    f"clearance view {LONG}": "name too long",
 }
 
 
@@ -62,9 +54,7 @@ def test_it_is_told_in_one_line(folder: Path, line: str) -> None:
 @pytest.mark.parametrize(
     ("line", "code"),
     [
-        ("clearance check case.yaml --quiet <&- 2>&-", 0),
         ("clearance check case.yaml --quiet --fail-mm 150 >/dev/full 2>/dev/full", 1),
-        ("clearance check gone.yaml 2>&-", 2),
         ("clearance check gone.yaml <&- >&- 2>&-", 2),
         ("clearance check case.yaml >/dev/full 2>&1", 2),
     ],
@@ -73,14 +63,13 @@ def test_where_nothing_can_be_told_the_exit_code_tells(folder: Path, line: str, 
     assert ended(folder, line) == (code, "")
 
 
-@pytest.mark.parametrize("given", ["check case.yaml --json", "check case.yaml --fail-mm 150"])
-def test_who_stops_reading_is_told_by_141(folder: Path, given: str) -> None:
+def test_who_stops_reading_is_told_by_141(folder: Path) -> None:
     """Also where the verdict is "violated": nobody has read it. The pipe is closed before anything is written."""
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(
-        [sys.executable, "-m", "clearance", *given.split()], cwd=folder, stdout=writing,
-        stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        [sys.executable, "-m", "clearance", "check", "case.yaml", "--fail-mm", "150"], cwd=folder,
+        stdout=writing, stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     os.close(writing)
     assert (done.returncode, done.stderr) == (141, b"")
@@ -90,8 +79,9 @@ def test_what_is_written_is_not_mixed_with_what_libraries_print(
     folder: Path, tmp_path: Path
 ) -> None:
     """With a stream closed, the next file that is opened has its number."""
-    code, told = ended(folder, f"clearance check case.yaml --quiet --out {tmp_path}/whole")
-    assert (code, told) == (0, "")
+    assert (
+        run(["check", str(folder / "case.yaml"), "--quiet", "--out", str(tmp_path / "whole")]) == 0
+    )
     code, told = ended(
         folder, f"clearance check case.yaml --quiet --out {tmp_path}/closed <&- >&- 2>&-"
     )

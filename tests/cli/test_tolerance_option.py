@@ -1,7 +1,5 @@
 """`--tolerance` and `--unproven-ok`, and the same in Python: what they change, and what they refuse."""
 
-import json
-
 import pytest
 
 import clearance as cl
@@ -35,31 +33,6 @@ def test_a_limit_that_is_not_proven_fails_the_run(case_file, tmp_path, capsys):
     assert code == 0 and told.out.startswith(f"ACCEPTED: {OPEN}")
     code, told = checked(capsys, case_file)
     assert code == 0 and told.out.startswith("CLEAR ")
-
-
-def test_a_file_takes_the_place_of_the_case_s_own(case_file, tmp_path, capsys):
-    case_file.write_text(f"{case_file.read_text()}tolerance: {{joints: {{all: 0.001}}}}\n")
-    own = tmp_path / "t.yaml"
-    own.write_text(TOO_MUCH)
-    code, told = checked(capsys, case_file, "--tolerance", own, "--json")
-    summary = json.loads(told.out)
-    assert code == 1 and "tolerances of t.yaml take the place of the case's own" in summary["notes"]
-    assert "t.yaml" in [one["path"] for one in summary["inputs"]]
-
-
-def test_what_is_refused(case_file, tmp_path, capsys):
-    own = tmp_path / "t.yaml"
-    own.write_text("joints: {shulder: 0.001}\n")
-    code, said = checked(capsys, case_file, "--tolerance", own)
-    assert code == 2 and "did you mean 'shoulder'?" in said.err
-    assert len(said.err.splitlines()) == 1
-
-
-def test_the_file_is_not_written_over(case_file, tmp_path, capsys):
-    own = tmp_path / "t.yaml"
-    own.write_text(TOO_MUCH)
-    code, said = checked(capsys, case_file, "--tolerance", own, "--junit", own)
-    assert code == 2 and own.read_text() == TOO_MUCH and said.err
 
 
 def test_the_same_in_python(case_file, tmp_path):

@@ -11,76 +11,37 @@ from pathlib import Path
 import pytest
 
 from clearance.compile import decorators
-from tests.cli.test_leaving import write_case
-
-ROOT = Path(__file__).parents[2]
-
-pytestmark = pytest.mark.cold
+from tests.cli.test_check_command import CASE, PATH, ROOT, URDF
 
 TELLS = """
 import json, sys
-{statement}
+from clearance.cli import run
+assert run({arguments!r}) in (0, 1)
 print("\\n" + json.dumps(sorted(sys.modules)))
 """
 
-OPTIONAL = {"fcl", "manifold3d", "matplotlib", "meshcat", "pybullet", "rosbags", "shapely", "trimesh",
-            "ezdxf", "coacd", "dask"}  # fmt: skip
 
-
-def imported_by(statement: str, folder: Path) -> set[str]:
-    """The modules that a process has imported in the end."""
+def imported_by(folder: Path, *arguments: str) -> set[str]:
+    """The modules that a process has imported once it has run the command."""
     done = subprocess.run(
-        [sys.executable, "-c", TELLS.format(statement=statement)],
+        [sys.executable, "-c", TELLS.format(arguments=[*arguments])],
         cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return set(json.loads(done.stdout.splitlines()[-1]))
 
 
-def check(case: Path, *options: str) -> str:
-    arguments = ["check", str(case), *options]
-    return f"from clearance.cli import run\nassert run({arguments!r}) in (0, 1)"
-
-
-def test_the_package_alone_imports_nothing_large(tmp_path):
-    found = imported_by("import clearance", tmp_path)
-    assert not found & {
-        *OPTIONAL,
-        "numpy",
-        "numba",
-        "llvmlite",
-        "scipy",
-        "pyarrow",
-        "pydantic",
-        "click",
-        "rich",
-    }
-
-
-def test_a_missing_case_is_refused_before_anything_large_is_imported(tmp_path):
-    refused = "from clearance.cli import run\nassert run(['check', 'none.yaml']) == 2"
-    assert not imported_by(refused, tmp_path) & {
-        *OPTIONAL,
-        "numpy",
-        "numba",
-        "scipy",
-        "pyarrow",
-        "pydantic",
-    }
-
-
+@pytest.mark.cold
 @pytest.mark.skipif(decorators.KERNELS == "jit", reason="the compiler is at work")
-def test_a_check_imports_no_compiler(tmp_path):
-    write_case(tmp_path / "case", None)
-    case = tmp_path / "case" / "case.yaml"
-    found = imported_by(check(case), tmp_path)
+def test_a_check_imports_no_compiler_and_no_library_of_what_was_not_asked_for(tmp_path):
+    for name, text in (("cart.urdf", URDF), ("case.yaml", CASE), ("path.csv", PATH)):
+        (tmp_path / name).write_text(text)
+    found = imported_by(tmp_path, "check", "case.yaml")
     assert {"numpy", "pydantic"} <= found
-    other = {
-        "clearance.query.contact",
-        "clearance.formats.scene.sdf.scene",
-        "clearance.report.page",
-    }
-    compilers = {"numba", "llvmlite"}
-    assert not found & {*OPTIONAL, *other, *compilers, "scipy", "filelock", "pyarrow"}
-    found = imported_by(check(case, "--out", "report"), tmp_path)
-    assert not found & {*compilers, "scipy", "clearance.query.contact"}
+    assert not found & {
+        "numba", "llvmlite", "scipy", "pyarrow", "fcl", "manifold3d", "matplotlib", "meshcat", "pybullet",
+        "rosbags", "shapely", "trimesh", "ezdxf", "coacd", "dask", "clearance.query.contact",
+        "clearance.formats.scene.sdf.scene", "clearance.report.page",
+    }  # fmt: skip
+    found = imported_by(tmp_path, "check", "case.yaml", "--out", "report")
+    assert not found & {"numba", "llvmlite", "scipy", "clearance.query.contact"}

@@ -8,9 +8,7 @@ import weakref
 import numpy as np
 import pytest
 
-from clearance.compile.calls import Written
 from clearance.compile.decorators import DISABLED
-from clearance.kernels.arithmetic.union_find import joined_labels
 from clearance.kernels.search.polygon_pair import PolygonPairAnswers, nearest_polygons
 
 pytestmark = pytest.mark.skipif(DISABLED, reason="nothing is compiled")
@@ -35,16 +33,6 @@ def test_arrays_of_a_tuple_are_read_and_written_where_they_lie():
     assert found.distance.tolist() == [2.0, 0.25, 0.0]
     assert found.contact.tolist() == [False, False, True]
     assert (found.points[:, 1, 2] - found.points[:, 0, 2]).tolist() == [2.0, 0.25, 0.0]
-
-
-def test_a_tuple_that_is_written_down_once_is_read_as_it_is_later():
-    found, (ps, qs) = answers(1), pairs(2.0)
-    written = Written(found, PolygonPairAnswers)
-    nearest_polygons(ps, qs, written)
-    assert found.distance.tolist() == [2.0]
-    qs -= [0.0, 0.0, 1.5]
-    nearest_polygons(ps, qs, written)
-    assert found.distance.tolist() == [0.5]
 
 
 def test_a_prepared_call_reads_the_same_arrays_each_time_and_keeps_them():
@@ -89,9 +77,3 @@ def test_too_few_arguments_and_items_are_refused():
         nearest_polygons(ps, qs)
     with pytest.raises(TypeError, match="4 values are given where 5 are declared"):
         nearest_polygons(ps, qs, found[:4])
-
-
-def test_numbers_are_given_by_value_and_arrays_given_back():
-    labels = joined_labels(5, np.array([0, 3]), np.array([1, 4]))
-    assert labels[0] == labels[1] and labels[3] == labels[4]
-    assert len(set(labels.tolist())) == 3 and labels.dtype == np.int64

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from clearance.compile.calls import KernelFault
-from clearance.compile.declared import Floats, Floats2, Integers
+from clearance.compile.declared import Floats, Floats2
 from clearance.compile.decorators import DISABLED, inline, kernel
 from clearance.compile.lending import lend
-from clearance.kernels.arithmetic.union_find import joined_labels
 from tests.compile.kernel_memory import mark
 
 pytestmark = [
@@ -40,11 +39,6 @@ def summed(rows: Rows) -> Rows:
 
 
 @kernel
-def twice_summed(rows: Rows) -> float:
-    return summed(summed(rows)).sums[0]
-
-
-@kernel
 def refusing(number: float) -> float:
     if number > 1.0:
         raise ValueError
@@ -54,11 +48,6 @@ def refusing(number: float) -> float:
 @kernel
 def asking(number: float) -> float:
     return refusing(number) + 1.0
-
-
-@kernel
-def labels(n: int, pairs: Integers) -> Integers:
-    return joined_labels(n, pairs, pairs)
 
 
 @inline
@@ -92,12 +81,6 @@ def test_a_result_with_arrays_is_the_callers_own_and_the_memory_is_given_back():
     assert mark() == before
 
 
-def test_a_kernel_takes_the_arrays_of_another_one():
-    before = mark()
-    assert twice_summed(ROWS) == 2.0
-    assert mark() == before
-
-
 def test_an_exception_stops_a_kernel_and_what_calls_it():
     assert asking(0.5) == 1.5
     before = mark()
@@ -109,34 +92,6 @@ def test_an_exception_stops_a_kernel_and_what_calls_it():
 
 def test_a_tuple_that_is_lent_stays_where_it_is():
     assert lent(3) == 2 * (1 + 2 + 3) + 2 * (600 + 15)
-
-
-def test_a_kernel_of_the_package_is_called_where_it_lies():
-    assert (
-        labels(4, np.array([1, 2])).tolist() == joined_labels(4, *2 * [np.array([1, 2])]).tolist()
-    )
-
-
-def test_a_kernel_may_be_declared_after_others_were_compiled():
-    halved(1.0)
-
-    @kernel
-    def quartered(number: float) -> float:
-        return halved(halved(number))
-
-    assert quartered(2.0) == 0.5
-
-
-def test_two_kernels_of_one_name_are_two():
-    found = []
-    for factor in (2, 3):
-
-        @kernel
-        def times(number: int) -> int:
-            return factor * number  # noqa: B023 - compiled before the loop goes on
-
-        found.append(times(7))
-    assert found == [14, 21]
 
 
 def test_a_kernel_that_declares_too_little_is_refused():

@@ -23,15 +23,6 @@ def write(folder, **changes) -> None:
     (folder / "manifest.json").write_text(json.dumps(found._asdict()))
 
 
-def test_without_a_manifest_nothing_is_current(folder):
-    assert read_manifest() is None and not is_current(lambda: "abc", [])
-
-
-def test_in_sources_the_hash_decides(folder):
-    write(folder)
-    assert is_current(lambda: "abc", []) and not is_current(lambda: "abd", [])
-
-
 def test_in_a_wheel_no_source_is_read(folder):
     write(folder, is_checked=False)
     assert is_current(lambda: pytest.fail("the sources are read"), ["x86-64-v2"])

@@ -23,7 +23,6 @@ from tests.examples import share_of, some_slow
 from tests.formats.damaged.anywhere import damaged
 from tests.formats.damaged.outcome import not_finite, outcome
 from tests.formats.damaged.rows import readers
-from tests.formats.damaged.trees import yaml_damaged
 
 READERS = readers()
 SLOW = {
@@ -139,20 +138,6 @@ def test_other_suffixes_are_read_as_the_row_says(kind, suffix, tmp_path):
     assert outcome(other, reader.valid, tmp_path) == "read"
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_damage_is_drawn_from_a_seed_and_some_of_it_is_refused(kind):
-    reader = READERS[kind]
-    made = [reader.damage(reader.valid, Random(seed)) for seed in range(12)]
-    assert made == [reader.damage(reader.valid, Random(seed)) for seed in range(12)]
-    assert len(set(made)) > 8
-
-
-def test_the_same_seed_does_the_same_damage_to_bytes():
-    valid = READERS["OBJ"].valid
-    assert [damaged(valid, i) for i in range(9)] == [damaged(valid, i) for i in range(9)]
-    assert len({damaged(valid, i) for i in range(9)}) > 5
-
-
 def test_a_foreign_error_and_a_message_of_several_lines_are_faults(tmp_path):
     def fails(data, folder, name):
         raise KeyError("x")
@@ -168,19 +153,6 @@ def test_a_foreign_error_and_a_message_of_several_lines_are_faults(tmp_path):
     assert outcome(reader._replace(reads=fails), reader.valid, tmp_path).startswith("KeyError at")
     said = outcome(reader._replace(reads=rambles), reader.valid, tmp_path)
     assert said == "message of several lines"
-
-
-@pytest.mark.slow
-def test_damaged_documents_are_still_yaml():
-    from clearance.plain_yaml import plain_data
-
-    valid, n_parsed = READERS["case"].valid, 0
-    for seed in range(60):
-        try:
-            n_parsed += isinstance(plain_data(yaml_damaged(valid, Random(seed))), dict)
-        except BadInput:
-            continue
-    assert n_parsed > 40
 
 
 def test_what_is_not_finite_is_found_where_it_stands():

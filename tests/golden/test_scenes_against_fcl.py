@@ -1,5 +1,6 @@
-"""Every scene of ours, held against FCL at every step to 1e-9 m."""
+"""Every scene of ours, held against FCL to 1e-9 m: at every step, of the longest two at every fourth."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -23,13 +24,29 @@ VERDICTS = {  # the statuses that occur, as scenes/README.md promises
 }
 
 
+LONGEST = {"palletising_cell", "welding_cell"}
+
+
 @pytest.fixture(scope="module", params=sorted(VERDICTS))
 def run(request):
-    return cl.check(cl.load_case(SCENES / request.param / "case.yaml"), cross_check=True)
+    case = cl.load_case(SCENES / request.param / "case.yaml")
+    return cl.check(case, cross_check=request.param not in LONGEST)
+
+
+def thinned(case: cl.Case, n: int) -> cl.Case:
+    """The case with every n-th sample of its robots."""
+    robots = []
+    for placed in case.robots:
+        asked = placed.trajectory
+        rows = cl.Trajectory(asked.times[::n], asked.joint_names, asked.positions[::n])
+        robots.append(replace(placed, trajectory=rows))
+    return replace(case, robots=tuple(robots))
 
 
 @pytest.mark.slow
-def test_fcl_agrees_at_every_step(run):
+def test_fcl_agrees(run):
+    if run.cross_check is None:
+        run = cl.check(thinned(run.record.case, 4), cross_check=True, certify=False)
     assert run.steps.num_rows >= 200
     assert run.cross_check.n_steps == run.steps.num_rows
     assert run.cross_check.disagreements == ()

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import functools
-import json
 
 import numpy as np
 import pytest
@@ -23,17 +21,6 @@ from tests.report.records import record, with_contacts
 def run() -> Record:
     """The swing, with what its overlaps are."""
     return with_contacts(record())
-
-
-def test_the_summary_tells_the_deepest_contact_and_each_pair():
-    told = summary_of(run())["contact"]
-    assert told["deepest"]["step"] == run().deepest.step
-    assert told["deepest"]["penetration"] == run().deepest.known.penetration
-    assert told["deepest"]["direction"] == run().deepest.known.direction.tolist()
-    depths = [pair["penetration"] for pair in told["pairs"]]
-    assert depths == sorted(depths, reverse=True) and depths[0] == run().deepest.known.penetration
-    assert sum(pair["n_steps"] for pair in told["pairs"]) == len(run().contacts)
-    json.dumps(told, allow_nan=False)
 
 
 def test_contact_that_was_not_worked_out_is_said():
@@ -72,20 +59,6 @@ def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):
     replay = replay_of(run())
     assert 2 <= len(replay.contacts) <= 5
     assert max(one.penetration for one in replay.contacts) == run().deepest.known.penetration
-
-
-def test_the_table_has_a_row_for_each_pair_in_contact(tmp_path):
-    write(run(), tmp_path / "out")
-    with (tmp_path / "out" / "contacts.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert [(int(row["step"]), row["link"]) for row in rows] == [
-        (c.step, c.link) for c in run().contacts
-    ]
-    for row, contact in zip(rows, run().contacts, strict=True):
-        found = contact.known
-        assert float(row["penetration"]) == found.penetration
-        assert float(row["volume_at_least"]) == found.volume_at_least
-        assert [float(row[f"direction_{k}"]) for k in "xyz"] == found.direction.tolist()
 
 
 def red(pixels):

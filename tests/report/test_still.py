@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from clearance.report import picture, raster
+from clearance.report import picture
 from clearance.report.glb import glb_of
 from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of, seen_edges
 from clearance.report.raster import Screen, drawn_segments, surface
@@ -60,15 +60,6 @@ def test_every_pixel_shows_what_a_ray_meets_first(seed):
     expected, is_sure = slow_owners(screen, corners)
     assert (owners.reshape(32, 48) == expected)[is_sure].all()
     assert is_sure.mean() > 0.9 and len(set(expected[is_sure].tolist())) > 1
-
-
-def test_a_picture_is_the_same_however_much_is_looked_at_together(monkeypatch):
-    corners = np.random.default_rng(3).uniform(-3, 3, (40, 3, 3)) + [4.0, 0, 0]
-    screen = Screen(FORWARD, 120, 80)
-    first = surface(screen, corners)
-    monkeypatch.setattr(raster, "AT_ONCE", 50)
-    for one, other in zip(first, surface(screen, corners), strict=True):
-        assert np.array_equal(one, other)
 
 
 def test_segments_are_cut_at_the_edge_of_the_picture():

@@ -16,7 +16,6 @@ from clearance.findings.finding import NOT_PROVEN, TOLERANCES
 from clearance.findings.findings_file import findings_text, read_findings
 from clearance.record.budget import ErrorSource
 from clearance.report.annotations import annotation_lines
-from clearance.report.markdown import markdown
 from clearance.report.topics.tolerances import largest_text, source_lines
 from clearance.world.budget import ObstacleTolerance
 from clearance.world.case import Limits
@@ -81,18 +80,6 @@ def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     assert ("tolerances" in failing) == (
         (status == "not proven" and exit_code == 1) or status == "suspect"
     )
-
-
-def test_what_is_left_is_told_in_words_that_can_be_signed():
-    kept = with_budget(NEAR, 0.0001, between=True)
-    assert verdict_of(kept).with_tolerances == (
-        "With all errors at their worst at once at least 0.176 mm remain; proven for the motion. "
-        "Expected (3 sigma, estimate): 0.342 mm.",
-    )
-    (line,) = verdict_of(OPEN).with_tolerances
-    assert "contact is not ruled out; proven for the samples only" in line
-    for told in (printed(OPEN), markdown(model_of(OPEN)).splitlines()):
-        assert any("contact is not ruled out" in row for row in told)
 
 
 def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
@@ -189,14 +176,6 @@ def test_the_steps_have_columns_of_it(tmp_path):
     assert run_of(KEPT).steps.column_names[-2:] == ["proven", "expected"]
 
 
-def test_what_is_not_known_is_null():
-    expected = np.full(8, np.nan)
-    one = with_budget(NEAR, 0.001, expected=expected)
-    assert run_of(one).steps["expected"].null_count == 8
-    assert summary_of(one)["tolerances"]["rules"][0]["expected"] is None
-    assert "Expected" not in verdict_of(one).with_tolerances[0]
-
-
 def test_the_report_has_a_table_of_what_takes_it(tmp_path):
     write(OPEN, tmp_path / "out")
     read = pyarrow.csv.read_csv(tmp_path / "out" / "budget.csv").to_pylist()
@@ -247,21 +226,6 @@ def test_sources_are_named_by_robot_joint_and_moment(run):
     told = " ".join(source_lines(run.record, *worst))
     assert "tracking of joint left/j at the grasp (0 s)" in told
     assert "tracking of joint left/j at the release (1 s)" in told
-
-
-def test_tables_tell_the_moment(run, tmp_path):
-    run.save(tmp_path)
-    rows = pyarrow.csv.read_csv(tmp_path / "budget.csv").to_pylist()
-    worst = rows[0]["time"]
-    assert {row["moment"] for row in rows if row["time"] == worst} == {
-        "grasp (0 s)",
-        "release (1 s)",
-    }
-    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    (carry,) = summary["carries"]
-    assert carry["grasp"] == "as driven"
-    sources = summary["tolerances"]["rules"][0]["worst"][0]["sources"]
-    assert {source["moment"] for source in sources} == {"grasp (0 s)", "release (1 s)"}
 
 
 def test_an_exact_grasp_is_said(run, tmp_path):

@@ -21,7 +21,7 @@ from tests.report.records import record
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def server():
     made = PageServer("<p>a page</p>")
     yield made
@@ -107,16 +107,14 @@ def viewing(tmp_path):
 
 
 @pytest.mark.cold
-def test_nothing_in_the_folder_is_run(viewing, tmp_path):
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="another way to list sockets")
+def test_nothing_in_the_folder_is_run_and_the_program_listens_at_one_address_only(
+    viewing, tmp_path
+):
     told = viewing.stdout.readline()
     assert re.search(r"http://127\.0\.0\.1:\d+/", told), viewing.stderr.read()
     assert [path.name for path in tmp_path.glob("*.trapped")] == []
-
-
-@pytest.mark.cold
-@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="another way to list sockets")
-def test_the_program_itself_listens_and_at_one_address_only(viewing):
-    port = int(re.search(r":(\d+)/", viewing.stdout.readline())[1])
+    port = int(re.search(r":(\d+)/", told)[1])
     folder = Path("/proc") / str(viewing.pid)
     own = set()
     for path in (folder / "fd").iterdir():

@@ -8,7 +8,6 @@ from clearance.errors import BadInput, BadShape
 from clearance.formats.conversion.files import kind_of
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind
-from clearance.formats.text.file_start import LONGEST
 from tests.formats import making_messages, making_moveit
 from tests.formats.making import CASE, PATH
 from tests.formats.making_cell import DOOR
@@ -69,11 +68,3 @@ def test_what_does_not_is_asked_for_or_refused(tmp_path, name, text, fault, says
     with pytest.raises(fault) as caught:
         told(tmp_path, name, text)
     assert says in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "part", ["\n", " ", "- ", "{", ",", ", ", "# ", "a", '"', "'", "\\", "a:", "\t-", "#\n"]
-)
-def test_what_does_not_end_is_not_looked_at_again_and_again(tmp_path, part):
-    with pytest.raises(BadInput, match="the content of this file is not recognised"):
-        told(tmp_path, "a.yaml", "x" + part * LONGEST)

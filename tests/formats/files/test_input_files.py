@@ -7,11 +7,9 @@ import trimesh
 
 from clearance.case.case_file import load_case
 from clearance.errors import MissingFile
-from clearance.formats.files.found_files import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
+from clearance.formats.files.found_files import MODEL, PACKAGE, leads_to, note_lookup
 from clearance.formats.files.input_files import InputFiles, read_bytes
-from clearance.profiles.outline_file import read_outline
 from clearance.report.topics.provenance import inputs
-from clearance.sketch import Sketch
 from tests.formats.making import PATH
 
 
@@ -39,13 +37,6 @@ def test_files_and_links_to_them_are_read(tmp_path):
         assert len(file.read()) == n_bytes
     with pytest.raises(MissingFile, match="is a folder"):
         files.read(tmp_path)
-
-
-def test_sketches_and_profiles_from_pipes_are_refused(tmp_path):
-    os.mkfifo(tmp_path / "s.yaml")
-    for read in (Sketch.load, read_outline):
-        with pytest.raises(MissingFile, match="file"):
-            read(tmp_path / "s.yaml")
 
 
 URDF = """<robot name="cart"><link name="ground"/>
@@ -92,17 +83,6 @@ def noted(folder, *asked):
     files = InputFiles(folder)
     note_lookup(files, *asked)
     return files.sources
-
-
-def test_what_is_not_there_is_a_search_too(tmp_path):
-    (one,) = noted(tmp_path, MODEL, "model://sun", tmp_path, (), None)
-    (two,) = noted(tmp_path, OPTIONAL, "model.config", tmp_path, (), None)
-    assert leads_to(one.read_from) == leads_to(two.read_from) == one.sha256 == ""
-    (tmp_path / "sun").mkdir()
-    (tmp_path / "model.config").write_text("")
-    assert leads_to(one.read_from) == ""  # the folder alone is no model
-    (tmp_path / "sun" / "model.sdf").write_text("")
-    assert leads_to(one.read_from) and leads_to(two.read_from)
 
 
 def test_the_folder_of_a_package_is_a_search_and_a_plain_path_is_none(tmp_path):

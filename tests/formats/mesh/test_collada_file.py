@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput, BadSyntax
-from clearance.formats.files.input_files import InputFiles
-from clearance.formats.mesh.mesh_file import mesh_from_bytes, read_mesh
-from clearance.formats.mesh_store import MeshStore
+from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from tests.formats.making import signed_volume
 
 WEDGE = "0 0 0 1 0 0 0 2 0 0 0 3"
@@ -78,16 +76,6 @@ def test_the_ros_way_obeys_the_unit_and_leaves_every_axis_where_it_is(axis):
         axis != "Z_UP"
     )
     assert not any("turned from" in note and "not turned" not in note for note in mesh.notes)
-
-
-def test_a_store_keeps_both_ways_apart(tmp_path):
-    (tmp_path / "m.dae").write_bytes(document("<up_axis>Y_UP</up_axis>"))
-    store = MeshStore(InputFiles(tmp_path))
-    turned, left = (store.load(tmp_path / "m.dae", (1.0, 1.0, 1.0), way) for way in ("file", "ros"))
-    assert turned.shape.bounds[1].tolist() == [1, 0, 2]
-    assert left.shape.bounds[1].tolist() == [1, 2, 3]
-    assert store.load(tmp_path / "m.dae", (1.0, 1.0, 1.0)) is turned
-    assert read_mesh(tmp_path / "m.dae", up_axis="ros").bounds[1].tolist() == [1, 2, 3]
 
 
 def test_positions_keep_double_precision():
@@ -240,27 +228,6 @@ def test_what_would_be_another_surface_is_refused(data, says):
         mesh_from_bytes(data, "m.dae")
     assert says in str(caught.value)
     assert str(caught.value).startswith("m.dae: ")
-
-
-def tenfold(n_levels: int) -> bytes:
-    """Nodes of which each places the one below it ten times."""
-    library = f'<node id="n0">{NODE}</node>' + "".join(
-        f'<node id="n{k + 1}">{f"""<instance_node url="#n{k}"/>""" * 10}</node>'
-        for k in range(n_levels)
-    )
-    nodes = f'<node><instance_node url="#n{n_levels}"/></node>'
-    text = document(Z_UP, nodes=nodes).decode()
-    return text.replace(
-        "<library_visual", f"<library_nodes>{library}</library_nodes><library_visual", 1
-    ).encode()
-
-
-@pytest.mark.slow
-def test_nodes_that_place_each_other_tenfold_are_counted():
-    assert mesh_from_bytes(tenfold(2), "m.dae").n_triangles == 400
-    for n_levels in (6, 40):
-        with pytest.raises(BadSyntax, match=r"more than 20,000 copies of nodes"):
-            mesh_from_bytes(tenfold(n_levels), "m.dae")
 
 
 def test_a_node_that_places_itself_is_refused():

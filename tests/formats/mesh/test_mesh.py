@@ -270,9 +270,3 @@ def test_obj_lines_end_where_lines_end_and_numbers_are_numbers():
     ]:
         with pytest.raises(BadSyntax, match="line"):
             mesh_from_bytes(data.replace(old, new), "m.obj")
-
-
-def test_text_stl_of_many_loops_is_read_once():
-    data = b"solid a\n" + b"facet normal 0 0 1\n" + b"outer loop\n" * 100_000 + b"endsolid a\n"
-    with pytest.raises(BadSyntax, match="closed outer loop"):
-        mesh_from_bytes(data, "m.stl")

@@ -9,12 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.case.case_file import load_case
 from clearance.errors import BadInput
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.formats.mesh.octree_file import octree_of
 from tests.examples import examples
-from tests.formats.making_octree import data_of, octree
+from tests.formats.making_octree import octree
 
 BLOCK = {cell: True for cell in itertools.product(range(4), range(2), range(2))}
 CELLS = st.dictionaries(
@@ -98,31 +97,3 @@ def scene(tree: str) -> str:
     return (
         f"world:\n  octomap:\n    header: {{frame_id: world}}\n    {origin}\n    octomap: {tree}\n"
     )
-
-
-@pytest.mark.parametrize("full", [False, True])
-def test_a_planning_scene_has_its_map_as_an_obstacle(tmp_path, full):
-    file = octree(BLOCK, 0.25, full=full)
-    tree = (
-        f"{{binary: {str(not full).lower()}, id: OcTree, resolution: 0.25, data: {data_of(file)}}}"
-    )
-    (tmp_path / "scene.yaml").write_text(scene(tree))
-    case = load_case(made_case(tmp_path))
-    (obstacle,) = case.obstacles
-    assert obstacle.name == "<octomap>"
-    assert obstacle.world_from_body[:3, 3].tolist() == [1.0, 0.0, 0.0]
-    assert obstacle.body.shape.volume == pytest.approx(0.25)
-    assert any("unknown space is taken" in note for note in case.notes)
-
-
-def made_case(folder):
-    (folder / "arm.urdf").write_text(
-        "<robot name='arm'><link name='base'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision>"
-        "</link><link name='tip'><collision><geometry><box size='0.1 0.1 0.1'/></geometry></collision></link>"
-        "<joint name='j' type='continuous'><parent link='base'/><child link='tip'/></joint></robot>"
-    )
-    (folder / "path.csv").write_text("time,j\n0,0\n1,1\n")
-    (folder / "case.yaml").write_text(
-        "robot: {urdf: arm.urdf}\ntrajectory: path.csv\nscene: scene.yaml\n"
-    )
-    return folder / "case.yaml"

@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadPolygon
-from clearance.formats.mesh import polygon_cut
 from clearance.formats.mesh.polygon_cut import cut_rings
 
 L_SHAPE = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
@@ -94,15 +93,6 @@ def test_faces_of_very_many_corners_are_covered(shape):
     total = vectors.sum(axis=0)
     assert (vectors @ total >= 0).all()
     assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(np.linalg.norm(total), rel=1e-12)
-
-
-def test_the_work_is_bounded_for_all_polygons_of_a_piece(monkeypatch):
-    monkeypatch.setattr(polygon_cut, "MOST_WORK", 40_000)
-    points = placed(comb(400))
-    polygon = list(range(len(points)))
-    cut_polygons(points, [polygon])
-    with pytest.raises(BadPolygon, match=r"face \d+ of 402 corners is too intricate"):
-        cut_polygons(points, [polygon] * 30)
 
 
 def test_a_hole_that_is_joined_by_a_cut_stays_open():

@@ -96,20 +96,6 @@ def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
     assert told in made.notes
 
 
-def test_the_error_on_a_log_can_be_pasted(tmp_path):
-    with pytest.raises(UnknownJoint, match="unknown joint 'status'") as caught:
-        load_small(tmp_path, urdf=TWO_JOINTS, trajectory=LOG)
-    assert f"; columns: {TAKEN} maps each joint to its column (--columns)" in str(caught.value)
-    own = "time,shoulder,lift [mm],x1\n0,0.1,20,4\n1,0.2,30,4\n"
-    with pytest.raises(UnknownJoint, match="unknown joint 'x1'") as caught:
-        load_small(tmp_path, urdf=TWO_JOINTS, trajectory=own)
-    hint = 'columns: [time, shoulder, "lift [mm]"]'
-    assert f"; {hint} reads these columns only (--columns)" in str(caught.value)
-    case = changed("path.csv", f"path.csv, {hint}")
-    made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=own)
-    assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
-
-
 def test_a_joint_that_is_misspelt_is_renamed_and_not_left_out(tmp_path):
     other = TWO_JOINTS.replace("lift", "joint_of_lift")
     own = "time,shoulder,joint_of_lfit,joint_of_lift_effort\n0,0.1,20,4\n"
@@ -166,16 +152,6 @@ def test_columns_that_are_not_there_are_refused(tmp_path, columns, fault, says):
     with pytest.raises(fault) as caught:
         load_small(tmp_path, changed("path.csv", f"path.csv, columns: {columns}"))
     assert says in str(caught.value)
-
-
-@pytest.mark.slow
-def test_a_long_log_is_read_whole(tmp_path):
-    """Beyond what is read in one go, with text in a column that is left out and little in others."""
-    rows = "".join(f"{i},,{i * 1e-6!r},ok\n" for i in range(150_000))
-    (tmp_path / "long.csv").write_text("time,none,shoulder,status\n" + rows)
-    case = changed("path.csv", "long.csv, columns: [time, shoulder]")
-    positions = load_small(tmp_path, case).robots[0].trajectory.positions
-    assert positions[:, 0].tolist() == [i * 1e-6 for i in range(150_000)]
 
 
 FINGERS = TWO_JOINTS.replace(

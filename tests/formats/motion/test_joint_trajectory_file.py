@@ -198,13 +198,6 @@ def test_aliases_make_no_more_of_a_file_than_it_holds():
         parse(nested + "trajectory: *t2999\n")
 
 
-def test_long_files_are_refused_unread():
-    with pytest.raises(
-        BadSyntax, match="more than 16,000,000 bytes; a longer trajectory goes as CSV"
-    ):
-        parse("#" * 16_000_001)
-
-
 def as_case(folder, text: str, given: str = "file: path.yaml", suffix: str = "yaml"):
     case = changed("file: path.csv", given)
     return load_small(folder, case, urdf=TWO_JOINTS, **{f"path__{suffix}": text})

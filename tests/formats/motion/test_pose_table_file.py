@@ -53,16 +53,6 @@ def test_columns_may_be_in_any_order(order, data):
     assert table.quaternions.tolist() == [[0, 0, 0, 1]] and table.times.tolist() == [0]
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_line_ends_blank_lines_and_spaces(end):
-    text = TEXT.replace("\n", f" {end}{end}")
-    again, whole = (
-        parse_pose_table(text.encode(), "a.csv"),
-        parse_pose_table(TEXT.encode(), "a.csv"),
-    )
-    assert np.array_equal(again.columns, whole.columns)
-
-
 @given(st.lists(st.floats(-10, 10, allow_subnormal=False), min_size=4, max_size=4))
 def test_a_quaternion_is_read_or_its_line_is_named(numbers):
     length = float(np.linalg.norm(numbers))

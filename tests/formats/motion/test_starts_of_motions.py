@@ -232,15 +232,6 @@ def test_what_a_message_says_beside_its_points_is_named(key, value, named):
         )
 
 
-def test_what_aliases_repeat_is_looked_at_once():
-    """Thirty lists that each hold the one before ten times, and nothing."""
-    lists = "".join(f"  - &l{i} [{', '.join([f'*l{i - 1}'] * 10)}]\n" for i in range(1, 30))
-    plain = "joint_names: [a]\npoints: [{positions: [0], time_from_start: 0}]\n"
-    text = f"path_tolerance:\n  - &l0 []\n{lists}{plain}"
-    request = TrajectoryRequest(lambda: io.BytesIO(text.encode()), len(text))
-    assert read_trajectory(request, "path.yaml").notes == ()
-
-
 @pytest.mark.parametrize("key", ["multi_dof_joint_trajectory", "multi_dof_trajectory"])
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_what_a_base_does_beside_is_refused_at_any_depth(key, depth):

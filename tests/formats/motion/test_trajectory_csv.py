@@ -13,7 +13,6 @@ from clearance.errors import (
     NotFinite,
 )
 from clearance.formats.motion.trajectory_file import parse_trajectory
-from clearance.formats.table import csv_table
 
 
 def parse(text: str):
@@ -97,14 +96,3 @@ def test_a_file_that_is_not_text_is_refused():
         with pytest.raises((BadSyntax, MissingKey)) as caught:
             parse_trajectory(data, "path.csv")
         assert "\n" not in str(caught.value)
-
-
-def test_tables_are_read_block_by_block(monkeypatch):
-    monkeypatch.setattr(csv_table, "BLOCK", 2)
-    rows = "time,a\n0,10\n\n1,11\n2,12\n\n\n3,13\n"
-    assert parse(rows).positions.ravel().tolist() == [10, 11, 12, 13]
-    last = parse(rows + "4,14").times
-    assert last.tolist() == [0, 1, 2, 3, 4]
-    assert parse("\ufeff" + rows).times.tolist() == [0, 1, 2, 3]
-    with pytest.raises(BadSyntax, match=r"line 9: 'x' in column 'a' is not a number"):
-        parse(rows + "4,x\n")

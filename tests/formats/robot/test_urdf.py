@@ -9,7 +9,6 @@ import clearance as cl
 from clearance.errors import BadSyntax, NothingToMeasure
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
-from clearance.world.mimics import followers
 from clearance.world.notice import Severity
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
@@ -180,24 +179,6 @@ def test_a_default_namespace_changes_nothing(tmp_path):
         assert found.link_names == expected.link_names
         assert [body.shape.n_faces for body in found.bodies] == [6, 6]
         assert [j.name for j in found.joints] == [j.name for j in expected.joints]
-
-
-@pytest.mark.slow
-def test_a_chain_of_thousands_of_links_and_followers_is_read(tmp_path):
-    """Neither links in a row nor joints that follow each other in a row are gone through by recursion."""
-    n = 3000
-    follows = '<origin xyz="0 0 0.001"/><mimic joint="j{}" multiplier="1" offset="0.001"/>'
-    links = [link(BOX, f"l{i}") for i in (0, n)] + [link("", f"l{i}") for i in range(1, n)]
-    joints = [joint("j0", "l0", "l1")]
-    joints += [
-        joint(f"j{i}", f"l{i}", f"l{i + 1}", inner=follows.format(i - 1)) for i in range(1, n)
-    ]
-    joints.reverse()  # those that follow come before what they follow
-    arm = load_urdf(tmp_path, robot(*links, *joints))
-    assert arm.link_names == tuple(f"l{i}" for i in range(n + 1))
-    last = followers(arm)[-1]
-    assert (last.joint.name, last.master, last.factor) == (f"j{n - 1}", "j0", 1.0)
-    assert last.offset == pytest.approx(0.001 * (n - 1), rel=1e-12)
 
 
 def test_elements_in_each_other_without_end_are_refused(tmp_path):

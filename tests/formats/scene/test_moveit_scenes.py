@@ -107,30 +107,6 @@ def test_an_object_held_in_a_case_of_several_robots_is_refused_by_name(tmp_path)
         load_small(tmp_path, text, cell__yaml=MESSAGE)
 
 
-def test_rounded_quaternions_are_made_of_length_one_and_told(tmp_path):
-    document = LISTS.replace("orientation: [0, 0, 1, 0]", "orientation: [0.707, 0, 0, 0.707]")
-    turn = obstacles_of(tmp_path, document)["can/1"].world_from_body[:3, :3]
-    assert np.abs(turn - [[1, 0, 0], [0, 0, -1], [0, 1, 0]]).max() < 1e-15
-    assert content_of(tmp_path, document).notes[-1] == (
-        "cell.yaml: 1 quaternion is rounded to three digits or so and made of length 1"
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("n", "more", "told"),
-    [(200, "#" * 200_000, "or 30000 shapes"), (1000, "", "the aliases repeat too much")],
-)
-def test_a_file_that_names_its_parts_again_and_again_ends(tmp_path, n, more, told):
-    shapes, objects = ", ".join(["*s"] * n), ", ".join(["*o"] * n)
-    document = f"""robot_model_name: &s {{type: 2, dimensions: [1]}}
-name: &o {{id: a, primitives: [{shapes}]}}
-world: {{collision_objects: [{objects}]}}
-{more}"""
-    with pytest.raises(BadInput, match=told):
-        content_of(tmp_path, document)
-
-
 def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):
     matrix = """allowed_collision_matrix:
   entry_names: [base, upper]

@@ -107,15 +107,6 @@ def test_rotations_are_read_as_they_are_written(tmp_path, text):
     assert np.abs(made.world_from_body - expected).max() < 3e-9
 
 
-def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(tmp_path):
-    text = pose("1 2 3 0 0 0.707 0.707", "", ' rotation_format="quat_xyzw"')
-    document = sdf(model(text, link(collision())))
-    (made,) = obstacles_of(tmp_path, document).values()
-    assert np.allclose(made.world_from_body[:2, :2], [[0, -1], [1, 0]], atol=1e-15)
-    told = [note for note in content_of(tmp_path, document).notes if "rounded" in note]
-    assert len(told) == 1 and "1 quaternion is rounded to three digits" in told[0]
-
-
 @pytest.mark.parametrize(
     "shape",
     ["", "<sphere><radius>0</radius></sphere>", "<box><size>0 0.0 0</size></box>"],

@@ -5,9 +5,6 @@ from __future__ import annotations
 import errno
 import multiprocessing
 import os
-import signal
-import subprocess
-import sys
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
@@ -191,45 +188,6 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
         said: list[str] = []
         assert answer(other, tmp_path / "kept", said, **asked) == told(cl.check(other, **asked))
         assert said == ["starting anew: the interrupted run had other inputs"]
-
-
-KILLED = """
-import os, pathlib, signal, sys
-import clearance as cl
-from clearance.simulate.measure import parts
-from clearance.record.rows import blocks
-from clearance.record.rows import resumable as resumable_rows
-from clearance.record.rows.resumable import open_resumable_rows
-resumable_rows.SAVE_AFTER, parts.LONGEST_PART, calls = 0.0, 16, []
-def progress(done, total):
-    calls.append(done)
-    if len(calls) == 9:
-        os.kill(os.getpid(), signal.SIGKILL)
-with open_resumable_rows(pathlib.Path(sys.argv[2]), print) as kept:
-    cl.check(cl.load_case(sys.argv[1]), resources=cl.Resources(progress=progress, rows=kept))
-"""
-
-
-@pytest.mark.cold
-def test_a_killed_process_is_resumed(tmp_path: Path) -> None:
-    case = cl.load_case(ROOT / "scenes" / "box_pipe" / "case.yaml")
-    asked = [str(ROOT / "scenes" / "box_pipe" / "case.yaml"), str(tmp_path / "kept")]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, "-c", KILLED, *asked], env=environment, check=False)
-    assert done.returncode == -signal.SIGKILL
-    said: list[str] = []
-    assert answer(case, tmp_path / "kept", said) == told(cl.check(case))
-    assert len(said) == 1 and said[0].startswith("resuming: ")
-
-
-def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
-    case: Case, tmp_path: Path
-) -> None:
-    with open_resumable_rows(tmp_path / "kept", print) as kept:
-        run = cl.check(case, resources=cl.Resources(rows=kept))
-    assert list(run.pair_minima) == list(cl.check(case).pair_minima)
-    run.save(tmp_path / "out")
-    assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 def test_a_full_disk_is_told_before_anything_is_mapped(

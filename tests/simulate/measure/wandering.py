@@ -13,7 +13,6 @@ from clearance.world.body import Body
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.forest import link_poses_at
 from clearance.world.motion import kinematic_motion
-from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, random_robot
@@ -64,22 +63,3 @@ def poses_of(case: cl.Case) -> np.ndarray:
     """(steps, links, 4, 4) [m] of the case's forest."""
     motions = [kinematic_motion(placed) for placed in case.robots]
     return link_poses_at(case, motions, slice(None))
-
-
-def every_distance(case: cl.Case) -> np.ndarray:
-    """(steps, pairs) [m] by one question each."""
-    pairs, _ = measured_pairs(case)
-    poses = poses_of(case)
-    sides = [
-        [(body.shape_in(case), body.poses_in(case, poses)) for body in (pair.a, pair.b)]
-        for pair in pairs
-    ]
-    return np.array(
-        [
-            [
-                cl.distance(a, b, pose_a=of_a[k], pose_b=of_b[k]).distance
-                for (a, of_a), (b, of_b) in sides
-            ]
-            for k in range(N_STEPS)
-        ]
-    )
