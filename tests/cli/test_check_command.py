@@ -18,27 +18,12 @@ from clearance.cli import run
 from clearance.errors import MissingFile
 from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY
-from tests.cart import URDF
-
-ROOT = Path(__file__).parents[2]
-
-CASE = """name: rail
-robot: {urdf: cart.urdf}
-scene:
-  obstacles:
-  - {name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0], quat_xyzw: [0, 0, 0, 1]}}
-allow: []
-trajectory: {file: path.csv}
-limits: {fail: 0.05, warn: 0.3}
-"""
-PATH = "time,rail\n0,0\n1,0.3\n2,0.7\n"  # 0.8, 0.5 and 0.1 m from the wall
+from tests.cart import PATH, ROOT, files, write_cart
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    (tmp_path / "cart.urdf").write_text(URDF)
-    (tmp_path / "case.yaml").write_text(CASE)
-    (tmp_path / "path.csv").write_text(PATH)
+    write_cart(tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -48,14 +33,6 @@ def check(capsys, *arguments: str, case: str = "case.yaml") -> tuple[int, str, s
     capsys.readouterr()
     code = run(["check", case, *arguments])
     return (code, *capsys.readouterr())
-
-
-def files(folder: Path) -> dict[str, bytes]:
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    }
 
 
 def test_near_passes_and_nothing_is_written(folder, capsys):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from clearance.cli import run
-from tests.cli.test_check_command import URDF
+from tests.cart import write_cart
 
 CASE = """name: rail
 robot: {urdf: cart.urdf}
@@ -18,9 +18,7 @@ trajectory: {file: path.csv}
 
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "cart.urdf").write_text(URDF)
-    (tmp_path / "case.yaml").write_text(CASE)
-    (tmp_path / "path.csv").write_text("time,rail\n0,0.5\n1,0.8125\n2,0.85\n3,0.75\n")
+    write_cart(tmp_path, CASE, "time,rail\n0,0.5\n1,0.8125\n2,0.85\n3,0.75\n")
     return tmp_path
 
 

@@ -11,7 +11,7 @@ import pytest
 from clearance import check
 from clearance.case.case_file import load_case
 from clearance.cli import run
-from tests.cli.test_check_command import CASE, PATH, URDF, files
+from tests.cart import CASE, PATH, files, write_cart
 
 VELOCITIES = "time,rail,rail/velocity\n0,0,0.1\n0.3333,0.30000000000000004,1e-7\n2,0.7,0\n"
 TWO = """robots:
@@ -25,9 +25,7 @@ scene:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    (tmp_path / "cart.urdf").write_text(URDF)
-    (tmp_path / "case.yaml").write_text(CASE)
-    (tmp_path / "path.csv").write_text(PATH)
+    write_cart(tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

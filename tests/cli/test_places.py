@@ -12,27 +12,29 @@ import pytest
 from clearance.cli import run
 from clearance.errors import Unwritable
 from clearance.files import refuse_inputs
-from tests.cli.test_check_command import CASE, PATH, ROOT, URDF, files
+from tests.cart import CASE, PATH, ROOT, files, write_cart
+from tests.formats.making import cube_stl
+
+WITH_MESH = CASE.replace("box: {size: [0.2, 1, 1]}", "mesh: {file: workspace.stl}")
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A case, standing in its folder; its trajectory has the name of one of the report's files."""
+    """A case, standing in its folder, and what other commands read; some have names of files that are written."""
     place = tmp_path / "cell"
-    place.mkdir()
-    (place / "cart.urdf").write_text(URDF)
-    (place / "case.yaml").write_text(CASE.replace("path.csv", "steps.csv"))
-    (place / "steps.csv").write_text(PATH)
+    write_cart(place, CASE.replace("path.csv", "steps.csv"))
+    (place / "path.csv").rename(place / "steps.csv")
+    (place / "meshed.yaml").write_text(WITH_MESH.replace("path.csv", "steps.csv"))
+    (place / "workspace.stl").write_bytes(cube_stl())
+    for name in ("keep_in_zone.yaml", "port_bar.yaml"):
+        shutil.copy(next((ROOT / "scenes").rglob(name)), place / name)
+    shutil.copy(place / "port_bar.yaml", place / "outline.svg")
+    for name in ("a.yaml", "comparison.json"):
+        (place / name).write_text("not read before this is refused")
+    (tmp_path / "out").mkdir()
+    os.link(place / "steps.csv", tmp_path / "out" / "steps.csv")
     monkeypatch.chdir(place)
     return place
-
-
-def refused(arguments: list[str], said: str, capsys: pytest.CaptureFixture) -> None:
-    before = files(Path.cwd().parent)
-    assert run(arguments) == 2
-    told = capsys.readouterr()
-    assert told.out == "" and told.err.count("\n") == 1 and said in told.err
-    assert files(Path.cwd().parent) == before
 
 
 def by_a_detour(path: Path) -> str:
@@ -63,21 +65,43 @@ def test_an_input_is_known_by_any_name(folder: Path, spelt: Callable[[Path], str
         refuse_inputs([Path("new.csv"), name], ["cart.urdf", folder / "steps.csv"])
 
 
-@pytest.mark.parametrize("name", ["case.yaml", "cart.urdf", "steps.csv"])
-def test_junit_over_an_input_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture, name: str
-) -> None:
-    refused(["check", "case.yaml", "--junit", name], "which this run reads", capsys)
+FIT = "profile fit keep_in_zone.yaml"
+READS = "which this run reads"
 
 
-def test_a_report_over_the_trajectory_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("check case.yaml --junit case.yaml", READS),
+        ("check case.yaml --junit cart.urdf", READS),
+        ("check case.yaml --junit steps.csv", READS),
+        ("check case.yaml --out .", "steps.csv"),
+        ("check case.yaml --out ../cell", "steps.csv"),
+        ("check case.yaml --out ../out", READS),
+        ("check case.yaml --out ''", "an empty path"),
+        ("check case.yaml --junit ''", "an empty path"),
+        ("check case.yaml --out ../new --junit ../new/summary.json", "a file of the report"),
+        ("workspace meshed.yaml meshed.yaml --out .", "workspace.stl"),
+        ("workspace meshed.yaml meshed.yaml --out ''", "an empty path"),
+        ("profile sweep case.yaml --out ./case.yaml", READS),
+        ("profile sweep case.yaml --out ''", "an empty path"),
+        (f"{FIT} port_bar.yaml --out ./keep_in_zone.yaml", READS),
+        (f"{FIT} port_bar.yaml --out ./port_bar.yaml", READS),
+        (f"{FIT} outline.svg --out new.yaml --picture ../cell/outline.svg", READS),
+        (f"{FIT} outline.svg --out new.yaml --picture ''", "an empty path"),
+        ("profile compare a.yaml a.yaml --out a.yaml", READS),
+        ("profile compare a.yaml comparison.json --out .", READS),
+        ("profile compare a.yaml a.yaml --out ''", "an empty path"),
+    ],
+)
+def test_a_command_that_would_write_over_its_input_or_nowhere_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture, words: str, said: str
 ) -> None:
-    for out in (".", "../cell", str(folder)):
-        refused(["check", "case.yaml", "--out", out], "steps.csv", capsys)
-    Path("../out").mkdir()
-    os.link("steps.csv", "../out/steps.csv")
-    refused(["check", "case.yaml", "--out", "../out"], "which this run reads", capsys)
+    before = files(folder.parent)
+    assert run([word if word != "''" else "" for word in words.split()]) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and told.err.count("\n") == 1 and said in told.err
+    assert files(folder.parent) == before
 
 
 def test_an_input_far_from_the_case_is_one_as_well(
@@ -85,77 +109,8 @@ def test_an_input_far_from_the_case_is_one_as_well(
 ) -> None:
     """Its path is shown without its folder where it shares nothing with the case's but the root."""
     far = tmp_path_factory.mktemp("far")
-    shutil.move("steps.csv", far / "steps.csv")
+    (far / "steps.csv").write_text(PATH)
     Path("case.yaml").write_text(CASE.replace("path.csv", str(far / "steps.csv")))
-    before = files(far)
-    refused(["check", "case.yaml", "--out", str(far)], "which this run reads", capsys)
-    assert files(far) == before
-
-
-@pytest.mark.parametrize("option", ["--out", "--junit"])
-def test_an_empty_place_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture, option: str
-) -> None:
-    refused(["check", "case.yaml", option, ""], "an empty path", capsys)
-
-
-def test_junit_among_the_files_of_the_report_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture
-) -> None:
-    refused(
-        ["check", "case.yaml", "--out", "../out", "--junit", "../out/summary.json"],
-        "a file of the report", capsys,
-    )  # fmt: skip
-
-
-def test_a_workspace_over_a_mesh_is_refused(folder: Path, capsys: pytest.CaptureFixture) -> None:
-    text = CASE.replace("path.csv", "steps.csv").replace(
-        "box: {size: [0.2, 1, 1]}", "mesh: {file: workspace.stl}"
-    )
-    Path("case.yaml").write_text(text)
-    corners = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"]
-    faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-    loops = ["".join(f"vertex {corners[i]}\n" for i in face) for face in faces]
-    facets = "".join(f"facet normal 0 0 0\nouter loop\n{loop}endloop\nendfacet\n" for loop in loops)
-    Path("workspace.stl").write_text(f"solid\n{facets}endsolid\n")
-    refused(["workspace", "case.yaml", "case.yaml", "--out", "."], "workspace.stl", capsys)
-    refused(["workspace", "case.yaml", "case.yaml", "--out", ""], "an empty path", capsys)
-
-
-def test_a_profile_over_its_case_is_refused(folder: Path, capsys: pytest.CaptureFixture) -> None:
-    refused(
-        ["profile", "sweep", "case.yaml", "--out", "./case.yaml"], "which this run reads", capsys
-    )
-    refused(["profile", "sweep", "case.yaml", "--out", ""], "an empty path", capsys)
-
-
-def test_a_fit_over_its_sketch_or_its_outline_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture
-) -> None:
-    for name in ("keep_in_zone.yaml", "port_bar.yaml"):
-        shutil.copy(next((ROOT / "scenes").rglob(name)), name)
-    both = ["keep_in_zone.yaml", "port_bar.yaml"]
-    for name in both:
-        refused(["profile", "fit", *both, "--out", f"./{name}"], "which this run reads", capsys)
-    shutil.copy(both[1], "outline.svg")
-    given = ["profile", "fit", both[0], "outline.svg", "--out", "new.yaml", "--picture"]
-    refused([*given, "../cell/outline.svg"], "which this run reads", capsys)
-    refused([*given, ""], "an empty path", capsys)
-
-
-def test_a_comparison_over_an_outline_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture
-) -> None:
-    for name in ("a.yaml", "comparison.json"):
-        Path(name).write_text("not read before this is refused")
-    refused(
-        ["profile", "compare", "a.yaml", "a.yaml", "--out", "a.yaml"],
-        "which this run reads",
-        capsys,
-    )
-    refused(
-        ["profile", "compare", "a.yaml", "comparison.json", "--out", "."],
-        "which this run reads",
-        capsys,
-    )
-    refused(["profile", "compare", "a.yaml", "a.yaml", "--out", ""], "an empty path", capsys)
+    assert run(["check", "case.yaml", "--out", str(far)]) == 2
+    assert READS in capsys.readouterr().err
+    assert files(far) == {"steps.csv": PATH.encode()}

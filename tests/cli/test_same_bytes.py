@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 
 from clearance.record.every_pair import EveryPair
-from tests.cli.test_check_command import ROOT, files
+from tests.cart import ROOT, files
 
 FILL = ("17", "99")
 """What glibc fills memory with that it hands out; pyarrow is told to ask it. Elsewhere chance has to do."""

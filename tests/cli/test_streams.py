@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import run
-from tests.cli.test_check_command import CASE, PATH, ROOT, URDF
+from tests.cart import ROOT, write_cart
 
 pytestmark = [
     pytest.mark.cold,
@@ -20,11 +20,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("streams")
-    (place / "cart.urdf").write_text(URDF)
-    (place / "case.yaml").write_text(CASE)
-    (place / "path.csv").write_text(PATH)
-    return place
+    return write_cart(tmp_path_factory.mktemp("streams")).parent
 
 
 def ended(folder: Path, line: str, **environment: str) -> tuple[int, str]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from clearance.compile import decorators
-from tests.cli.test_check_command import CASE, PATH, ROOT, URDF
+from tests.cart import ROOT, write_cart
 
 TELLS = """
 import json, sys
@@ -34,8 +34,7 @@ def imported_by(folder: Path, *arguments: str) -> set[str]:
 @pytest.mark.cold
 @pytest.mark.skipif(decorators.KERNELS == "jit", reason="the compiler is at work")
 def test_a_check_imports_no_compiler_and_no_library_of_what_was_not_asked_for(tmp_path):
-    for name, text in (("cart.urdf", URDF), ("case.yaml", CASE), ("path.csv", PATH)):
-        (tmp_path / name).write_text(text)
+    write_cart(tmp_path)
     found = imported_by(tmp_path, "check", "case.yaml")
     assert {"numpy", "pydantic"} <= found
     assert not found & {

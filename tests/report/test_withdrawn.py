@@ -5,12 +5,12 @@ import pytest
 from clearance.cli import run
 from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY, marked_page, withdraw_report
-from tests.cli.test_leaving import write_case
+from tests.cart import write_cart
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    write_case(tmp_path / "in", None)
+    write_cart(tmp_path / "in")
     monkeypatch.chdir(tmp_path / "in")
     return tmp_path / "in"
 
