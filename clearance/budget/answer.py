@@ -24,7 +24,7 @@ from clearance.world.case import Case
 class MeasuredBudget(NamedTuple):
     """What tolerances leave to the pairs of a rule, and what finds the moments at which that is least."""
 
-    left: RuleBudget
+    remaining: RuleBudget
     worst: WorstMoments
 
 

@@ -17,7 +17,7 @@ from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
 from clearance.kernels.search.proof import FINEST_GAP
-from clearance.record.budget import most_looked_for
+from clearance.record.budget import most_searched
 from clearance.world.budget import Budget
 from clearance.world.case import Case
 from clearance.world.mimics import leads_of
@@ -77,7 +77,7 @@ class ToleranceSearch:
         trial = _Trial(self, key, place, unit)
         if not trial.keeps(0.0):
             return None
-        number = most_looked_for(unit, trial.given)
+        number = most_searched(unit, trial.given)
         for _ in range(MOST_ROUNDS):
             for row in [*dict.fromkeys([*self._least, *self._hard])]:
                 number = trial.greatest_at(row, number)

@@ -69,8 +69,8 @@ def run(arguments: Sequence[str]) -> int:
 
         with suppress(OSError):
             traceback.print_exc()
-        told = "error: a fault of this program, not of the input; please report the lines above"
-        _say(coded(told, code_of_error(type(error))))
+        message = "error: a fault of this program, not of the input; please report the lines above"
+        _say(coded(message, code_of_error(type(error))))
         return ExitCode.FAULT
 
 
@@ -103,8 +103,8 @@ def _dispatch(arguments: list[str]) -> int:
         error.show()
         return ExitCode.BAD_INPUT
     except click.ClickException as error:
-        told = f"error: {' '.join(error.format_message().split())}{_hint(error)}"
-        _say(coded(told, code_of_error(type(error))))
+        message = f"error: {' '.join(error.format_message().split())}{_hint(error)}"
+        _say(coded(message, code_of_error(type(error))))
         return ExitCode.BAD_INPUT
     except Incomplete as error:
         _say(f"incomplete: {error.line}")

@@ -81,7 +81,7 @@ class _ShardParamType(click.ParamType):
         return int(first), int(second)
 
 
-def _tell_unread(given: dict[str, Any], error: click.UsageError) -> None:
+def _report_unread(given: dict[str, Any], error: click.UsageError) -> None:
     """Says in a store that its answer is not of a command line that is not understood."""
     if given.get("place") is not None and given.get("baseline") is None:  # which may be the same
         _withdraw(given["place"], error)
@@ -100,7 +100,7 @@ def _withdraw(place: Path, error: Exception | None = None) -> None:
         withdraw_answer(place, line_of(error), type(error).__name__)
 
 
-@batch.command(cls=AnsweringCommand, tell_unread=_tell_unread)
+@batch.command(cls=AnsweringCommand, report_unread=_report_unread)
 @click.argument("arguments", metavar="MANIFEST.yaml|CASE.yaml|GLOB…", nargs=-1, required=True)
 @click.option(
     "--out",

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 
-MOST_TOLD = 50
+MOST_LISTED = 50
 """Failures that are told as they come; the answer lists the worst, and the page has all."""
 
 FEW = 32
@@ -63,17 +63,17 @@ def run_asked(items: Sequence[Item], place: Path, asked: BatchRequest) -> int:
     Raises:
         Incomplete: some cases are not measured, and why; the others are kept.
     """
-    tell = _silent if asked.quiet else say
-    with open_store(place, shard=asked.shard) as store, store.locked(tell):
+    notify = _silent if asked.quiet else say
+    with open_store(place, shard=asked.shard) as store, store.locked(notify):
         n_cases = f"of {count(len(items), 'case')} some are"
         withdraw_answer(store.place, UNFINISHED.format(n_cases))
         if asked.shard is None:
-            merge(store, (), tell)
+            merge(store, (), notify)
         write_list(store, items)
         own = items if asked.shard is None else shard_of(items, asked.shard)
         outcome = Outcome(own, waivers=asked.waivers, whole=asked.shard is None)
         try:
-            return _run(items, store, outcome, asked, tell)
+            return _run(items, store, outcome, asked, notify)
         except KeyboardInterrupt:
             say(f"interrupted: {len(outcome.keys):,} of {len(own):,} cases are kept")
             return ExitCode.INTERRUPTED
@@ -84,13 +84,13 @@ def _run(
     store: Store,
     outcome: Outcome,
     asked: BatchRequest,
-    tell: Callable[[str], None],
+    notify: Callable[[str], None],
 ) -> int:
     with shown_progress(asked.quiet, lambda number: items[number].name) as watch:
         opened = _opener(asked)
         run_batch(outcome, store, opened, watch, fresh=asked.fresh, rehash=asked.rehash)
     if store.n_damaged:
-        tell(f"damaged rows of {count(store.n_damaged, 'case')} are measured again")
+        notify(f"damaged rows of {count(store.n_damaged, 'case')} are measured again")
     answer = answer_of(outcome, store, strict=asked.strict)
     if asked.shard is None:
         write_answer(answer, store)
@@ -238,10 +238,10 @@ class PipeWatch:
         if not self._done:
             return f"0 of {self._n:,} cases measured"
         rate = self._done / max(time.monotonic() - self._begun, 1e-9)
-        left = f"{rate:,.1f} cases/s, {(self._n - self._done) / rate:,.0f} s left"
-        parts = (left, f"{self._n_failing:,} failed", str(self._worst))
-        told = ", ".join(part for part in parts if part)
-        return f"{self._done:,} of {self._n:,} cases measured, {told}"
+        pace = f"{rate:,.1f} cases/s, {(self._n - self._done) / rate:,.0f} s left"
+        parts = (pace, f"{self._n_failing:,} failed", str(self._worst))
+        state = ", ".join(part for part in parts if part)
+        return f"{self._done:,} of {self._n:,} cases measured, {state}"
 
 
 class TerminalWatch:
@@ -251,7 +251,7 @@ class TerminalWatch:
         self._bar = bar
         self._task = bar.add_task("", total=None, rate="", worst="")
         self._name, self._worst = name, _Worst(name)
-        self._n_told = 0
+        self._n_listed = 0
 
     def begin(self, items: Sequence, n_cached: int) -> None:
         """Begins to count what is to be measured."""
@@ -272,10 +272,10 @@ class TerminalWatch:
         self._bar.update(self._task, rate=rate, worst=str(self._worst))
 
     def _print(self, line: str) -> None:
-        self._n_told += 1
-        if self._n_told <= MOST_TOLD:
+        self._n_listed += 1
+        if self._n_listed <= MOST_LISTED:
             self._bar.console.print(shown(line), markup=False, highlight=False, soft_wrap=True)
-        elif self._n_told == MOST_TOLD + 1:
+        elif self._n_listed == MOST_LISTED + 1:
             self._bar.console.print("further failures are listed at the end", markup=False)
 
 

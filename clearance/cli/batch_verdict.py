@@ -73,8 +73,8 @@ def _print_facts(answer: BatchAnswer) -> None:
             f"  waived      {count(n_waived, 'case')} with what breaks a rule and a waiver lets pass"
         )
     if warned := answer.warned:
-        told = f"  warnings    {count(len(warned), 'case')}, see the page: {listed(warned)}"
-        click.echo(shown(told))
+        line = f"  warnings    {count(len(warned), 'case')}, see the page: {listed(warned)}"
+        click.echo(shown(line))
     for basis, n in answer.bases.items():
         click.echo(f"  basis       {count(n, 'case')} {BASES[basis]}")
     least = answer.least

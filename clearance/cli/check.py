@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 ARGUMENTS = {"recorded": "RUN"}
 
 
-def _tell_unread(given: dict[str, Any], error: click.UsageError) -> None:
+def _report_unread(given: dict[str, Any], error: click.UsageError) -> None:
     """Tells build servers of a command line that is not understood."""
     known: dict[str, Any] = {one.name: given.get(one.name) for one in fields(Outputs)}
     outputs = Outputs(**known)
     if given.get("baseline") is None:  # which may lie in --out
-        outputs.tell_unread(given.get("case_file") or Path("CASE.yaml"), error)
+        outputs.report_unread(given.get("case_file") or Path("CASE.yaml"), error)
 
 
-@click.command(cls=AnsweringCommand, tell_unread=_tell_unread)
+@click.command(cls=AnsweringCommand, report_unread=_report_unread)
 @click.argument("case_file", metavar="CASE.yaml", type=click.Path(path_type=Path))
 @asked_options(CheckOptions, arguments=ARGUMENTS)
 @click.option(
@@ -80,7 +80,7 @@ def check(
     spelled = spelled_by(CheckOptions, ARGUMENTS)
     asked, outputs = said(CheckOptions, given), Outputs(**given)
     printed = PrintedOutput(as_json, quiet, brief)
-    with outputs.refusal_told(case_file, to_stderr=as_json):
+    with outputs.refusal_reported(case_file, to_stderr=as_json):
         refuse_inputs(outputs.files, [case_file, *_files_of(baseline)])
         outputs.withdraw_older(case_file)
         outputs.require_writable()
@@ -91,7 +91,7 @@ def check(
         options = made(CheckOptions, asked, spelled)
         _require_file(case_file)
 
-    @outputs.refusal_told(case_file, to_stderr=as_json)
+    @outputs.refusal_reported(case_file, to_stderr=as_json)
     def checked() -> ExitCode:
         from clearance.case.case_file import load_case
         from clearance.run import Question
@@ -134,11 +134,11 @@ def _answer(
 ) -> Run:
     """Measures, writes what is wanted, and prints the verdict."""
     from clearance.cli.progress import shown_progress
-    from clearance.cli.run_rows import kept_rows
+    from clearance.cli.run_rows import resumable_rows_of
     from clearance.run import Resources, answer
 
     ahead = outputs.trajectory_ahead(question)
-    with kept_rows(outputs.out, printed.quiet) as rows:
+    with resumable_rows_of(outputs.out, printed.quiet) as rows:
         with shown_progress(not printed.has_words, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
         comparison = _comparison_of(run, before)
@@ -150,7 +150,7 @@ def _answer(
             from clearance.report.comparison import print_comparison
 
             print_comparison(comparison)
-    outputs.tell_builds(run, comparison, to_stderr=printed.as_json)
+    outputs.report_to_builds(run, comparison, to_stderr=printed.as_json)
     return run
 
 

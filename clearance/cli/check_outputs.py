@@ -84,7 +84,7 @@ class Outputs:
             if getattr(self, name) is not None:
                 require("report", f"--{name}")
         require_folder_place(self.out)
-        taken = {os.path.realpath(path): "is a file of the report" for path in self._report_files()}
+        uses = {os.path.realpath(path): "is a file of the report" for path in self._report_files()}
         for name, path in self._named.items():
             require_file_place(path, f"--{name}")
             if name in _SUFFIXED and path.suffix.lower() != f".{name}":
@@ -92,7 +92,7 @@ class Outputs:
                     f"is no .{name} file", where=str(path), valid=f"--{name} needs one"
                 )
             own = f"is the file of --{name}"
-            if (problem := taken.setdefault(os.path.realpath(path), own)) != own:
+            if (problem := uses.setdefault(os.path.realpath(path), own)) != own:
                 raise Unwritable(problem, where=str(path), valid=f"--{name} needs another name")
 
     @property
@@ -123,11 +123,11 @@ class Outputs:
             from clearance.report.withdrawn import withdraw_report
 
             withdraw_report(self.out)
-        told = "this run has not come to an end; the same command goes on"
-        self._that_are_there()._write_instead(case_file, told, "Incomplete")
+        why = "this run has not come to an end; the same command goes on"
+        self._that_are_there()._write_instead(case_file, why, "Incomplete")
 
     @contextmanager
-    def refusal_told(self, case_file: Path, *, to_stderr: bool) -> Iterator[None]:
+    def refusal_reported(self, case_file: Path, *, to_stderr: bool) -> Iterator[None]:
         """Tells build servers what stops a run, so that nothing of an older run is taken for its answer.
 
         A place that holds no JUnit or no summary is left as it is: it may be an input, named by mistake. So is
@@ -137,15 +137,15 @@ class Outputs:
             yield
         except Exception as error:
             with suppress(Unwritable):
-                self._tell_refusal(case_file, error, to_stderr)
+                self._report_refusal(case_file, error, to_stderr)
             raise
 
-    def tell_unread(self, case_file: Path, error: click.UsageError) -> None:
+    def report_unread(self, case_file: Path, error: click.UsageError) -> None:
         """Tells build servers of a command line that is not understood: older files say so, and no new ones."""
         outputs = self._that_are_there()
         with suppress(Unwritable):
             outputs.withdraw_older(case_file)
-            outputs._tell_refusal(case_file, error, to_stderr=True)
+            outputs._report_refusal(case_file, error, to_stderr=True)
 
     def _that_are_there(self) -> Outputs:
         """Without the files that do not exist."""
@@ -154,7 +154,7 @@ class Outputs:
         }
         return replace(self, **gone)
 
-    def _tell_refusal(self, case_file: Path, error: Exception, to_stderr: bool) -> None:
+    def _report_refusal(self, case_file: Path, error: Exception, to_stderr: bool) -> None:
         text = line_of(error)
         self._write_instead(case_file, text, type(error).__name__, getattr(error, "where", ""))
         if self.github:
@@ -241,7 +241,7 @@ class Outputs:
             for line in lines:
                 click.echo(f"  {word:<11} {line}")
 
-    def tell_builds(self, run: Run, comparison: Comparison | None, to_stderr: bool) -> None:
+    def report_to_builds(self, run: Run, comparison: Comparison | None, to_stderr: bool) -> None:
         """Writes the summary, and tells GitHub Actions of it and of each finding, where that is wanted."""
         if self.summary is None and not self.github:
             return

@@ -90,5 +90,5 @@ def _print(out_file: Path, made: ConvertedFiles) -> None:
         click.echo(f"warning: {shown(warning)}", err=True)
     for note in made.notes:
         click.echo(f"note: {shown(note)}")
-    beside = [str(out_file.parent / name) for name in made.files if name != out_file.name]
-    click.echo(f"written {out_file}: {made.told}" + (f"; {', '.join(beside)}" if beside else ""))
+    others = [str(out_file.parent / name) for name in made.files if name != out_file.name]
+    click.echo(f"written {out_file}: {made.told}" + (f"; {', '.join(others)}" if others else ""))

@@ -51,8 +51,8 @@ def demo(scene: str, out: Path | None, as_list: bool, copy_to: Path | None) -> i
     if as_list + (copy_to is not None) + (out is not None) > 1:
         raise click.UsageError("--list, --copy and --out exclude each other")
     if as_list:
-        for name, told in SCENES.items():
-            click.echo(f"{name:10}{told}")
+        for name, about in SCENES.items():
+            click.echo(f"{name:10}{about}")
         return ExitCode.CLEAR
     if copy_to is not None:
         _copy(scene, copy_to)

@@ -108,8 +108,8 @@ def _every_kind(
         click.echo(shown(line))
     if all(one.gain is None for one in found):
         return ExitCode.BAD_INPUT
-    kept = [_code(one.gain) for one in found if one.gain is not None and one.kept]
-    return min(kept, default=ExitCode.VIOLATED)
+    codes = [_code(one.gain) for one in found if one.gain is not None and one.kept]
+    return min(codes, default=ExitCode.VIOLATED)
 
 
 def _say(found: Gain, before: str = "") -> None:

@@ -345,8 +345,8 @@ def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:
         say_notices(made.case)
     notes = [*made.lost, *(() if at_once else made.notes)]
     if len(notes) > _MOST_NOTES:
-        left = len(notes) - _MOST_NOTES
-        notes = [*notes[:_MOST_NOTES], f"and {left} more; `clearance check` prints them"]
+        n_more = len(notes) - _MOST_NOTES
+        notes = [*notes[:_MOST_NOTES], f"and {n_more} more; `clearance check` prints them"]
     for label, lines in (
         ("took", made.taken),
         ("assumed", made.assumed),

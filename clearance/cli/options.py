@@ -62,17 +62,17 @@ class AnsweringCommand(click.Command):
     """A command of which no older answer outlasts a command line that is not understood.
 
     Args:
-        tell_unread: is called with the parameters, as far as they are understood, and what is wrong.
+        report_unread: is called with the parameters, as far as they are understood, and what is wrong.
     """
 
     def __init__(
         self,
         *given: Any,
-        tell_unread: Callable[[dict[str, Any], click.UsageError], None],
+        report_unread: Callable[[dict[str, Any], click.UsageError], None],
         **more: Any,
     ) -> None:
         super().__init__(*given, **more)
-        self._tell_unread = tell_unread
+        self._report_unread = report_unread
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """The arguments."""
@@ -84,7 +84,7 @@ class AnsweringCommand(click.Command):
                 name: True
                 for name in ("resilient_parsing", "ignore_unknown_options", "allow_extra_args")
             }
-            self._tell_unread(
+            self._report_unread(
                 self.make_context(ctx.info_name, given, ctx.parent, **lenient).params, error
             )
             raise
@@ -101,15 +101,15 @@ def in_order(*options: Callable[..., Any]) -> Callable[..., Any]:
     return add
 
 
-def package_dir_option(told: str) -> Callable[..., Any]:
-    """The option for folders of packages; `told` says what is looked for there."""
+def package_dir_option(what: str) -> Callable[..., Any]:
+    """The option for folders of packages; `what` says what is looked for there."""
     return click.option(
         "--package-dir",
         "package_dirs",
         metavar="DIR",
         multiple=True,
         type=click.Path(path_type=Path),
-        help=f"Where {told} looked for; may be given again.",
+        help=f"Where {what} looked for; may be given again.",
     )
 
 
@@ -164,8 +164,8 @@ def asked_options(
 def _option(name: str, known: Option, default: Any) -> Callable[..., Any]:
     is_switch = known.sort is SWITCH
     flag = f"--{flag_of(name, known)}"
-    told = {True: known.off and flag[2:], False: "", None: "", (): ""}.get(default)
-    told = known.sort.shown(default) if told is None else told
+    shown = {True: known.off and flag[2:], False: "", None: "", (): ""}.get(default)
+    shown = known.sort.shown(default) if shown is None else shown
     again = "  May be given again." if known.many else ""
     more: dict[str, Any] = {} if is_switch or known.sort.choices else {"metavar": known.sort.form}
     choices = known.sort.choices
@@ -176,15 +176,15 @@ def _option(name: str, known: Option, default: Any) -> Callable[..., Any]:
         is_flag=is_switch,
         multiple=known.many,
         type=bool if is_switch else click.Choice(choices) if choices else SortParamType(known.sort),
-        help=f"{known.help}{again}{f'  [default: {told}]' if told else ''}",
+        help=f"{known.help}{again}{f'  [default: {shown}]' if shown else ''}",
         **more,
     )
 
 
 def said(kind: type, given: dict[str, Any]) -> dict[str, Any]:
     """Takes the options of a dataclass out of what a command is given; those that were said."""
-    taken = {name: given.pop(name) for name in options_in(kind) if name in given}
-    return {name: one for name, one in taken.items() if one is not None and one != ()}
+    chosen = {name: given.pop(name) for name in options_in(kind) if name in given}
+    return {name: one for name, one in chosen.items() if one is not None and one != ()}
 
 
 def spelled_by(kind: type, arguments: Mapping[str, str] = {}) -> Spelling:

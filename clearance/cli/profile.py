@@ -208,7 +208,7 @@ def fit(
     with at(str(sketch_file)):
         found = fitted(sketch, outline, mode, free=names, margin=margin_mm)
     found.sketch.save(out)
-    _tell_fit(found)
+    _print_fit(found)
     click.echo(f"written {out}")
     if picture is not None:
         from clearance.profiles.picture import draw_outlines
@@ -219,7 +219,7 @@ def fit(
         click.echo(f"picture {picture}")
 
 
-def _tell_fit(found) -> None:
+def _print_fit(found) -> None:
     what = "distance" if found.mode == "nearest" else "gap"
     for name, value in found.dimensions.items():
         unit, scale = found.unit_of(name)
@@ -323,7 +323,7 @@ def sweep(
         )
     write_profile(found, out)
     if not quiet:
-        _tell_sweep(found, out)
+        _print_sweep(found, out)
 
 
 def _names(text: str) -> list[str]:
@@ -339,7 +339,7 @@ def _moved(case, motion: str):
     return check(case, motion=motion)
 
 
-def _tell_sweep(found, out: Path) -> None:
+def _print_sweep(found, out: Path) -> None:
     holes = sum(contour.area < 0.0 for contour in found.contours)
     outer = len(found.contours) - holes
     what = f"section at {found.section:g} m" if found.section is not None else "silhouette"

@@ -44,13 +44,13 @@ def _collision(one: BroughtRobot) -> str:
     """What is measured of a robot."""
     from clearance.record.wording import count
 
-    told = []
+    parts = []
     if one.n_triangles is None:
-        told.append("meshes that do not state their triangles")
+        parts.append("meshes that do not state their triangles")
     elif one.n_triangles:
-        told.append(count(one.n_triangles, "triangle"))
+        parts.append(count(one.n_triangles, "triangle"))
     if one.n_shapes:
-        told.append(count(one.n_shapes, "round or box shape"))
+        parts.append(count(one.n_shapes, "round or box shape"))
     if one.n_missing:
-        told.append(f"{count(one.n_missing, 'mesh file')} missing")
-    return ", ".join(told) or "no collision shapes"
+        parts.append(f"{count(one.n_missing, 'mesh file')} missing")
+    return ", ".join(parts) or "no collision shapes"

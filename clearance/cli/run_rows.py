@@ -18,7 +18,7 @@ SUFFIX = ".unfinished"
 
 
 @contextmanager
-def kept_rows(out: Path | None, quiet: bool) -> Iterator[MeasuredRows]:
+def resumable_rows_of(out: Path | None, quiet: bool) -> Iterator[MeasuredRows]:
     """The resumable rows for the report folder `out`; rows in memory where no report is wanted.
 
     Raises:
@@ -37,8 +37,8 @@ def place_of(out: Path) -> Path:
     if not out.is_dir():
         return out.parent / f".{out.name}{SUFFIX}"
     parent = out.parent
-    beside = os.access(parent, os.W_OK) and os.stat(parent).st_dev == os.stat(out).st_dev
-    return parent / f".{out.name}{SUFFIX}" if beside and parent != out else out / SUFFIX
+    fits_beside = os.access(parent, os.W_OK) and os.stat(parent).st_dev == os.stat(out).st_dev
+    return parent / f".{out.name}{SUFFIX}" if fits_beside and parent != out else out / SUFFIX
 
 
 def require_finished(report: Path) -> None:

@@ -78,8 +78,8 @@ def write_receipt_of(
         click.echo(f"{path}: {NOMINAL}", err=True)
     if not quiet:
         size = path.stat().st_size / 1e3
-        told = "receipt     " if receipt == "full" else "sampled receipt  "
-        click.echo(f"  {told}{path}, {size:.0f} kB; proven again by: clearance verify {out}")
+        heading = "receipt     " if receipt == "full" else "sampled receipt  "
+        click.echo(f"  {heading}{path}, {size:.0f} kB; proven again by: clearance verify {out}")
 
 
 @click.command()
@@ -141,12 +141,12 @@ def verify(
             click.echo(f"  {digest[:16]}  {shown(path)}")
         if found.unmeasured:
             click.echo(f"  links and pairs left out, as in the report: {len(found.unmeasured)}")
-            for one in found.unmeasured[:MOST_TOLD]:
+            for one in found.unmeasured[:MOST_LISTED]:
                 click.echo(f"    {shown(one.link)} - {shown(one.obstacle)}: {shown(one.reason)}")
-            if len(found.unmeasured) > MOST_TOLD:
-                click.echo(f"    and {len(found.unmeasured) - MOST_TOLD} more")
+            if len(found.unmeasured) > MOST_LISTED:
+                click.echo(f"    and {len(found.unmeasured) - MOST_LISTED} more")
     return ExitCode.CLEAR if found.proven else ExitCode.VIOLATED
 
 
-MOST_TOLD = 10
+MOST_LISTED = 10
 """Most of what is left out that is told in a terminal."""

@@ -65,8 +65,8 @@ class ComparedFinding:
     @property
     def alarms(self) -> bool:
         """True if a rule is broken, without waiver, as it was not before for all that is known."""
-        told = (FindingChange.NEW, FindingChange.WORSE, FindingChange.NOT_COMPARABLE)
-        return self.now is not None and self.now.fails and self.change in told
+        alarming = (FindingChange.NEW, FindingChange.WORSE, FindingChange.NOT_COMPARABLE)
+        return self.now is not None and self.now.fails and self.change in alarming
 
 
 @dataclass(frozen=True)
@@ -238,11 +238,11 @@ class _Comparer:
         return ComparedFinding(FindingChange.NOT_COMPARABLE if why else change, before, now, why)
 
     def _change(self, before: Finding, now: Finding) -> FindingChange:
-        kept = [finding.status == Status.CLEAR for finding in (before, now)]
+        are_clear = [finding.status == Status.CLEAR for finding in (before, now)]
         if (
-            kept[0] != kept[1]
+            are_clear[0] != are_clear[1]
         ):  # what is clear is listed only where it is the nearest pair of its rule
-            return FindingChange.NEW if kept[0] else FindingChange.GONE
+            return FindingChange.NEW if are_clear[0] else FindingChange.GONE
         ranks = [ORDER.index(finding.status) for finding in (before, now)]
         if ranks[0] != ranks[1]:
             return FindingChange.WORSE if ranks[1] > ranks[0] else FindingChange.BETTER

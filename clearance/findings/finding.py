@@ -156,5 +156,5 @@ class FindingName:
     @property
     def id(self) -> str:
         """16 hexadecimal digits, whatever the order of the bodies."""
-        told = [self.case, self.kind, self.rule, sorted(self.bodies), self.occurrence]
-        return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:16]
+        parts = [self.case, self.kind, self.rule, sorted(self.bodies), self.occurrence]
+        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]

@@ -33,9 +33,9 @@ def finding_line(finding: Finding) -> str:
     if finding.kind == JOINT_LIMITS:
         return f"{finding.rule}: {finding.text}"
     if finding.kind == PROFILE:
-        kept = "kept" if not finding.broken else "not kept"
+        verdict = "kept" if not finding.broken else "not kept"
         gap = "" if finding.clearance is None else f", {gap_text(finding.clearance)} mm"
-        return f"profile {finding.rule!r} {kept}{gap}, limit {limit_mm(finding.fail)} mm ({finding.text})"
+        return f"profile {finding.rule!r} {verdict}{gap}, limit {limit_mm(finding.fail)} mm ({finding.text})"
     if finding.kind == UNPROVEN:
         return _unproven(finding)
     if finding.kind in OF_TOLERANCES:
@@ -71,25 +71,25 @@ def _unproven(finding: Finding) -> str:
     name, limit = ("fail", finding.fail) if finding.broken else ("warn", finding.warn)
     who = f": {bodies_text(finding)}" if finding.body_a else ""
     proven = "" if finding.proven is None else f", at least {mm(finding.proven)} mm"
-    told = (
+    claim = (
         f"not proven to stay above the {name} limit of {limit_mm(limit)} mm{of_rule(finding.rule)}"
     )
-    return f"{told}{proven}{who}, {stretch_text(finding)}; {finding.text}"
+    return f"{claim}{proven}{who}, {stretch_text(finding)}; {finding.text}"
 
 
 def _with_tolerances(finding: Finding) -> str:
     limit = f"the fail limit of {limit_mm(finding.fail)} mm{of_rule(finding.rule)}"
     if finding.kind == WAIVED_TOLERANCES:
         limit = "the level of its waiver"
-    told = f"not proven to keep {limit} with the tolerances"
+    claim = f"not proven to keep {limit} with the tolerances"
     if finding.proven is None:
-        return f"{told}: {finding.text}"
-    left = (
+        return f"{claim}: {finding.text}"
+    remaining = (
         f"at least {mm(finding.proven)} mm" if finding.proven > 0.0 else "contact is not ruled out"
     )
     who = f": {bodies_text(finding)} at {when_text(finding)}" if finding.body_a else ""
     nominal = "" if finding.clearance is None else f", {mm(finding.clearance)} mm nominal"
-    return f"{told}: {left}{nominal}{who}" + (f"; {finding.text}" if finding.text else "")
+    return f"{claim}: {remaining}{nominal}{who}" + (f"; {finding.text}" if finding.text else "")
 
 
 def bodies_text(finding: Finding) -> str:

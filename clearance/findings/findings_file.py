@@ -77,17 +77,17 @@ def finding_list_of(
 def findings_text(found: FindingList) -> str:
     """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances and moves
     nothing where there are none."""
-    told = {"$schema": SCHEMA, **asdict(found)}
+    content = {"$schema": SCHEMA, **asdict(found)}
     for name in ("doubts", "findings"):
-        rows = zip(told[name], getattr(found, name), strict=True)
-        told[name] = [row | {"code": one.code} for row, one in rows]
+        rows = zip(content[name], getattr(found, name), strict=True)
+        content[name] = [row | {"code": one.code} for row, one in rows]
     if not found.measured.tolerances:
-        del told["measured"]["tolerances"]
-    for finding in told["findings"]:
+        del content["measured"]["tolerances"]
+    for finding in content["findings"]:
         for key in ("accepted", "move", "moves"):
             if not finding[key]:
                 del finding[key]
-    return json.dumps(told, indent=1, sort_keys=True, allow_nan=False) + "\n"
+    return json.dumps(content, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 @lru_cache(maxsize=64)

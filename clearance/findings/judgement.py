@@ -95,8 +95,8 @@ class Judgement:
     def status(self) -> str:
         """The worst of what decides the verdict."""
         codes = [code_of(answer) for answer in self.judging]
-        kept = [f for use in self.covering for f in use.findings if f.waived is None]
-        codes += [STATUSES.index(Status(finding.status)) for finding in kept]
+        judged = [f for use in self.covering for f in use.findings if f.waived is None]
+        codes += [STATUSES.index(Status(finding.status)) for finding in judged]
         return str(STATUSES[max(codes, default=0)])
 
 
@@ -206,8 +206,8 @@ class _WaivedRun:
     def _why_not_needed(self, i: int) -> str:
         """Why nothing needs a waiver: what it names is not there, or keeps its rule."""
 
-        told = unknown_name(self.session.record, self.waivers[i])
-        return told or "its pairs keep their limits without it, or a later waiver covers them"
+        unknown = unknown_name(self.session.record, self.waivers[i])
+        return unknown or "its pairs keep their limits without it, or a later waiver covers them"
 
 
 def _unless_shared(waiver: Waiver, why: str) -> str:
@@ -226,8 +226,8 @@ def _waived(finding: Finding, waiver: Waiver, limits: Limits) -> Finding:
     ):
         return finding
     until = str(waiver.until)
-    told = AppliedWaiver(waiver.at_least, waiver.reason, waiver.by, until, finding.proven)
-    return replace(finding, waived=told)
+    applied = AppliedWaiver(waiver.at_least, waiver.reason, waiver.by, until, finding.proven)
+    return replace(finding, waived=applied)
 
 
 def _fault(waiver: Waiver, failing: Finding, undecided: str) -> str:

@@ -80,11 +80,11 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
     start, end = map(float, record.motions[0].times[[step, step + 1]])
     when = span_text(start, end, record.moves.over(start, end))
     above = f"above the {name} limit of {limit_mm(limit)} mm" if limit > 0.0 else "out of contact"
-    told = (
+    line = (
         f"not proven to stay {above}{of_rule(rule.name)}: at least "
         f"{mm(least)} mm, {when}; {why_undecided(record.case)}"
     )
-    return coded_of(told, UNPROVEN)
+    return coded_of(line, UNPROVEN)
 
 
 def at_level_line(judging: Sequence[RuleAnswer]) -> str:
@@ -93,9 +93,9 @@ def at_level_line(judging: Sequence[RuleAnswer]) -> str:
         level, worst, limits = getattr(rule.limits, name), rule.worst, rule.limits
         if worst is None or worst.touches:
             continue
-        apart = float(np.linalg.norm(np.subtract(worst.point_link, worst.point_obstacle)))
-        if apart <= SEEN_AT_LEVEL * limits.rounding and not _contact_is_open(rule):
-            return f"touches but for rounding ({max(apart, worst.clearance):.2g} m apart)"
+        distance = float(np.linalg.norm(np.subtract(worst.point_link, worst.point_obstacle)))
+        if distance <= SEEN_AT_LEVEL * limits.rounding and not _contact_is_open(rule):
+            return f"touches but for rounding ({max(distance, worst.clearance):.2g} m apart)"
         certificate = rule.certificate
         proven = worst.clearance if certificate is None else float(certificate.lower_bound.min())
         if level > 0.0 and not limits.below(proven, level):

@@ -97,7 +97,7 @@ class MeasurementConditions:
 def conditions_of(record: Record) -> MeasurementConditions:
     """The conditions that a record was measured under."""
     certificate, slack = record.certificate, record.case.clock.slack
-    left_out = sorted({(one.link, one.obstacle) for one in record.unmeasured})
+    unmeasured = sorted({(one.link, one.obstacle) for one in record.unmeasured})
     return MeasurementConditions(
         need=record.need,
         method=record.method,
@@ -108,7 +108,7 @@ def conditions_of(record: Record) -> MeasurementConditions:
         robots=tuple(_robot(record, placed) for placed in record.case.robots),
         rules=tuple(_rules(record.case.limits)),
         pairs=_measured_blocks(record.case, _measured(record)),
-        unmeasured=tuple(_blocks(left_out)),
+        unmeasured=tuple(_blocks(unmeasured)),
         tolerances=_tolerances(record.case.tolerance),
     )
 
@@ -117,13 +117,13 @@ def _tolerances(budget: Budget | None) -> str:
     """Of what decides what is proven and expected: not where the numbers come from, nor what is let pass."""
     if budget is None:
         return ""
-    told = (
+    parts = (
         sorted((name, _sorted(one)) for name, one in budget.robots.items()),
         sorted((name, repr(one)) for name, one in budget.obstacles.items()),
         budget.coverage,
         budget.is_normal,
     )
-    return hashlib.sha256(repr(told).encode()).hexdigest()
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
 def _sorted(robot: RobotTolerance) -> str:
@@ -135,8 +135,8 @@ def _robot(record: Record, placed: PlacedRobot) -> MeasuredRobot:
     before = record.case.prefix_of(placed)
     links = tuple(before + link for link in placed.robot.link_names)
     shape = _digest(placed.robot)
-    told = repr((shape, sorted(placed.exclude_links), sorted(placed.padding.items())))
-    return MeasuredRobot(placed.robot.name, hashlib.sha256(told.encode()).hexdigest(), links)
+    parts = repr((shape, sorted(placed.exclude_links), sorted(placed.padding.items())))
+    return MeasuredRobot(placed.robot.name, hashlib.sha256(parts.encode()).hexdigest(), links)
 
 
 _DIGESTS: WeakKeyDictionary[Robot, str] = WeakKeyDictionary()

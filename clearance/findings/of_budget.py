@@ -79,8 +79,8 @@ def _of_waiver(record: Record, use: WaiverUse, one: RuleBudget) -> Finding:
     a, b = use.waiver.between
     named = _named(record, one.rule, one.limits)
     name = FindingName(record.case.name, WAIVED_TOLERANCES, one.rule, (a, b))
-    told = f"{use.waiver} allows {use.waiver.at_least * 1000:g} mm or more"
-    return replace(named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=told)
+    text = f"{use.waiver} allows {use.waiver.at_least * 1000:g} mm or more"
+    return replace(named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=text)
 
 
 def _named(record: Record, rule: str, limits: Limits) -> Finding:
@@ -141,22 +141,22 @@ def budget_lines(record: Record) -> tuple[str, ...]:
 def tolerance_lines(record: Record) -> tuple[str, ...]:
     """These, and which grasps are taken as exact."""
     exact = [f"{one.part} by {one.by}" for one in record.case.carries if one.exact_grasp]
-    told = budget_lines(record)
-    return (*told, f"Grasps taken as exact: {', '.join(exact)}.") if told and exact else told
+    lines = budget_lines(record)
+    return (*lines, f"Grasps taken as exact: {', '.join(exact)}.") if lines and exact else lines
 
 
 def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
     basis = "the samples only" if one.between is None else "the motion"
     waived = " (waived pairs among them)" if record.case.waivers else ""
-    left = f"at least {mm(proven)} mm remain{waived}"
+    remaining = f"at least {mm(proven)} mm remain{waived}"
     if proven <= 0.0:
-        left = "contact is not ruled out"  # a number below 0 says no depth
-    told = f"With all errors at their worst at once {left}{of_rule(one.rule)}; proven for {basis}."
+        remaining = "contact is not ruled out"  # a number below 0 says no depth
+    line = f"With all errors at their worst at once {remaining}{of_rule(one.rule)}; proven for {basis}."
     if expected is not None:
         spread = f"{budget.coverage:g} sigma, estimate{'' if one.between is not None else ' at the samples'}"
-        told += f" Expected ({spread}): {mm(expected)} mm."
-    return told
+        line += f" Expected ({spread}): {mm(expected)} mm."
+    return line
 
 
 def least_expected(one: RuleBudget) -> float | None:

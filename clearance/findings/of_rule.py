@@ -221,7 +221,7 @@ class RuleFindings:
         """A finding of the rule; where nothing is `known` of it, it is kept."""
         limits, rule = self.rule.limits, self.rule.name
         a, b = bodies or ("", "")
-        told: dict[str, Any] = {"status": str(Status.CLEAR), "clearance": None, "proven": None}
+        empty: dict[str, Any] = {"status": str(Status.CLEAR), "clearance": None, "proven": None}
         return Finding(
             id=FindingName(self.session.record.case.name, kind, rule, bodies, occurrence).id,
             kind=kind,
@@ -231,7 +231,7 @@ class RuleFindings:
             occurrence=occurrence,
             fail=limits.fail,
             warn=limits.warn,
-            **(told | known),
+            **(empty | known),
         ).with_moves(self.session.record.moves)
 
 

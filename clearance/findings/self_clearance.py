@@ -43,14 +43,14 @@ def _answer(record: Record, i_robot: int) -> dict[str, Any]:
         if frozenset((pair.link_a, pair.link_b)) not in measured
     )
     whose = "self-clearance" if len(case.robots) == 1 else f"self-clearance of {placed.robot.name}"
-    told = {
+    answer = {
         "robot": placed.robot.name,
         "n_pairs": len(pairs),
         "n_measured": len(measured),
         "n_not_always": len(not_always),
         "left_out": dict(left_out),
     }
-    return told | {"text": f"{whose}: {_text(told)}"}
+    return answer | {"text": f"{whose}: {_text(answer)}"}
 
 
 def _measured(record: Record, i_robot: int) -> tuple[set[frozenset[str]], set[frozenset[str]]]:
@@ -83,11 +83,11 @@ def _reason(placed: PlacedRobot, pair: SelfPair) -> str:
     return NEIGHBOURS if pair.excused == ADJACENT else f"by {pair.excused}"
 
 
-def _text(told: dict[str, Any]) -> str:
-    not_always = told["n_not_always"]
-    text = f"{told['n_measured']} of {told['n_pairs']} pairs measured"
+def _text(answer: dict[str, Any]) -> str:
+    not_always = answer["n_not_always"]
+    text = f"{answer['n_measured']} of {answer['n_pairs']} pairs measured"
     text += f" ({not_always} of them not always)" if not_always else ""
-    for reason, n in sorted(told["left_out"].items(), key=_place):
+    for reason, n in sorted(answer["left_out"].items(), key=_place):
         text += f", {n} {'neighbour' if reason == NEIGHBOURS and n == 1 else reason}"
     return text
 

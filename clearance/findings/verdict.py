@@ -112,7 +112,7 @@ class Verdict:
     n_waivers: int = 0
     waiver_faults: tuple[str, ...] = ()
     tolerances: str = ""
-    left: str = ""
+    remaining: str = ""
     with_tolerances: tuple[str, ...] = ()
     at_level: str = ""
     self_clearance: tuple[str, ...] = ()
@@ -174,7 +174,10 @@ class Verdict:
         text, passing = shown(self.measured), self.measured in _PASSING
         if passing and self.tolerances not in ("", KEPT):
             decision = shown(ACCEPTED if self.tolerances == ACCEPTED else FAIL)
-            text, passing = f"{decision}: limit not proven with tolerances ({self.left})", False
+            text, passing = (
+                f"{decision}: limit not proven with tolerances ({self.remaining})",
+                False,
+            )
         if self.n_waivers:
             text += f" with {count(self.n_waivers, 'waiver')}"
         if self.tolerances == KEPT:
@@ -193,11 +196,11 @@ class Verdict:
 
 
 def _when(case: Case) -> str:
-    told = (clock_text(case.clock.slack), not_measured_text(not_measured(case)))
-    return ", ".join(filter(None, told))
+    parts = (clock_text(case.clock.slack), not_measured_text(not_measured(case)))
+    return ", ".join(filter(None, parts))
 
 
-def _left(of_tolerances: Sequence[Finding]) -> str:
+def _remaining(of_tolerances: Sequence[Finding]) -> str:
     """The worst limit that is not proven with tolerances: proven, required and nominal; empty where all are."""
     if not of_tolerances:
         return ""
@@ -238,9 +241,9 @@ def verdict_of(
     faults = () if judgement is None else judgement.faults
     waiver_faults = tuple(coded_of(fault, UNUSED_WAIVER) for fault in faults)
     reasons += waiver_faults
-    kept = (coded_of(profile_text(one), PROFILE) for one in record.profiles if not one.passed)
+    profiles = (coded_of(profile_text(one), PROFILE) for one in record.profiles if not one.passed)
     broken = [f"{one.kind}: {one.line}" for one in notices if one.severity is Severity.VIOLATED]
-    reasons += [*kept, *broken, *(f"suspect {one.kind}: {one.line}" for one in suspects)]
+    reasons += [*profiles, *broken, *(f"suspect {one.kind}: {one.line}" for one in suspects)]
     if disputing is not None:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(coded_of(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
@@ -267,7 +270,7 @@ def verdict_of(
         n_waivers=0 if judgement is None else len(judgement.covering),
         waiver_faults=waiver_faults,
         tolerances=_tolerances(record.case, measured, of_tolerances),
-        left=_left(of_tolerances),
+        remaining=_remaining(of_tolerances),
         with_tolerances=tolerance_lines(record),
         at_level=at_level_line(judging),
     )
@@ -325,12 +328,12 @@ def _nearest(record: Record, worst: Moment) -> str | None:
 
 def _warnings(record: Record, notices: tuple[Notice, ...]) -> list[str]:
     """Warnings, and suspect input that is accepted; each once."""
-    told = [one.line for one in notices if one.severity is Severity.WARNING]
+    lines = [one.line for one in notices if one.severity is Severity.WARNING]
     if record.certificate is None:
-        told += [one.line for one in notices if one.severity is Severity.UNPROVEN]
-    told += [
+        lines += [one.line for one in notices if one.severity is Severity.UNPROVEN]
+    lines += [
         f"{one.line} (accepted: {one.kind})"
         for one in notices
         if one.severity is Severity.SUSPECT and one.kind in record.case.accept
     ]
-    return list(dict.fromkeys(told))
+    return list(dict.fromkeys(lines))

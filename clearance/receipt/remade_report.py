@@ -23,7 +23,7 @@ PAGE = "report.html"
 
 ABSENT = "not in the folder"
 
-MOST_TOLD, MOST_LETTERS = 3, 80
+MOST_LISTED, MOST_LETTERS = 3, 80
 """Differences between two programs, or files, that are named, and letters of each."""
 
 SHOWN = 48
@@ -49,8 +49,8 @@ def other_maker(receipt: Receipt) -> str:
 
 def listed(names: list[str]) -> str:
     """The first of some names, and how many more there are."""
-    more = [f"and {len(names) - MOST_TOLD} more"] if len(names) > MOST_TOLD else []
-    return ", ".join([*(shown(text[:MOST_LETTERS]) for text in names[:MOST_TOLD]), *more])
+    more = [f"and {len(names) - MOST_LISTED} more"] if len(names) > MOST_LISTED else []
+    return ", ".join([*(shown(text[:MOST_LETTERS]) for text in names[:MOST_LISTED]), *more])
 
 
 def differences(run: Run, place: Path) -> dict[str, str]:

@@ -14,7 +14,7 @@ GREATEST = {"rad": 0.02, "m": 0.05, "s": 1.0}
 """Of no single tolerance is more looked for, unless more is given."""
 
 
-def most_looked_for(unit: str, given: float) -> float:
+def most_searched(unit: str, given: float) -> float:
     """The greatest single tolerance that is looked for: what is told as this may be more."""
     return max(GREATEST[unit], 2.0 * given)
 

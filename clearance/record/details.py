@@ -22,7 +22,7 @@ class RunDetails:
         intervals, events, not_listed: the times below each level, when each is entered and left, and the number of
             those that are left out.
         hints: on pairs that touch all the time. standing: names of the measured bodies that never move.
-        left: by rule, the moments at which tolerances leave least, with what each error takes.
+        least_remaining: by rule, the moments at which tolerances leave least, with what each error takes.
     """
 
     minima: tuple[PairMinimum, ...]
@@ -33,4 +33,4 @@ class RunDetails:
     not_listed: Mapping[str, int]
     hints: tuple[str, ...]
     standing: frozenset[str]
-    left: Mapping[str, tuple[BudgetMoment, ...]]
+    least_remaining: Mapping[str, tuple[BudgetMoment, ...]]

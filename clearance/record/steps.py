@@ -20,7 +20,7 @@ from clearance.world.made_moves import MadeMoves
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
-LEFT = ("proven", "expected")
+REMAINING = ("proven", "expected")
 """The columns of what a budget leaves [m]."""
 
 
@@ -67,7 +67,7 @@ class StepColumns:
     """All that the table of a run's steps is made of.
 
     Attributes:
-        left: (n,) each [m] what a budget leaves, proven and expected; None without one.
+        remaining: (n,) each [m] what a budget leaves, proven and expected; None without one.
     """
 
     case: Case
@@ -75,7 +75,7 @@ class StepColumns:
     pairs: Sequence[Pair]
     judged: RunAnswer
     with_error: bool = False
-    left: tuple[np.ndarray, np.ndarray] | None = None
+    remaining: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
     def n_steps(self) -> int:
@@ -98,8 +98,10 @@ class StepColumns:
             columns["status"] = Names(codes, [str(status) for status in STATUSES])
             if certificate is None and bounded:
                 columns["lower_bound"] = found.lower_bound[block]
-            if self.left is not None:  # NaN where nothing is expected
-                columns |= {k: each[block] for k, each in zip(LEFT, self.left, strict=True)}
+            if self.remaining is not None:  # NaN where nothing is expected
+                columns |= {
+                    k: each[block] for k, each in zip(REMAINING, self.remaining, strict=True)
+                }
             if self.with_error:
                 errors = [motion.tracking_error[block] for motion in self.motions]
                 columns["tracking_error"] = np.max(errors, axis=0)
@@ -122,8 +124,8 @@ def _sides(names: BodyNames, columns: dict[str, Column]) -> dict[str, Column]:
     """The two bodies under the names that every run has, where the run has names of its own for them."""
     if names.sides == SIDES:
         return {}
-    told = zip(names.columns, columns_of(SIDES), strict=True)
-    return {general: columns[own] for own, general in told}
+    sides = zip(names.columns, columns_of(SIDES), strict=True)
+    return {general: columns[own] for own, general in sides}
 
 
 def _rule_columns(names: BodyNames, judged: RunAnswer, steps: slice) -> dict[str, Column]:

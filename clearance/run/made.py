@@ -138,7 +138,7 @@ def _samples(
     if budget is not None:
         from clearance.budget.columns import columns_of
 
-        remaining = columns_of([one.left for one in budget])
+        remaining = columns_of([one.remaining for one in budget])
     columns = StepColumns(case, motions, pairs, run.answer, simulated, remaining)
     on_disk = resources.rows.folder is not None  # which may be gone when somebody reads it
     table: StepColumns | Table = columns
@@ -235,7 +235,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         depths_asked=depths_asked,
         profiles=tuple(one.answer for one in answers.profiles),
         cross_check=answers.cross_check,
-        budget=None if answers.budget is None else tuple(one.left for one in answers.budget),
+        budget=None if answers.budget is None else tuple(one.remaining for one in answers.budget),
         today=question.today,
         body_gaps=question.body_gaps,
         commanded=_commanded(question) if question.motion == "recorded" else None,

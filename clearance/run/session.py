@@ -42,7 +42,7 @@ class RunSession(MeasuringSession):
 
     @cached_property
     def _budget_of(self) -> dict[RuleBudget, MeasuredBudget]:
-        return {one.left: one for one in self.budgets}
+        return {one.remaining: one for one in self.budgets}
 
     def of_pairs(
         self, is_meant: PairTest, need: str | None = None, levels: tuple[float, ...] = ()
@@ -66,8 +66,8 @@ class RunSession(MeasuringSession):
 
         case = self.plan.question.case
         own = budget_answers(case, some, found, DEFAULT_RESOURCES)
-        self._budget_of.update({one.left: one for one in own})
-        return tuple(one.left for one in own)
+        self._budget_of.update({one.remaining: one for one in own})
+        return tuple(one.remaining for one in own)
 
     def least_left(self, budget: RuleBudget) -> tuple[BudgetMoment, ...]:
         """The moments at which tolerances leave least to a rule, the worst first."""

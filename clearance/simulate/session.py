@@ -182,7 +182,7 @@ class MeasuringSession(MeasuredRun):
             not_listed=self.not_listed,
             hints=self.hints,
             standing=self.standing_bodies,
-            left={
+            least_remaining={
                 one.rule: tuple(
                     self.error_sources(one, i) for i in range(len(self.least_left(one)))
                 )

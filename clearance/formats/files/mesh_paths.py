@@ -113,8 +113,8 @@ def _on_another_machine(
         for place, variable in _package_folders(package, folder, package_dirs):
             found = place.joinpath(*parts[i + 1 :])
             if _is_file(found):
-                given_here = not {place, place.parent}.isdisjoint(package_dirs)
-                proven = given_here or _has_manifest(found, place)
+                chosen = not {place, place.parent}.isdisjoint(package_dirs)
+                proven = chosen or _has_manifest(found, place)
                 return MeshPath(found, "" if proven else package, variable, elsewhere=True)
     remedy = "give the folder of its package in robot.package_dirs" if parts else ""
     raise MissingFile(f"there is no mesh {given!r}", valid=remedy)

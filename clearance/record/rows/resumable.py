@@ -65,8 +65,10 @@ class MeasuredRows:
             for key, column in batch.columns.items():
                 values = column.codes if isinstance(column, Names) else column
                 if not start:
-                    room = self.array(f"{name}.{key}", (n_rows,), values.dtype.type)
-                    columns[key] = Names(room, column.names) if isinstance(column, Names) else room
+                    empty = self.array(f"{name}.{key}", (n_rows,), values.dtype.type)
+                    columns[key] = (
+                        Names(empty, column.names) if isinstance(column, Names) else empty
+                    )
                 columns[key] = _filled(columns[key], rows, column)
             start = rows.stop
             self.let_go()
@@ -111,7 +113,7 @@ class ResumableRows(MeasuredRows):
     say: Callable[[str], None] = lambda line: None
     _maps: dict[str, mmap.mmap] = field(default_factory=dict)
     _fresh: set[str] = field(default_factory=set)
-    _told: bool = False
+    _noted: bool = False
     _closed: bool = False
 
     @property
@@ -153,8 +155,8 @@ class ResumableRows(MeasuredRows):
         state = {} if name in self._fresh else _state(path)
         arrays = [self._maps[key] for key in self._maps if key.split(".")[0] == name]
         done = int(state.pop("done", 0))
-        if done and not self._told:
-            self._told = True
+        if done and not self._noted:
+            self._noted = True
             n_done, n_all = spans[done - 1].stop, spans[-1].stop
             self.say(f"resuming: {n_done:,} of {n_all:,} steps are reused from an interrupted run")
         return _ResumableLog(done, state, path, arrays)

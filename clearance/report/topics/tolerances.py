@@ -12,7 +12,7 @@ from decimal import ROUND_FLOOR, Decimal
 from typing import Any, ClassVar, NamedTuple
 
 from clearance.findings.of_budget import NOT_WORKED_OUT, least_expected, tolerance_lines
-from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
+from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget, most_searched
 from clearance.record.record import Record
 from clearance.record.wording import depth_mm, limit_mm, mm, moment_text, of_rule
 from clearance.report.blocks import (
@@ -80,7 +80,7 @@ def largest_text(source: ErrorSource) -> str:
     told = []
     for value, (given, unit) in zip(source.largest, source.tolerances, strict=False):
         if value is not None:
-            more = " or more" if math.inf > value >= most_looked_for(unit, given) else ""
+            more = " or more" if math.inf > value >= most_searched(unit, given) else ""
             told.append(_rounded_down(value, unit) + more)
     return ", ".join(told)
 
@@ -149,7 +149,7 @@ def data(model: ReportModel) -> dict[str, Any]:
     record, budget = model.record, model.record.case.tolerance
     if budget is None:
         return {}
-    left = model.details.left
+    left = model.details.least_remaining
     told = {
         "coverage": budget.coverage,
         "distributions": "normal" if budget.is_normal else "uniform",
