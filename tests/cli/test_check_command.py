@@ -18,7 +18,7 @@ from clearance.cli import run
 from clearance.errors import MissingFile
 from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY
-from tests.cart import PATH, ROOT, files, write_cart
+from tests.cart import CASE, PATH, ROOT, files, write_cart
 
 
 @pytest.fixture
