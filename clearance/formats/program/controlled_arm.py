@@ -15,6 +15,7 @@ from clearance.errors import BadProgram, MissingKey, UnknownLink, at, nearest_na
 from clearance.formats.program.axes import AxisMap
 from clearance.formats.program.controller_program import ControllerMove, PoseTarget
 from clearance.formats.program.conventions import CONVENTIONS, Convention
+from clearance.formats.program.wrist import Wrist, wrist_of
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
@@ -25,6 +26,9 @@ from clearance.world.robot import Robot
 FLANGE, BASE_LINK = "tool0", "base"
 """The links whose frames are the controller's flange and base, where a robot's file keeps to the convention of
 ROS-Industrial."""
+
+FLAGS = r"flags as they were taught, or none (RAPID: `ConfJ\Off` before the move; KRL: no S and T)"
+"""The remedy where those of a configuration contradict each other."""
 
 
 @dataclass(eq=False)
@@ -89,23 +93,66 @@ class ControlledArm:
             BadProgram: the joints are not those of `axes_as`.
         """
         convention, said = self.convention, self.asked.axes_as is not None
-        if convention is None or len(self.axes.numbers) != 6:
+        if convention is None or self.misfit is None:
             if not said and not self.asked.axes:
                 told = f"joints {', '.join(self.axes.numbers)} are taken to turn as the axes do"
                 yield f"{told}; axes_as: plain in the program says so"
             return
-        base = np.eye(4) if self.root_from_base is None else self.root_from_base
-        misfit = convention.misfit(self.chain, self.axes, base)
-        if misfit and said:
+        if self.misfit and said:
             valid = "axes: {joint: {sign: …, offset: …}} beside it, or another preset"
-            raise BadProgram(misfit, where="axes_as", valid=valid)
-        if misfit and not self.asked.axes:
-            yield f"{misfit}; axes in the program says how joints follow, e.g. {{joint: {{sign: -1}}}}"
+            raise BadProgram(self.misfit, where="axes_as", valid=valid)
+        if self.misfit and not self.asked.axes:
+            how = "axes in the program says how joints follow, e.g. {joint: {sign: -1}}"
+            yield f"{self.misfit}; {how}"
         else:
-            self.notes.append(misfit or f"joints turn as the axes of {convention.robots}")
+            told = f"joints turn as the axes of {convention.robots}"
+            self.notes.append(self.misfit or told)
         rules = {number: self.axes.rules[name] for name, number in self.axes.numbers.items()}
         if convention.doubt and not said and "plus" not in rules[3].model_fields_set:
             yield convention.doubt
+
+    @cached_property
+    def misfit(self) -> str | None:
+        """Why the joints are not those of the controller's axes, empty if they are; None if nobody knows these."""
+        if self.convention is None or len(self.axes.numbers) != 6:
+            return None
+        base = np.eye(4) if self.root_from_base is None else self.root_from_base
+        return self.convention.misfit(self.chain, self.axes, base)
+
+    @cached_property
+    def wrist(self) -> Wrist | None:
+        """Where the wrist is; None where flags of a configuration do not say so much."""
+        if self.misfit != "" or self.axes.external or self.root_from_base is None:
+            return None
+        return wrist_of(self.chain, self.axes, self.root_from_base[:3, 2])
+
+    def ranges_of(self, to: PoseTarget, tool: np.ndarray) -> dict[str, list[float]]:
+        """The ranges of joints in a target's configuration [rad or m].
+
+        Raises:
+            BadProgram: its flags do not agree.
+        """
+        held = {name: [value, value] for name, value in self.axes.held(to).items()}
+        found = self.axes.ranges_of(to) | held
+        if self.wrist is None or to.is_behind is None:
+            return found
+        assert self.root_from_base is not None
+        flange = self.root_from_base @ to.pose @ inverse(tool)
+        names = (joint.name for joint in self.chain.masters)
+        limits = dict(zip(names, self.chain.ranges.tolist(), strict=True))
+        for name, ends in self.wrist.ranges(flange, to.is_behind, to.is_back).items():
+            other = found.get(name, limits[name])
+            within = [max(other[0], limits[name][0]), min(other[1], limits[name][1])]
+            both = _overlaps(ends, within)
+            if not both and name in found and within[0] < within[1]:
+                told = f"{name} at {_shown(ends)}, or whole turns off, and at {_shown(other)}"
+                raise BadProgram(f"the configuration asks for {told}", valid=FLAGS)
+            if len(both) > 1:
+                self.notes.append(f"configurations are not checked where {name} has several turns")
+            else:
+                found.setdefault(name, ends)
+                found[name] = both[0] if both else found[name]
+        return found
 
     def base(self) -> dict[str, Any]:
         """The controller's base, as a frame of a program."""
@@ -150,6 +197,18 @@ class ControlledArm:
             return None
         flange = self.tool_at(self.axes.joints_of(one.to), np.eye(4))
         return np.asarray(inverse(self.root_from_base) @ flange)
+
+
+def _overlaps(ends: list[float], other: list[float]) -> list[list[float]]:
+    """What is both in a range of an angle, whole turns off or not, and in another range."""
+    turns = (0.0, 2.0 * np.pi, -2.0 * np.pi)
+    both = ([max(ends[0] + by, other[0]), min(ends[1] + by, other[1])] for by in turns)
+    return [one for one in both if one[0] < one[1]]
+
+
+def _shown(ends: list[float]) -> str:
+    low, high = np.degrees(ends)
+    return f"{low:.4g} to {high:.4g} deg"
 
 
 def pose_written(pose: np.ndarray) -> dict[str, Any]:

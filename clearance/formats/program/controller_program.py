@@ -37,13 +37,17 @@ class PoseTarget:
         pose: (4, 4) `base_from_tool`: work frame times target [m]. external, name: as of an `AxisTarget`.
         ranges: from where to where axes are in the configuration that is asked for [rad], by number from 1.
         near: axes from which the nearest configuration is meant [rad]; None for those before the move.
-        unchecked: flags of the configuration that are no range of one axis, as text.
+        is_behind, is_back: the wrist is behind axis 1, and behind the line from axis 2 to 3; None if nobody
+            says it.
+        unchecked: flags of the configuration that are not read, as text.
     """
 
     pose: np.ndarray
     external: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     near: tuple[float, ...] | None = None
+    is_behind: bool | None = None
+    is_back: bool | None = None
     unchecked: str = ""
     name: str = ""
 

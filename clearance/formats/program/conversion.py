@@ -240,8 +240,7 @@ class _Conversion:
         made: dict[str, Any] = {"speed": self._share(one), "zone": one.zone}
         if isinstance(one.to, AxisTarget):
             return {**made, "joints": self.arm.axes.joints_of(one.to)}
-        held = {name: [value, value] for name, value in self.arm.axes.held(one.to).items()}
-        made["within"] = {**self.arm.axes.ranges_of(one.to), **held}
+        made["within"] = self.arm.ranges_of(one.to, one.tool)
         if one.to.near is not None:
             made["near"] = self.arm.axes.joints_of(AxisTarget(one.to.near, one.to.external))
             self._compare(place_of(one), one.to, made["near"], one.tool)
@@ -328,7 +327,10 @@ class _Conversion:
         if any(one.axis_speed is not None for one in joint_moves):
             yield "speeds of axes are shares of the slowest joint's greatest speed"
         ends = [one.to for one in self._moves if isinstance(one.to, PoseTarget)]
-        if unchecked := dict.fromkeys(one.unchecked for one in ends if one.unchecked):
+        unchecked = dict.fromkeys(one.unchecked for one in ends if one.unchecked)
+        if any(one.is_behind is not None for one in ends) and self.arm.wrist is None:
+            unchecked["whether the wrist is before axis 1 and the upper arm"] = None
+        if unchecked:
             yield f"configurations are not checked for {listed([*unchecked])}"
         if self.compared[0] >= 0.0:
             way, turn = self.compared[0] * 1e3, np.degrees(self.compared[1])

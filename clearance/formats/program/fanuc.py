@@ -1,6 +1,7 @@
 """Programs of FANUC's controllers, as listings of the teach pendant (`.ls`). Millimetres and degrees.
 
-Sources: FANUC, R-30iB Operator's manual (motion instructions, W P R about fixed axes, user and tool frames);
+Sources: FANUC, R-30iB Operator's manual (motions, W P R about fixed axes, user and tool frames, turns);
+visose/Robots, FanucPostProcessor, and a point of onerobotics.com, The perils of six-axis robots (configurations);
 ROS-Industrial, fanuc (the world at the height of axis 2 as link `base`, the faceplate as `tool0`).
 """
 
@@ -44,6 +45,9 @@ _IDLE = re.compile(r"ACC\d+|PTH|BREAK|PSPD\d+|RT_LD\d+|AP_LD\d+|EV\d+%?|INDEV\d+
 """Options of a motion that change nothing of its way, or only how near to its corner it is rounded."""
 
 _ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
+
+_ROUNDING = math.radians(0.1)
+"""Of a pose in a listing: axes are known no better."""
 
 BASE = "FANUC's world is at the height of axis 2 on most robots, and the robot has no link 'base' there"
 
@@ -195,8 +199,8 @@ class _Fanuc:
         x, y, z, *turns = (values[key] for key in _POSE)
         pose = pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
         frame = self._frame(name, "UFRAME", one.frame, line, run, True)
-        unchecked = one.configuration if kind == "ptp" else ""
-        return PoseTarget(frame @ pose, one.external, unchecked=unchecked, name=name), tool
+        asked = _configuration(one.configuration) if kind == "ptp" else {}
+        return PoseTarget(frame @ pose, one.external, name=name, **asked), tool
 
     def _frame(
         self, name: str, kind: str, taught: int | None, line: Line, run: Execution, needed: bool
@@ -266,3 +270,22 @@ class _Fanuc:
             return {"turn_speed": math.radians(value)}
         self.unsaid[str(line)] = None
         return {}
+
+
+def _configuration(text: str) -> dict[str, Any]:
+    """A configuration (`N U T, 0, 0, 0`), by the field of a `PoseTarget`.
+
+    N has axis 5 below 0, U the wrist before the line from axis 2 to 3, T before axis 1. Turns of 0 have axes 4
+    and 6 within half a turn of 0; which axes others count is the robot's.
+    """
+    found = re.fullmatch(r"\s*([NF])\s*([UD])\s*([TB])\s*((?:,\s*-?\d+\s*){3})?", text)
+    if found is None:
+        return {"unchecked": f"CONFIG {text}"} if text else {}
+    ranges = {5: (-math.pi, _ROUNDING) if found[1] == "N" else (-_ROUNDING, math.pi)}
+    asked: dict[str, Any] = {"is_back": found[2] == "D", "is_behind": found[3] == "B"}
+    turns = re.findall(r"-?\d+", found[4] or "")
+    if turns and not any(map(int, turns)):
+        ranges |= dict.fromkeys((4, 6), (-math.pi - _ROUNDING, math.pi + _ROUNDING))
+    else:
+        asked["unchecked"] = f"turns of CONFIG {text}"
+    return {**asked, "ranges": ranges}

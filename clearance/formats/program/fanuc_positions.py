@@ -65,5 +65,5 @@ def _position(text: str) -> Position:
         None if tool is None else int(tool[1]),
         values,
         external,
-        "" if configuration is None else f"CONFIG {configuration[1]}",
+        "" if configuration is None else configuration[1],
     )

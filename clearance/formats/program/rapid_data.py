@@ -123,20 +123,23 @@ def external_of(values: list[float]) -> dict[str, float]:
     return {f"E{i}": value for i, value in enumerate(values, 1) if abs(value) < NO_AXIS}
 
 
-def ranges_of(flags: list[float], has_more: bool) -> dict[int, tuple[float, float]]:
-    """Where axes are by the flags of a configuration: quarter turns of 1, 4 and 6, the sign of 5.
+def configuration_of(flags: list[float], has_more: bool) -> dict[str, Any]:
+    """A configuration by the field of a `PoseTarget`: quarter turns of axes 1, 4 and 6; `cfx` has the sign of axis
+    5, and whether the wrist is behind the lower arm and behind axis 1.
 
     Args:
         has_more: external axes are there; one may be the seventh of an arm, whose `cfx` means something else.
     """
     quarter = math.pi / 2.0
-    found = {
+    ranges = {
         axis: (flag * quarter - _ROUNDING, (flag + 1.0) * quarter + _ROUNDING)
         for axis, flag in zip((1, 4, 6), flags, strict=False)
     }
-    if not has_more and 0.0 <= flags[3] <= 7.0:
-        found[5] = (-math.pi, _ROUNDING) if flags[3] % 2.0 else (-_ROUNDING, math.pi)
-    return found
+    if has_more or not 0.0 <= flags[3] <= 7.0:
+        return {"ranges": ranges, "unchecked": f"cfx {flags[3]:g}"}
+    cfx = int(flags[3])
+    ranges[5] = (-math.pi, _ROUNDING) if cfx & 1 else (-_ROUNDING, math.pi)
+    return {"ranges": ranges, "is_back": bool(cfx & 2), "is_behind": bool(cfx & 4)}
 
 
 def record(value: Any, n: int, is_flagged: bool) -> list[Any]:

@@ -39,10 +39,10 @@ from clearance.formats.program.rapid_data import (
     VALUES,
     array_of,
     base_from_work,
+    configuration_of,
     external_of,
     flange_from_tool,
     pose_of,
-    ranges_of,
     record,
     rel_tool,
 )
@@ -285,8 +285,7 @@ class Rapid:
         if MOVES[call.name].kind != "ptp" or not self.checks:
             return PoseTarget(pose, external_of(external), name=name)
         more = external_of(external)
-        unchecked = "whether the wrist is before axis 1 and the lower arm (cfx)"
-        return PoseTarget(pose, more, ranges_of(flags, bool(more)), unchecked=unchecked, name=name)
+        return PoseTarget(pose, more, name=name, **configuration_of(flags, bool(more)))
 
 
 def _require_plain(call: Call, rule: MoveRule) -> None:

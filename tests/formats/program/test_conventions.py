@@ -33,19 +33,34 @@ ARMS = {
 }  # fmt: skip
 
 
-def arm(axes, places, flange=(0.0, 0.0, 0.0)) -> Robot:
-    """Six joints, and a flange `tool0` that is turned as given."""
-    links = ("root", *(f"link_{i}" for i in range(1, 7)), "tool0")
-    joints = [
-        Joint(f"joint_{i}", JointKind.REVOLUTE, *links[i - 1 : i + 1], _at(place), axis, -4.0, 4.0)
-        for i, (axis, place) in enumerate(zip(axes, places, strict=True), 1)
-    ]
+def arm(axes, places, flange=(0.0, 0.0, 0.0), third=(-4.0, 4.0)) -> Robot:
+    """Six joints, the third within limits, and a flange `tool0` that is turned as given."""
+    links, joints = ("root", *(f"link_{i}" for i in range(1, 7)), "tool0"), []
+    for i, (axis, place) in enumerate(zip(axes, places, strict=True), 1):
+        limits = third if i == 3 else (-4.0, 4.0)
+        named = f"joint_{i}", JointKind.REVOLUTE, *links[i - 1 : i + 1]
+        joints.append(Joint(*named, _at(place), axis, *limits))
     end = Joint("end", JointKind.FIXED, "link_6", "tool0", pose_from_rpy([0.0] * 3, [*flange]))
     return Robot("arm", links, (*joints, end), ())
 
 
 def _at(place) -> np.ndarray:
     return pose_from_rpy([*place], [0.0, 0.0, 0.0])
+
+
+R2000 = (
+    arm(
+        ARMS["fanuc"][0],
+        ((0, 0, 0), (0.312, 0, 0), (0, 0, 1.075), (0, 0, 0.225), (1.28, 0, 0), (0.27, 0, 0)),
+        (math.pi, -math.pi / 2, 0.0),
+    ),
+    (7.962, -5.284, -36.25, 77.661, -51.975, -79.273),
+)
+"""An R-2000iB/165F, and axes [degrees] of a point at N U T 0 0 0 with X 1500, Z 360, W 135 and P -45.
+
+Links: ROS-Industrial, fanuc_r2000ib_support. The point: onerobotics.com, The perils of six-axis robots (2013); it
+says itself how far out the faceplate is.
+"""
 
 
 def made(robot: Robot, maker: str, degrees=(0.0,) * 6, **asked) -> ConvertedProgram:
@@ -130,13 +145,8 @@ def test_an_arm_of_which_nobody_knows_the_axes_is_told():
 
 
 def test_axes_and_pose_of_a_published_point_agree():
-    """A point of an R-2000iB/165F in both ways: onerobotics.com, The perils of six-axis robots (2013).
-
-    Links as in ROS-Industrial's fanuc_r2000ib_support; how far out the faceplate is, the point itself says.
-    """
-    places = ((0, 0, 0), (0.312, 0, 0), (0, 0, 1.075), (0, 0, 0.225), (1.28, 0, 0), (0.27, 0, 0))
-    robot = arm(ARMS["fanuc"][0], places, (math.pi, -math.pi / 2, 0.0))
-    near = tuple(map(math.radians, (7.962, -5.284, -36.25, 77.661, -51.975, -79.273)))
+    robot, degrees = R2000
+    near = tuple(map(math.radians, degrees))
     pose = pose_from_rpy([1.5, 0.0, 0.36], [math.radians(135.0), math.radians(-45.0), 0.0])
     moves = [
         ControllerMove(3, "ptp", AxisTarget(near), np.eye(4)),

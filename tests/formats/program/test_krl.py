@@ -162,7 +162,10 @@ def test_turns_of_a_joint_move_become_ranges_of_axes():
     below = [axis for axis, (low, high) in ptp.to.ranges.items() if high < 0.1 and low < -6.0]
     above = [axis for axis, (low, high) in ptp.to.ranges.items() if low > -0.1 and high > 6.0]
     assert (below, above) == ([2, 5], [1, 3, 4, 6])
-    assert "S 6" in ptp.to.unchecked and not line.to.ranges
+    assert (ptp.to.is_behind, ptp.to.is_back, ptp.to.unchecked) == (False, False, "")
+    assert not line.to.ranges and line.to.is_behind is None
+    (over,) = moves_of(FRAMES + f"PTP {{X 0, Y 0, Z 0, {DOWN}, S 1, T 0}}")
+    assert (over.to.is_behind, over.to.is_back, over.to.unchecked) == (True, None, "bit 1 of S 1")
 
 
 def test_the_case_says_what_the_files_name_only():

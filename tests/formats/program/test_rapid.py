@@ -114,7 +114,8 @@ def test_flags_of_a_configuration_are_ranges_of_axes():
         for axis, ends in one.to.ranges.items()
     }
     assert degrees == {1: (90, 180), 4: (-180, -90), 6: (0, 90), 5: (-180, 0)}
-    assert two.to.ranges == {} and "cfx" in one.to.unchecked
+    assert (one.to.is_behind, one.to.is_back) == (False, False)
+    assert two.to.ranges == {} and two.to.is_behind is None
     (three,) = moves_of(f"MoveJ {target.replace('[9E+09', '[100')},v5,fine,tool0;")
     assert sorted(three.to.ranges) == [1, 4, 6] and three.to.external == {"E1": 100.0}
 
