@@ -24,6 +24,7 @@ from clearance.record.wording import (
     mm,
     moment_text,
     of_rule,
+    padded_mm,
     span_text,
 )
 from clearance.tolerance import SEEN_AT_LEVEL
@@ -39,10 +40,8 @@ def moment_line(record: Record, moment: Moment) -> str:
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if limits.below(moment.clearance, limit):
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
-            return f"{mm(moment.clearance)} mm, {below}: {where}"
-    if moment.clearance <= 0.0:
-        return f"{mm(moment.clearance)} mm less padding{_judged_by(moment)}: {where}"
-    return f"{mm(moment.clearance)} mm{_judged_by(moment)}: {where}"
+            return f"{padded_mm(moment)}, {below}: {where}"
+    return f"{padded_mm(moment)}{_judged_by(moment)}: {where}"
 
 
 def contact_line(record: Record, moment: Moment) -> str:

@@ -331,5 +331,5 @@ def _note_on(zone: CornerZone, corner: Corner) -> str:
         paths = "paths of the tool in its triangle"
     return (
         f"corner zone of {zone.radius * 1e3:.4g} mm{cut} after {zone.name}, {zone.start:.3f} to "
-        f"{zone.end:.3f} s: all {paths} count; links are up to {most * 1e3:.3g} mm off the nominal path"
+        f"{zone.end:.3f} s: all {paths} count; origins of links are up to {most * 1e3:.3g} mm off the nominal path"
     )

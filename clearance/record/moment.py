@@ -53,6 +53,13 @@ class Moment:
     time_b: float | None = None
     depth: Depth | None = None
 
+    @property
+    def padding(self) -> float:
+        """[m] By which the clearance is less than the distance of the shapes; 0 where they touch."""
+        between = np.subtract(self.point_link, self.point_obstacle)
+        less = float(np.linalg.norm(between)) - self.clearance
+        return 0.0 if self.touches else max(0.0, less)
+
     def of_run(self, first: int, padding: float, rule: str) -> Moment:
         """The same moment of a section as the run reports it.
 

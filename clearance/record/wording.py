@@ -89,7 +89,20 @@ def least_text(moment: Moment) -> str:
     """The clearance of the worst moment, or its depth where bodies touch."""
     if moment.touches:
         return depth_text(moment.depth)
-    return f"least clearance {mm(moment.clearance)} mm"
+    return f"least clearance {padded_mm(moment)}"
+
+
+SEEN_PADDING = 1e-4
+"""[m] Less padding than this is told only where bodies are listed."""
+
+
+def padded_mm(moment: Moment) -> str:
+    """The clearance of a moment in millimetres; with padding, that and the distance of the shapes beside it."""
+    text = f"{mm(moment.clearance)} mm"
+    if moment.touches or moment.padding < SEEN_PADDING:
+        return text
+    shapes = mm(moment.clearance + moment.padding)
+    return f"{text} ({shapes} mm less {mm(moment.padding)} mm of padding)"
 
 
 def _range(greatest: str, least: str, exact: bool) -> str:

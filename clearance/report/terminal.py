@@ -16,7 +16,7 @@ from rich.text import Text
 
 from clearance.errors import shown
 from clearance.findings.limit_lines import contact_line, moment_line
-from clearance.record.wording import limits_text, mm
+from clearance.record.wording import least_text, limits_text
 from clearance.report.model import ReportModel
 from clearance.report.topic import TerminalTable, Topic
 from clearance.report.topics import IN_TERMINAL
@@ -68,7 +68,7 @@ def _headline(model: ReportModel) -> Text:
     elif limits.rules or verdict.nearest:
         told = f": {moment_line(record, worst)} ({name})"
     else:
-        told = f"  {name}: least clearance {mm(worst.clearance)} mm"
+        told = f"  {name}: {least_text(worst)}"
         told += f" ({limits_text(limits.fail, limits.warn)})"
         named = record.status_of(worst) != "clear"
         told += f": {worst.link} - {worst.obstacle}" if named else ""
