@@ -140,13 +140,23 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
     Raises:
         NothingToMeasure: there is no pair.
     """
+    selection = measured_selection(case)
+    return selection.pairs, selection.unmeasured
+
+
+def measured_selection(case: Case) -> Selection:
+    """The same, with what judges each pair and its padding.
+
+    Raises:
+        NothingToMeasure: there is no pair.
+    """
     rows = (case.allow, case.limits.rules)
     always = (-np.inf, np.inf)
     active = [tuple(row.is_active(*always, ()) for row in table) for table in rows]
     selection = _selected(case, *active, (), frozenset(), frozenset())
     if not selection.pairs:
         raise nothing_to_measure()
-    return selection.pairs, selection.unmeasured
+    return selection
 
 
 def selected_pairs(phase: Phase) -> Selection:

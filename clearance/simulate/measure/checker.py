@@ -10,19 +10,16 @@ import threading
 import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import itemgetter
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite, SuspectInput, at
-from clearance.kernels.motion.sweep_rows import PairRows, StepRows
-from clearance.kernels.motion.tracked_scene import Scene
 from clearance.progress import never_silent
-from clearance.record.measurement import SWEEP_COUNTERS
 from clearance.record.names import pair_names
+from clearance.simulate.measure.asked_pairs import AskedPairs, nearest_of_many
 from clearance.simulate.measure.inside import DoubtfulPairs
-from clearance.simulate.measure.layout import lay_out
 from clearance.tolerance import REACH
-from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.joint_limits import far_beyond, notices_on_joints
 from clearance.world.joint_positions import joint_extents
@@ -31,11 +28,14 @@ from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity, accepted_kind, worst_first
 from clearance.world.one_time import left_to_the_run, phase_at
-from clearance.world.pairs import Pair, measured_pairs, nothing_to_measure, selected_pairs
+from clearance.world.pairs import Selection, measured_selection, nothing_to_measure, selected_pairs
 from clearance.world.plausibility import notices_of
 from clearance.world.plausible_motion import largest_usual, notices_on_positions
 from clearance.world.reach import require_within_reach
 from clearance.world.trajectory import Trajectory
+
+_BY_CLEARANCE = itemgetter(0, 1)
+"""Contact first, then the least clearance, the first of those alike."""
 
 Configuration = np.ndarray | Sequence[float] | Mapping[str, float]
 
@@ -45,8 +45,9 @@ class Clearance:
     """How close a robot comes to its scene at one configuration, and where.
 
     Attributes:
-        distance: [m] the least over all measured pairs; 0 where a pair touches or overlaps, or one is inside the
-            other.
+        distance: [m] the least over all measured pairs, less their padding; 0 less that where a pair touches or
+            overlaps, or one is inside the other.
+        contact: True where a pair touches, overlaps, or one is inside the other; such a pair comes first.
         link, obstacle: names of the pair that attains it; links carry their robot's name where there are several.
         point_link, point_obstacle: (3,) witness points [m] in the world frame.
         undecided: names of the pairs of which it is open whether one body is inside the other, since a surface has
@@ -59,11 +60,7 @@ class Clearance:
     point_link: np.ndarray
     point_obstacle: np.ndarray
     undecided: tuple[tuple[str, str], ...] = ()
-
-    @property
-    def contact(self) -> bool:
-        """True where a pair touches, overlaps, or one is inside the other."""
-        return self.distance == 0.0
+    contact: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,18 +70,21 @@ class ClearanceOfMany:
     Attributes:
         distances: (n,) [m]. pairs: (n,) indices into `Checker.pairs`. points: (n, 2, 3) [m] on link and obstacle.
         undecided: (n,) True where it is open of a pair whether one body is inside the other.
+        contacts: (n,) True where a pair touches, overlaps, or one is inside the other.
     """
 
     distances: np.ndarray
     pairs: np.ndarray
     points: np.ndarray
     undecided: np.ndarray
+    contacts: np.ndarray
 
 
 class Checker:
     """The least clearance of a case's robots at any configuration.
 
-    Answers are those of `check` at a step with the same positions, to the last bit, whatever was asked before.
+    Answers are those of `check` at a step with the same positions, to the last bit, whatever was asked before: the
+    nearest pair, padding taken off. Rules of `limits` do not choose the pair, and tolerances are not counted.
     Threads may share a checker, but its questions are answered one at a time; give each thread its own.
 
     Args:
@@ -104,11 +104,11 @@ class Checker:
 
     Raises:
         SuspectInput: suspect input, as in `check`, in the case or in joints that no configuration gives.
-        NothingToMeasure: no pair remains. BadInput: a body from a CAD file. BadDimension: a body far beyond any
-            place that a robot works at. BadTime: a time outside the run.
+        NothingToMeasure: no pair remains. BadDimension: a body far beyond any place that a robot works at.
+        BadTime: a time outside the run.
 
     Warns:
-        UserWarning: no time is given, and the case is otherwise at other times of its run.
+        UserWarning: no time is given, and the case is otherwise at other times of its run; or it has tolerances.
     """
 
     @never_silent(lambda: "a Checker prepares the bodies of its case")
@@ -124,24 +124,19 @@ class Checker:
         self._asked = AskedPositions(case, self._names, accept)
         self.notices = worst_first((*notices_of(case), *self._asked.at_rest()))
         self._asked.require_not_suspect(self.notices)
-        case, pairs = _measured(case, time)
-        self.case = case
-        bodies = [body.body_in(case) for pair in pairs for body in pair]
-        require_no_shortfall(bodies, "a Checker")
+        case, measured = _measured(case, time)
+        self.case, pairs = case, measured.pairs
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))
         self._fixed, self._columns = _placing(case, self._names)
-        self._layout = lay_out(case, pairs)
         self._doubtful = DoubtfulPairs(case, pairs)
-        self._is_in_world = self._layout.is_in_world
-        no_rows = PairRows(
-            np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
-        )
-        self._scene = Scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
         self._lock = threading.Lock()
-        self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
-        self._row, self._position = _rows(1), self._fixed[None].copy()
-        self._nearest = self._scene.always_at(self._position, self._row, self._counts)
+        self._position = self._fixed[None].copy()
+        self._alike = []
+        for padding in sorted({*measured.paddings}):
+            places = np.flatnonzero(np.array(measured.paddings) == padding)
+            own = [pairs[i] for i in places]
+            self._alike.append(AskedPairs(case, own, places, padding, self._position))
 
     def distance(self, configuration: Configuration) -> Clearance:
         """The least clearance at one configuration and where it is attained.
@@ -160,15 +155,13 @@ class Checker:
         """
         given = self._given(configuration)
         with self._lock:
-            positions, row = self._position, self._row
-            positions[0][self._columns] = given
-            self._nearest()
-            if not self._is_in_world:
-                self._layout.to_world(positions, row.pair, row.points)
-            link, obstacle = self.pairs[row.pair[0]]
-            distance, points = row.clearance.item(), row.points[0].copy()
-            undecided = tuple([self.pairs[i] for i, _ in self._doubtful.at(positions)])
-        return Clearance(distance, link, obstacle, points[0], points[1], undecided)
+            self._position[0][self._columns] = given
+            found = self._alike[0].at_position()
+            for alike in self._alike[1:]:
+                found = min(found, alike.at_position(), key=_BY_CLEARANCE)
+            undecided = tuple([self.pairs[i] for i, _ in self._doubtful.at(self._position)])
+        (link, obstacle), (a, b) = self.pairs[found.place], found.points
+        return Clearance(found.clearance, link, obstacle, a, b, undecided, not found.apart)
 
     def distances(self, configurations: np.ndarray) -> ClearanceOfMany:
         """The least clearance at each of n configurations (n, k), in one compiled call.
@@ -177,15 +170,16 @@ class Checker:
             BadShape, NotFinite, BadInput, SuspectInput: as `distance`.
         """
         given = self._given(configurations, n_dimensions=2)
-        positions, rows = np.tile(self._fixed, (len(given), 1)), _rows(len(given))
+        positions = np.tile(self._fixed, (len(given), 1))
         positions[:, self._columns] = given
         with self._lock:
-            self._scene.nearest_at(positions, rows, self._counts)
+            found = nearest_of_many([alike.at(positions) for alike in self._alike])
             in_doubt = self._doubtful.at(positions)
-        self._layout.to_world(positions, rows.pair, rows.points)
         undecided = np.zeros(len(positions), dtype=bool)
         undecided[[row for _, row in in_doubt]] = True
-        return ClearanceOfMany(rows.clearance, rows.pair, rows.points, undecided)
+        return ClearanceOfMany(
+            found.clearances, found.places, found.points, undecided, ~found.apart
+        )
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
         """The configuration, (k,) or (n, k), as the joints are named."""
@@ -233,21 +227,26 @@ class Checker:
         return f"{rows}one number for each of {', '.join(self.joint_names)}"
 
 
-def _measured(case: Case, time: float | None) -> tuple[Case, list[Pair]]:
-    """The case at a time [s] of its run, and its pairs; without one a warning says what is left out."""
+def _measured(case: Case, time: float | None) -> tuple[Case, Selection]:
+    """The case at a time [s] of its run, and its pairs; warnings say what is left out."""
+    if case.tolerance is not None:
+        told = (
+            "this Checker counts no tolerances: clearances are nominal; `check` proves what remains"
+        )
+        warnings.warn(told, stacklevel=4)
     if time is not None:
         phase = phase_at(case, time)
-        pairs = selected_pairs(phase).pairs
-        if not pairs:
+        measured = selected_pairs(phase)
+        if not measured.pairs:
             raise nothing_to_measure()
-        return phase.case, pairs
+        return phase.case, measured
     left_out = left_to_the_run(case)
     if left_out:
         told = "; ".join(left_out)
         warnings.warn(
             f"this Checker knows no time: {told}; give time=, [s] of the run", stacklevel=4
         )
-    return case, measured_pairs(case)[0]
+    return case, measured_selection(case)
 
 
 def _placing(case: Case, names: Sequence[tuple[str, ...]]) -> tuple[np.ndarray, np.ndarray]:
@@ -267,13 +266,6 @@ def _at_rest(placed: PlacedRobot) -> Motion:
     n_joints = len(placed.robot.moving_joints)
     return Motion(
         replace(placed, trajectory=None), np.zeros(1), np.zeros((1, n_joints)), np.zeros(1)
-    )
-
-
-def _rows(n: int) -> StepRows:
-    numbers, pair = np.empty((2, n)), np.empty(n, dtype=np.int64)
-    return StepRows(
-        numbers[0], numbers[1], pair, np.empty((n, 2), dtype=np.int64), np.empty((n, 2, 3))
     )
 
 

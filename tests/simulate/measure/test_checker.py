@@ -8,6 +8,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadShape, BadTime, NotFinite, NothingToMeasure, SuspectInput
+from clearance.world.budget import Budget
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.cells import cell
@@ -31,7 +32,7 @@ def assert_row(near, steps, i):
     )
     assert near.point_link.tolist() == [row[f"a_{axis}"] for axis in "xyz"]
     assert near.point_obstacle.tolist() == [row[f"b_{axis}"] for axis in "xyz"]
-    assert near.contact == (row["clearance"] == 0.0)
+    assert near.contact == (row["status"] == "contact")
 
 
 @pytest.mark.slow
@@ -74,6 +75,30 @@ def test_two_robots_are_asked_about_together():
     assert len(checker.joint_names) == 2 * len(one.trajectory.joint_names)
     for i, row in enumerate(one.trajectory.positions):
         assert_row(checker.distance([*row, *row]), run.steps, i)
+
+
+def test_padding_is_taken_off_and_tolerances_are_warned_of():
+    """The pair that padding makes nearest is told; what touches comes first, and is no matter of padding."""
+    case = swaying()
+    far, near = (
+        replace(one, padding=padding)
+        for one, padding in zip(case.obstacles, (0.3, 0.0), strict=True)
+    )
+    (robot,) = case.robots
+    padded = replace(case, obstacles=(far, near), robots=(replace(robot, padding={"l1": 0.01}),))
+    run, checker = cl.check(padded, certify=False), cl.Checker(padded)
+    given = robot.trajectory.positions
+    for i, row in enumerate(given):
+        assert_row(checker.distance(row), run.steps, i)
+    many, plain = checker.distances(given), cl.Checker(case).distances(given)
+    assert np.array_equal(many.distances, run.record.clearances) and (many.distances < 0.0).any()
+    assert {checker.pairs[i] for i in many.pairs} != {checker.pairs[i] for i in plain.pairs}
+    assert not many.contacts.any()
+    touching = replace(padded, obstacles=(far, replace(near, world_from_body=at(x=0.3))))
+    found = cl.Checker(touching).distance([0.0, 0.0])
+    assert found.contact and found.obstacle == near.name and found.distance in (0.0, -0.01)
+    with pytest.warns(UserWarning, match="counts no tolerances"):
+        cl.Checker(replace(case, tolerance=Budget()))
 
 
 def cell_with_a_window():
