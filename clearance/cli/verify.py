@@ -121,16 +121,14 @@ def verify(
     The report is compared with a fresh run, too.
 
     The proof shares no code with the measurement. Limits, rules, waivers and verdict come from the
-    case's files, not from the report. The first line names each file that is not verified. Exit
+    case's files, not from the report. The first line names each file that is not verified: all, where
+    the extra `report` is missing, or another version made them. Exit
     code: 0 the bound is proven and the report is right; 1 it is not: the line names the first pair
     and interval, or the file and its line; 2 bad input: the receipt is damaged, or an input has
     changed.
     """
     from clearance.cli.progress import shown_work
     from clearance.errors import shown
-    from clearance.extras import require
-
-    require("report", "verify")
     from clearance.receipt.verifying import verify as verified
 
     with shown_work(quiet, "proving the bound again, and comparing the report with a fresh run"):

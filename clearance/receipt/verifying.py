@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from clearance.case.packed import require_entry, unpacked
-from clearance.errors import BadSyntax, MissingFile, NoReceipt, at, shown
+from clearance.errors import BadSyntax, MissingFile, NoReceipt, Unavailable, at, shown
+from clearance.extras import require
 from clearance.files import LAST
 from clearance.findings.verdict import KEPT, Verdict
 from clearance.receipt.asked import changed_options, question_of
@@ -27,6 +28,7 @@ from clearance.receipt.remade_report import (
     ABSENT,
     PAGE,
     differences,
+    hashes_of,
     listed,
     other_maker,
     require_report,
@@ -59,7 +61,7 @@ def verify(
     """Whether the receipt proves the certified bound of the report, and the report matches a fresh run.
 
     The proof shares no code with the measurement. The case is run again, and every file of the report is compared
-    with the new one.
+    with the new one, where the libraries that write a report are installed; the headline says if not.
 
     Args:
         folder: a report with `receipt.bin`, or the zip that it was packed into.
@@ -120,14 +122,20 @@ def _compared_with_report(
     found: Verification, run: Run, data: CaseData, receipt: Receipt, place: Path
 ) -> Verification:
     """The verification, with all that differs between the report and a fresh run."""
-    different = differences(run, place)
+    try:
+        require("report", "a fresh report")
+        different = differences(run, place)
+        made_by = other_maker(receipt) if different else ""
+        why = f"made by {made_by}: not compared" if made_by else ""
+    except Unavailable as error:
+        different = dict.fromkeys(hashes_of(place), "")
+        why = f"not compared: {error}"
     absent = [name for name, what in different.items() if what == ABSENT]
     reasons = {ABSENT: absent, "not part of the report": strangers(place)}
     different = {name: what for name, what in different.items() if name not in absent}
-    made_by = other_maker(receipt) if different else ""
     unproven = next(_not_borne(run, data, receipt), "")
-    if made_by:
-        reasons = {f"made by {made_by}: not compared": sorted(different)} | reasons
+    if why:
+        reasons = {why: sorted(different)} | reasons
         failure = _other_verdict(run.verdict, place) or unproven
         return replace(found, failure=failure, not_verified=_by_reason(reasons))
     if receipt.head["compared"] and different.pop(PAGE, ""):

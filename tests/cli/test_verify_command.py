@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +57,27 @@ def test_a_report_that_says_something_else_exits_1(home, capsys):
     hashed(home / "out", "steps.csv")
     assert run(["verify", str(home / "out")]) == ExitCode.VIOLATED
     assert "steps.csv" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_the_bound_is_proven_where_no_report_can_be_written(home, capsys, monkeypatch):
+    """The report's files are not made anew there, which the headline says; its verdict is held against a run's."""
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert run(["verify", str(home / "out")]) == ExitCode.CLEAR
+    told = capsys.readouterr().out
+    assert told.startswith(
+        "PROVEN, NOT VERIFIED: contacts.csv, findings.json, replay.npz, and 5 more (not compared: "
+    )
+    assert (
+        "a fresh report needs pyarrow, which is not installed; pip install 'clearance[report]')"
+        in told
+    )
+    assert "at least 34.887 mm (default) between all 1 pairs" in told and "every byte" not in told
+    summary = home / "out" / "summary.json"
+    summary.write_text(summary.read_text().replace('"verdict": "clear"', '"verdict": "near"'))
+    hashed(home / "out", "summary.json")
+    assert run(["verify", str(home / "out")]) == ExitCode.VIOLATED
+    assert "summary.json says 'near', a fresh run says clear" in capsys.readouterr().out
 
 
 def test_quiet_says_nothing(home, capsys):
