@@ -19,6 +19,7 @@ from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.manifest_file import TrajectoryOptions, is_manifest, load_manifest
 from clearance.batch.options import USUAL, CaseOptions
 from clearance.batch.shared_waivers import as_shared
+from clearance.case.packed import is_zip
 from clearance.case.waiver_file import load_waivers
 from clearance.errors import BadBatch, DuplicateName, MissingFile, at
 from clearance.formats.files.input_files import read_bytes
@@ -103,9 +104,9 @@ def _waived(items: Iterable[Item]) -> Iterator[Item]:
 
 
 def _is_manifest(path: Path) -> bool:
-    """False for a case file, and for what cannot be read: that is a case which tells why."""
+    """False for a case file, packed too, and for what cannot be read: that is a case which tells why."""
     try:
-        return is_manifest(read_bytes(path, path.name))
+        return not is_zip(path) and is_manifest(read_bytes(path, path.name))
     except MissingFile:
         return False
 

@@ -20,7 +20,8 @@ from clearance.batch.keys import DAY, key_of, program, value_digest, variable_ma
 from clearance.batch.manifest_file import TrajectoryOptions
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.shared_waivers import as_shared
-from clearance.case.case_file import CellFile, load_cell, read_case, with_trajectory_file
+from clearance.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
+from clearance.case.packed import is_zip, unpacked_for_now
 from clearance.codes import code_of_error, coded
 from clearance.errors import ClearanceError, Incomplete
 from clearance.formats.files.input_files import InputFiles
@@ -121,7 +122,8 @@ class _Work:
     def take(self, item: Item) -> None:
         """Measures an item; a fault of one costs no other."""
         try:
-            self._measure(item)
+            with unpacked_for_now():
+                self._measure(item)
         except ClearanceError as error:
             self.faults.append(Fault(item.number, error.line))
         except Exception as error:
@@ -176,7 +178,11 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     given = item.trajectory
     if given is None:
         file = Path(item.file)
-        case = read_case(file, InputFiles(file.parent))
+        case = load_case(file)
+        if is_zip(file):
+            files = InputFiles(file.parent)
+            files.unread(file)
+            case = case.with_remarks(sources=files.sources)
         return ReadItem(case, case.sources)
     cell, since = _cell(item.file, batch)
     reading = TrajectoryOptions.model_validate(json.loads(given.reading))

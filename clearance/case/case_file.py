@@ -23,7 +23,7 @@ from clearance.case.allow import (
 from clearance.case.case_document import ScenePlace, read_schema
 from clearance.case.case_list import refuse_folder
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
-from clearance.case.packed import require_entry, unpacked
+from clearance.case.packed import refuse_zip, require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
@@ -89,6 +89,7 @@ def load_cell(path: str | PathLike[str]) -> CellFile:
         BadInput: as `load_case`.
     """
     path = Path(path)
+    refuse_zip(path)
     return _read(path, schema.Cell, InputFiles(path.parent))
 
 

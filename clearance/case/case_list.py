@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from clearance.case.packed import is_zip
 from clearance.errors import NEAREST_NAMES, BadInput, MissingFile
 from clearance.formats.files.input_files import read_bytes
 from clearance.plain_yaml import parse_yaml
@@ -24,6 +25,8 @@ def cases_in(path: Path) -> list[Path]:
     Raises:
         BadInput: other keys beside the list, or a pattern outside the folder. MissingFile: nothing matches.
     """
+    if is_zip(path):
+        return [path]
     content = mapping_in(path)
     if CASES not in content:
         return [path]

@@ -144,11 +144,29 @@ def unpacked(path: Path) -> Iterator[Unpacked | None]:
             yield found
 
 
+_FOLDERS: set[Path] = set()
+"""All that this process has unpacked."""
+
+
+@contextmanager
+def unpacked_for_now() -> Iterator[None]:
+    """Removes at its end all that is unpacked meanwhile."""
+    before = {*_FOLDERS}
+    try:
+        yield
+    finally:
+        for folder in _FOLDERS - before:
+            shutil.rmtree(folder, ignore_errors=True)
+            _unpacked.cache_clear()
+        _FOLDERS.intersection_update(before)
+
+
 @cache
 def _unpacked(path: Path, sha256: str) -> Unpacked:
     """The zip with this sha256; once in a process."""
     folder = Path(tempfile.mkdtemp(prefix="clearance-"))
     names_within(folder)
+    _FOLDERS.add(folder)
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     try:
         with zipfile.ZipFile(path) as archive:

@@ -101,7 +101,7 @@ def _withdraw(place: Path, error: Exception | None = None) -> None:
 
 
 @batch.command(cls=AnsweringCommand, report_unread=_report_unread)
-@click.argument("arguments", metavar="MANIFEST.yaml|CASE.yaml|GLOB…", nargs=-1, required=True)
+@click.argument("arguments", metavar="MANIFEST.yaml|CASE.yaml|ZIP|GLOB…", nargs=-1, required=True)
 @click.option(
     "--out",
     "place",

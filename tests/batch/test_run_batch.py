@@ -13,7 +13,9 @@ from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
 from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, measure
+from clearance.case import packed
 from clearance.case.case_file import load_cell, with_trajectory_file
+from clearance.case.packing import case_contents, write_pack
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.run import Question, answer
 from tests.batch.batches import (
@@ -88,6 +90,29 @@ def test_a_case_file_is_known_by_all_that_it_was_made_from(tmp_path):
     assert run_here(manifest, tmp_path / "out")[0].measured == []
     write_path(tmp_path / "in" / "t001.csv", 0.01)
     assert run_here(manifest, tmp_path / "out")[0].measured == ["case1"]
+
+
+def test_packed_cases_are_taken_and_measured_again_where_they_change(tmp_path):
+    """Each is unpacked while it is measured; its zip is the file that it was made from."""
+    write_cell(tmp_path / "in", [0.2, 0.04])
+    for name in ("t000", "t001"):
+        case = tmp_path / "in" / f"{name}.yaml"
+        case.write_text(CELL.replace("name: rail\n", f"trajectory: {name}.csv\n"))
+        write_pack(case_contents(case), tmp_path / f"{name}.zip", {})
+    (tmp_path / "all.yaml").write_text("cases: 't*.zip'\n")
+    before = {*packed._FOLDERS}
+    told, found = run_here(tmp_path / "all.yaml", tmp_path / "out")
+    assert statuses(found) == {"t000": "near", "t001": "violated"} and len(told.measured) == 2
+    assert packed._FOLDERS == before
+    told, _ = run_here(tmp_path / "all.yaml", tmp_path / "out")
+    assert told.measured == []
+    (tmp_path / "t000.zip").replace(tmp_path / "t001.zip")
+    (tmp_path / "all.yaml").write_text("cases: t001.zip\n")
+    told, found = run_here(tmp_path / "all.yaml", tmp_path / "out")
+    assert told.measured == ["t001"] and statuses(found) == {"t001": "near"}
+    (tmp_path / "all.yaml").write_text("cell: t001.zip\ntrajectories: in/t001.csv\n")
+    _, found = run_here(tmp_path / "all.yaml", tmp_path / "out")
+    assert "t001.zip: is a zip; unzip it, and give its case file" in column(found, "text")[0]
 
 
 def test_fresh_measures_all_again(manifest, tmp_path):
