@@ -194,6 +194,26 @@ def _parts(one: Expression) -> tuple[Expression, ...]:
             return ()
 
 
+class Spelled(str):
+    """A name as it is compared; messages show it as it is written."""
+
+    def __new__(cls, name: str, written: str = "") -> Spelled:
+        found = super().__new__(cls, name)
+        found.written = written or name
+        return found
+
+    written: str
+
+    def __str__(self) -> str:
+        return self.written
+
+    def __repr__(self) -> str:
+        return repr(self.written)
+
+    def __format__(self, spec: str) -> str:
+        return format(self.written, spec)
+
+
 @dataclass(frozen=True)
 class Grammar:
     """How a language writes expressions.
@@ -217,7 +237,9 @@ class Grammar:
 
     def folded(self, name: str) -> str:
         """A name as it is compared."""
-        return self.spelling.get(name.lower(), name.lower()) if self.folds else name
+        if not self.folds:
+            return name
+        return self.spelling.get(name.lower()) or Spelled(name.lower(), str(name))
 
 
 class ExpressionReader:

@@ -29,6 +29,7 @@ from clearance.formats.program.expressions import (
     Name,
     Part,
     Unknown,
+    calls_in,
     known,
     number,
 )
@@ -257,8 +258,8 @@ class Rapid:
             speed, turn_speed = _speed(given["speed"], call, run)
             via = None
             if rule.to == 1:
-                via = self._target(call, given["point on the arc"], call.args[0], placed)
-            to = self._target(call, given["target"], call.args[rule.to], placed)
+                via = self._target(call, given["point on the arc"], call.args[0], placed, run)
+            to = self._target(call, given["target"], call.args[rule.to], placed, run)
             point, turn = _zone(given["zone"], call, run)
             if not speed > 0.0:
                 raise BadProgram(f"the speed is {speed:g} m/s", valid="more than 0")
@@ -271,8 +272,10 @@ class Rapid:
             self.zones[len(run.moves)] = (point, turn)
         run.add(move)
 
-    def _target(self, call: Call, value: Any, one: Expression, placed: np.ndarray) -> Target:
-        name = _shown(one)
+    def _target(
+        self, call: Call, value: Any, one: Expression, placed: np.ndarray, run: Execution
+    ) -> Target:
+        name = _shown(one, run)
         if call.name == "MoveAbsJ":
             axes, external = value
             return AxisTarget(
@@ -318,13 +321,24 @@ def _expecting_data(call: Call) -> Iterator[None]:
             ) from None
 
 
-def _shown(one: Expression) -> str:
-    """The name of a target: that of the datum that it is made of."""
-    while isinstance(one, Part | Call):
-        if isinstance(one, Call) and not one.args:
-            return ""
-        one = one.of if isinstance(one, Part) else one.args[0]
-    return one.name.rpartition(".")[2] if isinstance(one, Name) else ""
+def _shown(one: Expression, run: Execution) -> str:
+    """The name of a target: that of the datum that it is made of, within the functions that move it."""
+    if isinstance(one, Part):
+        return _shown(one.of, run)
+    if not isinstance(one, Call):
+        return str(one.name).rpartition(".")[2] if isinstance(one, Name) else ""
+    name = _shown(one.args[0], run) if one.args else ""
+    if not name or one.name not in ("Offs", "RelTool"):
+        return name
+    shown = [_number(part, run) for part in one.args[1:]]
+    turned = [f"\\{key.title()}:={_number(part, run)}" for key, part in one.named.items()]
+    return f"{one.name}({', '.join([name, *shown, *turned])})"
+
+
+def _number(one: Expression, run: Execution) -> str:
+    """A number in words; what a function says, which may change something, is left out."""
+    value = "…" if any(True for _ in calls_in(one)) else run.evaluated(one)
+    return f"{value:g}" if isinstance(value, int | float) else "…"
 
 
 def _speed(value: list[float], call: Call, run: Execution) -> tuple[float, float]:

@@ -21,8 +21,8 @@ MODULE MainModule(NOSTEPIN)
   PERS tooldata gun:=[TRUE,[[0,0,100],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
   TASK PERS wobjdata table:=[FALSE,TRUE,"",[[350,0,100],[1,0,0,0]],[[50,20,0],[0.707107,0,0,0.707107]]];
   CONST jointtarget home:=[[0,10,-20,0,90,0],{NONE}];
-  CONST robtarget p10:=[[100,0,0],[0,1,0,0],[0,0,-1,1],{NONE}];
-  CONST robtarget p20:=[p10.trans,[1,0,0,0],[0,0,0,0],{NONE}];
+  CONST robtarget p10_Table:=[[100,0,0],[0,1,0,0],[0,0,-1,1],{NONE}];
+  CONST robtarget p20:=[p10_table.trans,[1,0,0,0],[0,0,0,0],{NONE}];
   VAR num n:=2;
   PROC main()
     VAR num heights{{2}}:=[30,20];
@@ -32,13 +32,13 @@ MODULE MainModule(NOSTEPIN)
     ENDFOR
     IF DI1=1 TPWrite "ready";
     WaitTime 0.5;
-    MoveC Offs(p10,50,50,0), offs(p10,100,0,0), v100\\V:=50, z10, gun\\WObj:=table;
-    movel RelTool(p10,0,0,-100\\Rz:=90), v100, fine, gun\\WObj:=table;
+    MoveC Offs(p10_Table,50,50,0), offs(p10_table,100,0,0), v100\\V:=50, z10, gun\\WObj:=table;
+    movel RelTool(p10_Table,0,0,-100\\Rz:=90), v100, fine, gun\\WObj:=table;
     ! an end
   ENDPROC
   PROC place(num dz)
-    MoveJ Offs(p10,0,0,dz), v1000, z50, gun\\WObj:=table;
-    MoveL p10, v100, fine, gun\\WObj:=table;
+    MoveJ Offs(p10_Table,0,0,dz), v1000, z50, gun\\WObj:=table;
+    MoveL p10_Table, v100, fine, gun\\WObj:=table;
     SetDO do1, 1;
   ERROR
     RETRY;
@@ -67,7 +67,11 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert place(on.to) == pytest.approx([400, 120, 100]) and on.kind == "lin" and on.speed == 0.1
     assert np.allclose(on.to.pose[:3, :3], [[0, 1, 0], [1, 0, 0], [0, 0, -1]], atol=1e-6)
     assert place(over.to) == pytest.approx([400, 120, 130]) and over.kind == "ptp"
-    assert place(over_low.to) == pytest.approx([400, 120, 120]) and over.to.name == "p10"
+    assert place(over_low.to) == pytest.approx([400, 120, 120])
+    assert [one.to.name for one in (on, over, over_low, arc, last)] == [
+        *("p10_Table", "Offs(p10_Table, 0, 0, 30)", "Offs(p10_Table, 0, 0, 20)"),
+        *("Offs(p10_table, 100, 0, 0)", "RelTool(p10_Table, 0, 0, -100, \\Rz:=90)"),
+    ]
     assert place(arc.via) == pytest.approx([350, 170, 100])
     assert place(arc.to) == pytest.approx([400, 220, 100]) and arc.speed == 0.05
     assert arc.turn_speed == pytest.approx(math.radians(500))
@@ -200,7 +204,7 @@ FAULTS = {
     "GOTO again;": "line 3: 'GOTO' is not understood",
     "IF di1=1 ExitCycle;": "line 3: if decides on ExitCycle at line 3",
     '%"proc"%;': "line 3: '%' is not understood",
-    "g_GripIn;": "line 3: 'g_gripin' is no known instruction",
+    "g_GripIn;": "line 3: 'g_GripIn' is no known instruction",
     "SearchL di1,p,p,v10,tool0;": "line 3: SearchL changes where the robot goes",
     "SingArea\\Wrist;": "not read; SingArea\\Off, so that the tool keeps its orientation",
     "PDispOn p, tool0;": "line 3: PDispOn changes where the robot goes",
@@ -253,7 +257,7 @@ def test_modules_have_data_and_procedures_of_their_own():
     found = read("a.mod", text).moves
     ends = [[2, 1, 0], [1, 0, 0], [4, 2, 0], [2, 0, 0]]
     assert [place(one.to) for one in found] == [pytest.approx(end) for end in ends]
-    assert [one.to.name for one in found] == ["p", "on", "p", "on"]
+    assert [one.to.name for one in found] == ["Offs(p, 1, 1, 0)", "on", "Offs(p, 2, 2, 0)", "on"]
 
 
 def test_what_a_procedure_has_of_its_own_stays_there():
