@@ -38,7 +38,7 @@ def annotation_lines(model: ReportModel, root: Path) -> Iterator[str]:
     lines = [
         *(command("error", title, text) for text in _of_verdict(model.verdict)),
         *_of_findings(model.record, model.findings, root),
-        *(command("warning", title, text) for text in _beside(model.verdict)),
+        *(command("warning", title, text) for text in _other_lines(model.verdict)),
     ]
     yield from lines[:MOST]
 
@@ -50,25 +50,25 @@ def refusal_line(case_file: Path, text: str, root: Path) -> str:
 
 
 def _of_verdict(verdict: Verdict) -> list[str]:
-    told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
-    told += [*verdict.unproven_motion, *verdict.waiver_faults]
+    lines = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
+    lines += [*verdict.unproven_motion, *verdict.waiver_faults]
     if verdict.disputed_by is not None:
-        told.append(f"{verdict.disputed_by} disagrees")
-    return told
+        lines.append(f"{verdict.disputed_by} disagrees")
+    return lines
 
 
-def _beside(verdict: Verdict) -> list[str]:
+def _other_lines(verdict: Verdict) -> list[str]:
     """What bears on a verdict and fails nothing."""
-    told = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
+    lines = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
     if verdict.tolerances == ACCEPTED:
-        told += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
+        lines += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
     for basis, unchecked in (
         (SAMPLES, "the motion between the samples is not checked"),
         (POSE, "no motion is checked"),
     ):
         if verdict.basis == basis:
-            told.append(f"{verdict.headline()}: {unchecked}")
-    return told
+            lines.append(f"{verdict.headline()}: {unchecked}")
+    return lines
 
 
 def _of_findings(record: Record, findings: tuple[Finding, ...], root: Path) -> Iterator[str]:
@@ -90,8 +90,8 @@ def _shown(path: str, root: Path) -> str:
 
 def command(name: str, properties: dict[str, str], message: str) -> str:
     """A workflow command: `::error file=way.csv,line=7::message`."""
-    told = ",".join(f"{key}={_in_property(value)}" for key, value in properties.items())
-    return f"::{name} {told}::{_in_message(message)}"
+    keys = ",".join(f"{key}={_in_property(value)}" for key, value in properties.items())
+    return f"::{name} {keys}::{_in_message(message)}"
 
 
 def _in_message(text: str) -> str:

@@ -80,7 +80,7 @@ def comparison_page(
         "clear" if passed else "violated",
         [Bullets([*map(capital, lines)], "beside")],
     )
-    told: list[object] = [
+    content: list[object] = [
         Chart([(k.lower(), f"{k}: {n}") for k, n in zip("AB", names, strict=True)])
     ]
     fail = max((row.finding.fail for row in comparison.rows), default=0.0)
@@ -89,11 +89,11 @@ def comparison_page(
         without = (
             "Curves need two report folders, with their steps.parquet; findings.json has none."
         )
-        told = [
+        content = [
             Bullets([f"{k}: {n}" for k, n in zip("AB", names, strict=True)]),
             Paragraph(without),
         ]
-    sections = [Section("Clearance over time", told), Section("Findings", [*_table(comparison)])]
+    sections = [Section("Clearance over time", content), Section("Findings", [*_table(comparison)])]
     return plain_page(f"{comparison.now}: compared", header, sections, chart)
 
 
@@ -110,7 +110,9 @@ def _table(comparison: Comparison) -> Iterator[Table | Paragraph]:
 def _row(row: ComparedFinding) -> Row:
     change, *statuses, least, is_now, rule, who, why = comparison_cells(row)
     first: Content = Inline(change, element="strong") if row.alarms else change
-    tags = [Inline(told, f"tag {told.partition(',')[0]}") if told else "" for told in statuses]
+    tags = [
+        Inline(status, f"tag {status.partition(',')[0]}") if status else "" for status in statuses
+    ]
     figures = [Cell(text, "number") for text in (least, is_now)]
     cells = [first, *tags, *figures, rule, who, why]
     return Row(cells, kind="faint" if row.change is FindingChange.GONE else "")
@@ -146,22 +148,22 @@ def print_batch_comparison(found: BatchComparison) -> None:
 
 
 def _batch_verdict(found: BatchComparison) -> str:
-    told = []
+    parts = []
     if found.failing:
-        told.append(f"NEW, WORSE OR LESS KNOWN in {count(len(found.failing), 'case')}")
+        parts.append(f"NEW, WORSE OR LESS KNOWN in {count(len(found.failing), 'case')}")
     if found.waiver_faults:
-        told.append("NEW unused waiver")
+        parts.append("NEW unused waiver")
     findings = ", ".join(f"{n:,} {change}" for change, n in found.counts.items())
-    told.append(f"{count(len(found.cases), 'case')}: {findings or 'no finding to compare'}")
-    return "; ".join(told)
+    parts.append(f"{count(len(found.cases), 'case')}: {findings or 'no finding to compare'}")
+    return "; ".join(parts)
 
 
 def _print(lines: Iterable[str]) -> None:
     console: Console = terminal()
     lines = [*lines]
-    told = [shown(f"  {line}") for line in lines[:MOST_LINES]]
-    told += [f"  and {len(lines) - MOST_LINES:,} more"] if len(lines) > MOST_LINES else []
-    for line in told:
+    shown_lines = [shown(f"  {line}") for line in lines[:MOST_LINES]]
+    shown_lines += [f"  and {len(lines) - MOST_LINES:,} more"] if len(lines) > MOST_LINES else []
+    for line in shown_lines:
         console.print(Text(line), soft_wrap=True, highlight=False)
 
 

@@ -16,30 +16,30 @@ HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", 
 
 def comparison_text(comparison: Comparison) -> str:
     """How many findings are new, worse, and so on: `1 new, 2 unchanged`; what puts that in doubt goes before."""
-    told = ", ".join(f"{number} {what}" for what, number in comparison.counts.items())
+    counts = ", ".join(f"{number} {what}" for what, number in comparison.counts.items())
     why = f"; not comparable: {comparison.whole}" if comparison.whole else ""
     other = ""
     if comparison.before != comparison.now:
         other = f" ({comparison.before!r} against {comparison.now!r})"
     doubt = "".join(f"{text}; " for text in _in_doubt(comparison))
-    return f"since the baseline{other}: {doubt}{told or 'no finding to compare'}{why}"
+    return f"since the baseline{other}: {doubt}{counts or 'no finding to compare'}{why}"
 
 
 def _in_doubt(comparison: Comparison) -> list[str]:
     """What of a comparison is in doubt whatever its findings say, a few words each."""
     rows = comparison.doubts
     kinds = dict.fromkeys(row.doubt.kind for row in rows if row.alarms)
-    told = [
+    parts = [
         f"NEW {_many(kind, [r for r in rows if r.alarms and r.doubt.kind == kind])}"
         for kind in kinds
     ]
-    told += ["LESS IS KNOWN"] * bool(comparison.less)
-    kept = [row for row in rows if row.doubt.fails and row.before and row.now]
-    kinds = dict.fromkeys(row.doubt.kind for row in kept)
-    told += [
-        f"{_many(kind, [r for r in kept if r.doubt.kind == kind])} as before" for kind in kinds
+    parts += ["LESS IS KNOWN"] * bool(comparison.less)
+    unchanged = [row for row in rows if row.doubt.fails and row.before and row.now]
+    kinds = dict.fromkeys(row.doubt.kind for row in unchanged)
+    parts += [
+        f"{_many(kind, [r for r in unchanged if r.doubt.kind == kind])} as before" for kind in kinds
     ]
-    return told
+    return parts
 
 
 def _many(kind: str, rows: list[ComparedDoubt]) -> str:

@@ -42,7 +42,7 @@ class PairCurves:
 
 
 def pair_curves(
-    record: Record, minima: Sequence[PairMinimum], kept: MeasuredRows = IN_MEMORY
+    record: Record, minima: Sequence[PairMinimum], measured: MeasuredRows = IN_MEMORY
 ) -> PairCurves | None:
     """The curves; None unless every pair was measured at every step."""
     every = record.every_pair
@@ -51,7 +51,7 @@ def pair_curves(
     n_pairs = every.clearance.shape[1]
     starts, middles = _stretches(record.motions[0].times, max(1, MOST_NUMBERS // n_pairs))
     least = np.fmin.reduceat(every.clearance, starts, axis=0)
-    kept.let_go()
+    measured.let_go()
     places = {pair: i for i, pair in enumerate(zip(every.links, every.obstacles, strict=True))}
     order = [places[minimum.link, minimum.obstacle] for minimum in minima]
     return PairCurves(middles, _rounded_down(least.T[order]))
@@ -136,11 +136,11 @@ def chart_of(
     Args:
         limit: [m] and what it is `called`.
     """
-    told = [
+    drawn = [
         {"name": one.name, "times": one.times.round(6).tolist(), "clearances": _millimetres(one)}
         for one in (curve.thinned for curve in curves)
     ]
-    return {"limit": limit * 1000.0, "called": called, "curves": told}
+    return {"limit": limit * 1000.0, "called": called, "curves": drawn}
 
 
 def _millimetres(curve: ClearanceCurve) -> list[float | None]:

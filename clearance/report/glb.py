@@ -33,15 +33,15 @@ def glb_of(record: Record, replay: Replay, worst: Moment) -> bytes:
         worst: the most critical moment, which the replay was made with.
     """
     still = still_of(replay)
-    taken = {body.name for body in still.bodies}
-    root, line = free_name(record.case.name, taken), free_name("witness line", taken)
-    base = free_name("world", {*taken, root, line})
+    names = {body.name for body in still.bodies}
+    root, line = free_name(record.case.name, names), free_name("witness line", names)
+    base = free_name("world", {*names, root, line})
     scene = trimesh.Scene(base_frame=base)
     scene.graph.update(frame_from=base, frame_to=root, matrix=Y_UP)
     for body in still.bodies:
         colour = (*body.colour, body.opacity)
         _add(scene, body.name, root, still.shapes[body.i_shape], colour, body.pose)
-    told = {
+    extras = {
         "clearance": worst.clearance,
         "time": worst.time,
         "bodies": [worst.link, worst.obstacle],
@@ -50,7 +50,7 @@ def glb_of(record: Record, replay: Replay, worst: Moment) -> bytes:
         "rule": worst.rule,
         "status": record.status_of(worst),
     }
-    scene.graph.update(frame_from=root, frame_to=line, matrix=np.eye(4), metadata=told)
+    scene.graph.update(frame_from=root, frame_to=line, matrix=np.eye(4), metadata=extras)
     _add_line(scene, line, still)
     return scene.export(file_type="glb", include_normals=False, unitize_normals=False)
 
@@ -80,7 +80,7 @@ def _add(
 ) -> None:
     """Puts a shape of one colour (sRGB and opacity, 0 to 1) below a node."""
     linear = [_linear(value) for value in colour[:3]]
-    look = PBRMaterial(
+    material = PBRMaterial(
         baseColorFactor=[*linear, colour[3]],
         metallicFactor=0.0,
         roughnessFactor=0.8,
@@ -88,15 +88,15 @@ def _add(
         alphaMode="OPAQUE" if colour[3] == 1.0 else "BLEND",
     )
     mesh = trimesh.Trimesh(*shape, process=False, validate=False)
-    mesh.visual = trimesh.visual.TextureVisuals(material=look)
+    mesh.visual = trimesh.visual.TextureVisuals(material=material)
     scene.add_geometry(
         mesh, node_name=name, geom_name=name, parent_node_name=parent, transform=pose
     )
 
 
-def free_name(wanted: str, taken: Collection[str]) -> str:
+def free_name(wanted: str, used: Collection[str]) -> str:
     """The name, with as many lines behind it as it takes to be no body's."""
-    while wanted in taken:
+    while wanted in used:
         wanted += "_"
     return wanted
 

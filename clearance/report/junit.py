@@ -67,11 +67,11 @@ def write_junit(
     Raises:
         Unwritable: the file cannot be written; an older one is left as it was.
     """
-    kept = _that_fit(results)
-    n_left_out = len(results) - len(kept)
-    told = dict(properties) | ({LEFT_OUT: str(n_left_out)} if n_left_out else {})
+    fitting = _that_fit(results)
+    n_left_out = len(results) - len(fitting)
+    all_properties = dict(properties) | ({LEFT_OUT: str(n_left_out)} if n_left_out else {})
     with written_file(path) as file:
-        for part in _parts(suite, kept, told):
+        for part in _parts(suite, fitting, all_properties):
             file.write(part.encode())
 
 
@@ -105,35 +105,35 @@ def _case(result: TestResult, name: str) -> str:
     if not result.text:
         return f"{begin}/>"
     kind = f"type={_quoted(result.fault)} " if result.fault else ""
-    told = f"<{result.outcome} {kind}message={_quoted(result.text)}/>"
+    body = f"<{result.outcome} {kind}message={_quoted(result.text)}/>"
     if result.outcome == "system-out":
-        told = f"<system-out>{escape(shown(result.text))}</system-out>"
-    return f"{begin}>{told}</testcase>"
+        body = f"<system-out>{escape(shown(result.text))}</system-out>"
+    return f"{begin}>{body}</testcase>"
 
 
 def _that_fit(results: Sequence[TestResult]) -> Sequence[TestResult]:
     """The results that a file has room for, in their order; those that fail are the last to be left out."""
-    room, kept = MOST_BYTES, set()
+    n_free, fitting = MOST_BYTES, set()
     for i in sorted(range(len(results)), key=lambda i: (not results[i].fault, i)):
-        room -= len(_case(results[i], results[i].name).encode()) + 16
-        if room < 0:
+        n_free -= len(_case(results[i], results[i].name).encode()) + 16
+        if n_free < 0:
             break
-        kept.add(i)
-    return [result for i, result in enumerate(results) if i in kept]
+        fitting.add(i)
+    return [result for i, result in enumerate(results) if i in fitting]
 
 
 def _named(results: Iterable[TestResult]) -> Iterator[tuple[TestResult, str]]:
     """Each result with a name that no other of its group has."""
-    taken: Counter[tuple[str, str]] = Counter()
+    n_of: Counter[tuple[str, str]] = Counter()
     for result in results:
         group, name = shown(result.group), shown(result.name)
-        taken[group, name] += 1
-        number = taken[group, name]
-        while number > 1 and taken[group, f"{name} ({number})"]:
+        n_of[group, name] += 1
+        number = n_of[group, name]
+        while number > 1 and n_of[group, f"{name} ({number})"]:
             number += 1
-        told = name if number == 1 else f"{name} ({number})"
-        taken[group, told] += number > 1
-        yield result, told
+        numbered = name if number == 1 else f"{name} ({number})"
+        n_of[group, numbered] += number > 1
+        yield result, numbered
 
 
 def shown(text: str) -> str:

@@ -63,14 +63,16 @@ def write_run_junit(model: ReportModel, path: Path) -> None:
 
 
 def _properties(verdict: Verdict) -> dict[str, str]:
-    told = {
+    properties = {
         "verdict": verdict.status,
         "basis": verdict.basis,
         "exit_code": str(verdict.exit_code),
         "not_checked": ", ".join(verdict.not_checked),
     }
-    told |= {"self_clearance": "; ".join(verdict.self_clearance)} if verdict.self_clearance else {}
-    return told | ({"clocks": verdict.clocks} if verdict.clocks else {})
+    properties |= (
+        {"self_clearance": "; ".join(verdict.self_clearance)} if verdict.self_clearance else {}
+    )
+    return properties | ({"clocks": verdict.clocks} if verdict.clocks else {})
 
 
 def results_of(model: ReportModel) -> Iterator[TestResult]:
@@ -131,14 +133,14 @@ def _is_violated(answer: RuleAnswer) -> bool:
 
 def _of_pairs(model: ReportModel) -> Iterator[TestResult]:
     """One case for each finding that is not clear, and for each pair without one, by each rule that judges it."""
-    told = set()
+    listed = set()
     for finding in model.judgement.findings:
         if finding.status != Status.CLEAR:
-            told.add((finding.body_a, finding.body_b, finding.rule))
+            listed.add((finding.body_a, finding.body_b, finding.rule))
             yield _of_finding(finding)
     judge = PairJudge.of(model.record)
     for minimum in model.details.minima:
-        if (minimum.link, minimum.obstacle, minimum.rule) not in told:
+        if (minimum.link, minimum.obstacle, minimum.rule) not in listed:
             yield _of_minimum(model.record, judge, minimum)
 
 
@@ -165,9 +167,9 @@ def _of_budget(model: ReportModel) -> Iterator[TestResult]:
     record, judgement, found = model.record, model.judgement, model.of_tolerances
     yield from map(_of_finding, found)
     broken = {answer.name for answer in judgement.judging if _is_violated(answer)}
-    told = broken | {finding.rule for finding in found}
+    listed = broken | {finding.rule for finding in found}
     for one, line in zip(record.budget or (), budget_lines(record), strict=True):
-        if one.rule not in told:
+        if one.rule not in listed:
             yield TestResult("tolerances", name_shown(one.rule), line)
 
 

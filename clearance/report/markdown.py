@@ -42,19 +42,19 @@ def refusal_markdown(name: str, text: str) -> str:
 def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
     """The verdict, why, and the findings that are not clear; with what became of them since a baseline."""
     verdict, findings = model.verdict, model.findings
-    told = [*_told(verdict)]
+    points = [*_verdict_lines(verdict)]
     if comparison is not None:
         gone = [gone_text(row) for row in comparison.rows if row.now is None]
-        told += [
+        points += [
             comparison_text(comparison),
             *doubt_lines(comparison)[:MOST_ROWS],
             *gone[:MOST_ROWS],
         ]
     shown = [finding for finding in findings if finding.status != "clear"]
     if not shown:
-        told += [f"kept: {finding_line(finding)}" for finding in findings[:MOST_ROWS]]
+        points += [f"kept: {finding_line(finding)}" for finding in findings[:MOST_ROWS]]
     lines = [f"### {plain(model.record.case.name)}: {plain(verdict.headline(str.upper))}", ""]
-    lines += [f"- {plain(text)}" for text in told]
+    lines += [f"- {plain(text)}" for text in points]
     if shown:
         lines += ["", *_table(shown[:MOST_ROWS], comparison)]
     if len(shown) > MOST_ROWS:
@@ -62,14 +62,14 @@ def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
     return "\n".join([*lines, ""]) + "\n"
 
 
-def _told(verdict: Verdict) -> list[str]:
+def _verdict_lines(verdict: Verdict) -> list[str]:
     """What stands beside the verdict: reasons, warnings, what is not checked."""
-    told = [
+    lines = [
         *verdict.reasons,
         *verdict.with_tolerances,
         *(f"warning: {text}" for text in verdict.warnings),
     ]
-    return [*told, *verdict.scope]
+    return [*lines, *verdict.scope]
 
 
 HEADS = (

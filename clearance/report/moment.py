@@ -14,7 +14,7 @@ BODIES = {"link": ("Link", "Obstacle"), "body_a": ("Body", "Other body")}
 """What the two bodies of a pair are called, by the first of `sides`."""
 
 
-def told_moment(record: Record, moment: Moment) -> dict[str, Any]:
+def moment_row(record: Record, moment: Moment) -> dict[str, Any]:
     """A moment as plain data; its bodies and points under both names that tables have for them."""
     points = list(moment.point_link), list(moment.point_obstacle)
     return {

@@ -66,7 +66,7 @@ def moments_of(model: ReportModel) -> dict[str, Any]:
         "need": record.need,
         "header": {"frame_id": "world"},
         "n_left_out": max(0, len(entries) - MOST),
-        "moments": [_told(record, names, entry) for entry in entries[:MOST]],
+        "moments": [_moment_row(record, names, entry) for entry in entries[:MOST]],
     }
 
 
@@ -125,10 +125,10 @@ def _of_pair(record: Record, minimum: PairMinimum, status: str) -> _Entry:
     )
 
 
-def _told(record: Record, names: _Names, entry: _Entry) -> dict[str, Any]:
+def _moment_row(record: Record, names: _Names, entry: _Entry) -> dict[str, Any]:
     paddings = paddings_of(record)
     padding = sum(paddings.get(name, 0.0) for name in entry.bodies)
-    told: dict[str, Any] = {
+    row: dict[str, Any] = {
         "rule": entry.rule,
         "status": entry.status,
         "clearance": entry.clearance,
@@ -138,14 +138,14 @@ def _told(record: Record, names: _Names, entry: _Entry) -> dict[str, Any]:
         "time_from_start": time_of(entry.time),
         "step": entry.step,
         "between": entry.between,
-        "bodies": [names.told(name, entry.time) for name in entry.bodies],
+        "bodies": [names.keys_of(name, entry.time) for name in entry.bodies],
         "nearest_points": [_vector(point) for point in entry.points],
         **_overlap(record, entry),
         "robot_states": [*_states(record, names, entry)],
     }
     if entry.time_b is not None:
-        told["time_from_start_of_second"] = time_of(entry.time_b)
-    return told
+        row["time_from_start_of_second"] = time_of(entry.time_b)
+    return row
 
 
 def time_of(seconds: float) -> dict[str, int]:
@@ -167,11 +167,11 @@ class _Names:
         for placed in case.robots:
             own = {"robot": placed.robot.name} if len(case.robots) > 1 else {}
             for link in placed.robot.link_names:
-                told = {"link_name": link, **own}
+                keys = {"link_name": link, **own}
                 for name in (case.prefix_of(placed) + link, f"{placed.robot.name}/{link}"):
-                    self._links[name] = told
+                    self._links[name] = keys
 
-    def told(self, name: str, time: float) -> dict[str, str]:
+    def keys_of(self, name: str, time: float) -> dict[str, str]:
         """A body: a link of a robot, an object that a link holds or bears then, or one of the world."""
         if name in self._links:
             return {"type": ROBOT_LINK, **self._links[name]}
@@ -183,9 +183,9 @@ class _Names:
     def attached(self, time: float) -> Iterator[dict[str, str]]:
         """The bodies that links hold or bear then."""
         for name in dict.fromkeys([*self._on, *(carry.part for carry in self._carries)]):
-            told = self.told(name, time)
-            if told["type"] == ROBOT_ATTACHED:
-                yield told
+            keys = self.keys_of(name, time)
+            if keys["type"] == ROBOT_ATTACHED:
+                yield keys
 
     def _bearer(self, name: str, time: float) -> str:
         """What carries an obstacle then, or what it is on; nothing if it depends on no other body."""
@@ -210,7 +210,7 @@ def _states(record: Record, names: _Names, entry: _Entry) -> Iterator[dict[str, 
     attached = [*names.attached(entry.time)]
     for motion, positions in zip(record.motions, entry.positions, strict=True):
         robot = motion.placed.robot.name
-        held = [
+        parts = [
             {"link_name": one["link_name"], "object": {"id": one["id"]}}
             for one in attached
             if one.get("robot", robot) == robot
@@ -218,7 +218,7 @@ def _states(record: Record, names: _Names, entry: _Entry) -> Iterator[dict[str, 
         yield {
             "robot": robot,
             "joint_state": {"name": [*motion.joint_names], "position": positions.tolist()},
-            "attached_collision_objects": held,
+            "attached_collision_objects": parts,
             "is_diff": False,
         }
 

@@ -61,17 +61,17 @@ class Drawings(NamedTuple):
 def page_text(
     model: ReportModel,
     drawn: Drawings,
-    kept: MeasuredRows = IN_MEMORY,
+    measured: MeasuredRows = IN_MEMORY,
     comparison: Comparison | None = None,
 ) -> str:
     """`report.html`.
 
     Args:
-        kept: where the record's rows are. comparison: with a baseline.
+        measured: where the record's rows are. comparison: with a baseline.
     """
     findings = model.finding_list.findings
     content = PageContent(summary_of(model), model.verdict, drawn.pictures, findings, comparison)
-    curves = pair_curves(model.record, model.details.minima, kept)
+    curves = pair_curves(model.record, model.details.minima, measured)
     more = PageCurves(curves, [*more_curves(model.record)])
     return page_of(content, drawn.replay, more, drawn.earlier)
 
@@ -80,7 +80,7 @@ def write(
     model: ReportModel,
     drawn: Drawings,
     folder: str | Path,
-    kept: MeasuredRows = IN_MEMORY,
+    measured: MeasuredRows = IN_MEMORY,
     comparison: Comparison | None = None,
 ) -> None:
     """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, where there are tolerances `budget.csv`,
@@ -92,7 +92,7 @@ def write(
     Memory does not grow with the steps: the tables are written a block at a time.
 
     Args:
-        kept: where the record's rows are; files on the way to `folder` lie beside them.
+        measured: where the record's rows are; files on the way to `folder` lie beside them.
         comparison: with a baseline, for the page.
 
     Raises:
@@ -102,15 +102,15 @@ def write(
     texts = {
         MOMENTS: moments_text(model),
         findings_file.FILE_NAME: findings_file.findings_text(model.finding_list),
-        "report.html": page_text(model, drawn, kept, comparison),
+        "report.html": page_text(model, drawn, measured, comparison),
         LAST: json_text(summary_of(model)),
     }
 
     def fill(place: Path) -> None:
-        write_parquet(step_batches(record, kept), place / "steps.parquet")
-        write_csv(lambda: step_batches(record, kept), place / "steps.csv")
+        write_parquet(step_batches(record, measured), place / "steps.parquet")
+        write_csv(lambda: step_batches(record, measured), place / "steps.csv")
         if record.every_pair is not None:
-            write_parquet(pair_batches(record, kept), place / "pairs.parquet")
+            write_parquet(pair_batches(record, measured), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         if record.budget is not None:
             write_csv(lambda: [budget_table(record, model.details.least_remaining)], place / BUDGET)
@@ -118,4 +118,4 @@ def write(
         for name, text in texts.items():
             (place / name).write_text(text, encoding="utf-8")
 
-    fill_folder(Path(folder), fill, OWN, kept.folder)
+    fill_folder(Path(folder), fill, OWN, measured.folder)

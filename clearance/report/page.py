@@ -176,11 +176,11 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
         }
         for pair in summary["pairs"]
     ]
-    told = {"pairs": pairs, "worst_pair": _worst_pair(summary), "curves": None}
+    content = {"pairs": pairs, "worst_pair": _worst_pair(summary), "curves": None}
     if curves is None:
-        return told
+        return content
     rows = [_floats(row, "<f4") for row in curves.clearances]
-    return told | {"curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
+    return content | {"curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
 
 
 def _worst_pair(summary: dict[str, Any]) -> int | None:
@@ -194,7 +194,7 @@ def _worst_pair(summary: dict[str, Any]) -> int | None:
 
 def _more(curves: Sequence[MoreCurve]) -> dict[str, Any]:
     """Curves beside that of the clearance; nothing where there are none."""
-    told = [
+    lines = [
         {
             "name": one.name,
             "times": _floats(one.times, "<f8"),
@@ -204,23 +204,23 @@ def _more(curves: Sequence[MoreCurve]) -> dict[str, Any]:
         }
         for one in curves
     ]
-    return {"more": told} if told else {}
+    return {"more": lines} if lines else {}
 
 
 def _earlier(bodies: Sequence[EarlierBody]) -> dict[str, Any]:
     """Where bodies were before a change; nothing where there is none."""
-    told = [
+    runs = [
         {"body": one.i_body, "poses": _floats(one.poses, "<f4"), "shown": _flags(one.shown)}
         for one in bodies
     ]
-    return {"earlier": told} if told else {}
+    return {"earlier": runs} if runs else {}
 
 
-def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
+def _bands(intervals: list[dict[str, Any]], least: float) -> list[list[float]]:
     """Start and end [s] of each interval; those that no screen can resolve are one."""
     bands: list[list[float]] = []
     for item in intervals:
-        if bands and item["start"] - bands[-1][1] < apart:
+        if bands and item["start"] - bands[-1][1] < least:
             bands[-1][1] = item["end"]
         else:
             bands.append([item["start"], item["end"]])

@@ -222,10 +222,10 @@ def _grid(still: Still) -> np.ndarray:
     """(n, 2, 3) [m] lines a round length apart, under the room, on z = 0 or below what is lower."""
     spacing = 10.0 ** round(math.log10(still.size / 12.0))
     n = math.ceil(0.9 * still.size / spacing)
-    centre = np.round(still.room.mean(axis=0) / spacing) * spacing
+    centre = np.round(still.view_box.mean(axis=0) / spacing) * spacing
     at = np.arange(-n, n + 1) * spacing
     ends = np.empty((2, len(at), 2, 3))
-    ends[..., 2] = min(0.0, float(still.room[0, 2]))
+    ends[..., 2] = min(0.0, float(still.view_box[0, 2]))
     for along in (0, 1):
         ends[along, :, :, along] = centre[along] + at[[0, -1]]
         ends[along, :, :, 1 - along] = (centre[1 - along] + at)[:, None]
@@ -234,13 +234,13 @@ def _grid(still: Still) -> np.ndarray:
 
 def _draw_overlap(image: np.ndarray, screen: Screen, still: Still) -> None:
     """The region that two bodies share, through all that is before it, and the separation vector as an arrow."""
-    if still.region is None or still.way_out is None:
+    if still.region is None or still.separation is None:
         return
     vertices, triangles = still.region
     if len(triangles):
         found = surface(screen, vertices.astype(np.float64)[triangles])
         _mix(image, found.pixels, REGION, REGION_OPACITY)
-    foot, direction = still.way_out
+    foot, direction = still.separation
     start, end = screen.point(foot), screen.point(foot + direction * 0.01 * still.size)
     if start is None or end is None:
         return

@@ -103,8 +103,8 @@ def _pixels(
         with np.errstate(divide="ignore", invalid="ignore"):
             share = (y - one[:, :, 1]) / (other[:, :, 1] - one[:, :, 1])
             x = one[:, :, 0] + share * (other[:, :, 0] - one[:, :, 0])
-        left = np.where(crosses, x, np.inf).min(axis=1)
-        columns = _window(left, np.where(crosses, x, -np.inf).max(axis=1), screen.width)
+        first = np.where(crosses, x, np.inf).min(axis=1)
+        columns = _window(first, np.where(crosses, x, -np.inf).max(axis=1), screen.width)
         for spans in _parts(columns[:, 1] - columns[:, 0]):
             span, column = _spread(spans, columns)
             yield of[span], row[span], column
@@ -169,8 +169,8 @@ def _in_view(screen: Screen, ends: np.ndarray) -> np.ndarray:
     ]
     for i, normal in enumerate(sides):
         beyond = ends @ np.array(normal) - (screen.camera.near if i == 0 else 0.0)
-        kept = (beyond > 0.0).any(axis=1)
-        ends, beyond = ends[kept], beyond[kept]
+        ahead = (beyond > 0.0).any(axis=1)
+        ends, beyond = ends[ahead], beyond[ahead]
         with np.errstate(divide="ignore", invalid="ignore"):
             share = beyond[:, :1] / (beyond[:, :1] - beyond[:, 1:])
             cut = ends[:, 0] + share * (ends[:, 1] - ends[:, 0])

@@ -35,8 +35,8 @@ def audit_headline(pairs: Sequence[ExcusedPair]) -> str:
         (sum(pair.unproven for pair in never), "undecided"),
         (sum(pair.finding.status is PairStatus.APART for pair in never), "proven separate"),
     ]
-    told = ", ".join(f"{n} {what}" for n, what in parts if n)
-    return f"of {count(len(never), 'pair')} excused as {NEVER}: {told}"
+    counts = ", ".join(f"{n} {what}" for n, what in parts if n)
+    return f"of {count(len(never), 'pair')} excused as {NEVER}: {counts}"
 
 
 def audit_rows(robot: Robot, pairs: Sequence[ExcusedPair]) -> Iterator[tuple[str, str, str]]:
@@ -44,7 +44,7 @@ def audit_rows(robot: Robot, pairs: Sequence[ExcusedPair]) -> Iterator[tuple[str
     kinds = {joint.name: joint.kind for joint in robot.joints}
     for pair in sorted(pairs, key=_seriousness):
         found = pair.finding
-        yield f"{found.link_a} - {found.link_b}", pair.reason, _told(found, kinds)
+        yield f"{found.link_a} - {found.link_b}", pair.reason, _finding_text(found, kinds)
 
 
 def _seriousness(pair: ExcusedPair) -> int:
@@ -52,7 +52,7 @@ def _seriousness(pair: ExcusedPair) -> int:
     return order.index(pair.finding.status) + len(order) * (pair.reason != NEVER)
 
 
-def _told(found: PairFinding, kinds: Mapping[str, str]) -> str:
+def _finding_text(found: PairFinding, kinds: Mapping[str, str]) -> str:
     where = ", ".join(
         f"{name} {joint_value(kinds[name], value)}" for name, value in found.positions.items()
     )
@@ -80,8 +80,8 @@ def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair]) -> str:
             lines.append(f'  <disable_collisions {ends} reason="{each.reason}"/>')
     for each in pairs:
         if each.reason is None and each.finding is not None:
-            told = f"{each.pair.link_a} - {each.pair.link_b}: {_told(each.finding, kinds)}"
-            lines.append(f"  <!-- measured: {told.replace('--', '- -')} -->")
+            text = f"{each.pair.link_a} - {each.pair.link_b}: {_finding_text(each.finding, kinds)}"
+            lines.append(f"  <!-- measured: {text.replace('--', '- -')} -->")
     return "\n".join([*lines, "</robot>", ""])
 
 
@@ -89,7 +89,7 @@ def proposal_headline(pairs: Sequence[ProposedPair]) -> str:
     """How many pairs are excused, why, and how many are left to measure."""
     n_never = sum(each.reason == NEVER for each in pairs)
     n_adjacent = sum(each.reason == ADJACENT for each in pairs)
-    left = [each.finding.status for each in pairs if each.reason is None and each.finding]
-    n_meet, n_open = left.count(PairStatus.MEETS), left.count(PairStatus.UNDECIDED)
-    told = f"{n_never} proven never to meet, {n_adjacent} adjacent (not checked)"
-    return f"{count(len(pairs), 'pair')}: {told}; to be measured: {n_meet} can meet, {n_open} undecided"
+    statuses = [each.finding.status for each in pairs if each.reason is None and each.finding]
+    n_meet, n_open = statuses.count(PairStatus.MEETS), statuses.count(PairStatus.UNDECIDED)
+    proven = f"{n_never} proven never to meet, {n_adjacent} adjacent (not checked)"
+    return f"{count(len(pairs), 'pair')}: {proven}; to be measured: {n_meet} can meet, {n_open} undecided"

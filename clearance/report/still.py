@@ -28,11 +28,11 @@ OPACITIES = {LINK: 1.0, PART: 1.0, MOVING: 0.72, STANDING: 0.5}
 COLOURS = {"clear": 0x2B7A4B, "near": 0xB06C00, "violated": 0xC0281C, "contact": 0x8A0F45}
 """Of the line, by status."""
 
-HELD, NEAREST = 0.6, 0.55
+CARRIED, NEAREST = 0.6, 0.55
 """How much of its carrier's colour a part takes on, and the nearest two bodies of that of the status."""
 
-N_ROOM = 60
-"""Frames that the room of all that moves is taken from."""
+N_VIEWED = 60
+"""Frames from which the view box of all that moves is made."""
 
 FIELD_OF_VIEW = math.radians(40.0)
 """From top to bottom."""
@@ -69,9 +69,9 @@ class Still:
         bodies: that are in the cell then. shapes: vertices (n, 3) [m] and triangles (m, 3) of each.
         nearest: the places in `bodies` of the two that are nearest.
         line: (2, 3) [m] the witness points. colour: (3,) sRGB of line and dots.
-        room: (2, 3) [m] lower and upper corner of the box that the camera frames.
-        region: vertices (n, 3) [m] and triangles (m, 3) of what two bodies share, or None. way_out: its foot (3,)
-            [m] and direction (3,), or None.
+        view_box: (2, 3) [m] lower and upper corner of the box that the camera frames.
+        region: vertices (n, 3) [m] and triangles (m, 3) of what two bodies share, or None.
+        separation: foot (3,) [m] and direction (3,) of the separation vector, or None.
     """
 
     bodies: tuple[StillBody, ...]
@@ -79,14 +79,14 @@ class Still:
     nearest: tuple[int, ...]
     line: np.ndarray
     colour: np.ndarray
-    room: np.ndarray
+    view_box: np.ndarray
     region: tuple[np.ndarray, np.ndarray] | None = None
-    way_out: tuple[np.ndarray, np.ndarray] | None = None
+    separation: tuple[np.ndarray, np.ndarray] | None = None
 
     @property
     def size(self) -> float:
-        """[m] the room's diagonal."""
-        return float(np.linalg.norm(self.room[1] - self.room[0]))
+        """[m] the view box's diagonal."""
+        return float(np.linalg.norm(self.view_box[1] - self.view_box[0]))
 
     def placed(self, body: StillBody) -> np.ndarray:
         """(n, 3) [m] a body's vertices in the world."""
@@ -112,12 +112,12 @@ def still_of(replay: Replay) -> Still:
         for k, i in enumerate(seen)
     )
     shapes = tuple(as_solids(*shape) for shape in replay.shapes)
-    line, room = np.reshape(worst.line, (2, 3)), _room(replay)
+    line, view_box = np.reshape(worst.line, (2, 3)), _view_box(replay)
     for contact, region in zip(replay.contacts, replay.regions, strict=True):
         if (contact.frame, contact.link, contact.obstacle) == (frame, *_names(replay, worst)):
-            way_out = np.array(contact.start), np.array(contact.direction)
-            return Still(bodies, shapes, tuple(nearest), line, colour, room, region, way_out)
-    return Still(bodies, shapes, tuple(nearest), line, colour, room)
+            separation = np.array(contact.start), np.array(contact.direction)
+            return Still(bodies, shapes, tuple(nearest), line, colour, view_box, region, separation)
+    return Still(bodies, shapes, tuple(nearest), line, colour, view_box)
 
 
 def _names(replay: Replay, worst: DrawnMoment) -> list[str]:
@@ -157,9 +157,9 @@ def _placed(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
 def _colour(replay: Replay, i: int) -> np.ndarray:
     """A body's own colour; of a part in a hand, with some of the hand's."""
     own, time = _plain_colour(replay.bodies[i]), replay.times[replay.i_worst]
-    for held in replay.carries if replay.bodies[i].kind == PART else ():
-        if held.i_part == i and held.i_by >= 0 and held.start <= time < held.end:
-            return _mixed(own, _plain_colour(replay.bodies[held.i_by]), HELD)
+    for carry in replay.carries if replay.bodies[i].kind == PART else ():
+        if carry.i_part == i and carry.i_by >= 0 and carry.start <= time < carry.end:
+            return _mixed(own, _plain_colour(replay.bodies[carry.i_by]), CARRIED)
     return own
 
 
@@ -181,19 +181,17 @@ def _box_of(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
     return np.array([placed.min(axis=0), placed.max(axis=0)])
 
 
-def _room(replay: Replay) -> np.ndarray:
+def _view_box(replay: Replay) -> np.ndarray:
     """The box of all that moves, a quarter larger, as far as obstacles stand in it."""
     n = len(replay.steps)
-    frames = [i * (n - 1) // max(1, min(n, N_ROOM) - 1) for i in range(min(n, N_ROOM))]
+    frames = [i * (n - 1) // max(1, min(n, N_VIEWED) - 1) for i in range(min(n, N_VIEWED))]
     standing = [i for i, body in enumerate(replay.bodies) if body.kind == STANDING]
     moving = [i for i in range(len(replay.bodies)) if i not in standing]
     obstacles = _boxes(replay, standing, [0])
-    room = _joined(_boxes(replay, moving, frames) or obstacles)
-    around = _joined([room, *obstacles])
-    grown = 0.25 * np.linalg.norm(room[1] - room[0])
-    return np.array(
-        [np.maximum(room[0] - grown, around[0]), np.minimum(room[1] + grown, around[1])]
-    )
+    box = _joined(_boxes(replay, moving, frames) or obstacles)
+    around = _joined([box, *obstacles])
+    grown = 0.25 * np.linalg.norm(box[1] - box[0])
+    return np.array([np.maximum(box[0] - grown, around[0]), np.minimum(box[1] + grown, around[1])])
 
 
 def _boxes(replay: Replay, bodies: Sequence[int], frames: Sequence[int]) -> list[np.ndarray]:
@@ -226,18 +224,18 @@ class Camera:
 def overview(still: Still) -> Camera:
     """All of the room."""
     distance = 0.5 * still.size / math.sin(0.5 * FIELD_OF_VIEW) * 0.8
-    return _look(still, still.room.mean(axis=0), distance)
+    return _camera_towards(still, still.view_box.mean(axis=0), distance)
 
 
 def at_gap(still: Still) -> Camera:
     """The line, from near."""
     length = float(np.linalg.norm(still.line[1] - still.line[0]))
-    return _look(still, still.line.mean(axis=0), max(6.0 * length, still.size / 12.0))
+    return _camera_towards(still, still.line.mean(axis=0), max(6.0 * length, still.size / 12.0))
 
 
-def _look(still: Still, target: np.ndarray, distance: float) -> Camera:
+def _camera_towards(still: Still, target: np.ndarray, distance: float) -> Camera:
     """From the side where fewest boxes hide the line, or the separation vector, and it is least foreshortened."""
-    line = still.line[1] - still.line[0] if still.way_out is None else still.way_out[1]
+    line = still.line[1] - still.line[0] if still.separation is None else still.separation[1]
     length = np.linalg.norm(line)
     line = line / length if length > 0.0 else line
     others = [body for i, body in enumerate(still.bodies) if i not in still.nearest]

@@ -22,12 +22,12 @@ SCHEMA = f"urn:clearance:summary:{FORMAT}"
 def summary_of(model: ReportModel) -> dict[str, Any]:
     """Everything about a run that fits on a page, as JSON-ready values; a limit that does not
     exist is None. Keys `tolerances`, `recordings` and `body_gaps` are there where a case has them."""
-    told: dict[str, Any] = {"$schema": SCHEMA, "format": FORMAT, "name": model.record.case.name}
+    content: dict[str, Any] = {"$schema": SCHEMA, "format": FORMAT, "name": model.record.case.name}
     for topic in EVERY:
         if topic.data is not None:
             named = model.record.moves.named
-            told |= {key: named(value) for key, value in topic.data(model).items()}
-    return told
+            content |= {key: named(value) for key, value in topic.data(model).items()}
+    return content
 
 
 def json_text(summary: dict[str, Any]) -> str:

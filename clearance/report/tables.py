@@ -84,20 +84,20 @@ def _write_csv(batches: Iterable[pa.Table], path: Path, quoting: str) -> None:
             pyarrow.csv.write_csv(batch, file, body)
 
 
-def step_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
+def step_batches(record: Record, measured: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
     """The steps of a record, a block at a time; what a block took of memory is let go after it."""
     for block in blocks(record.rows.n_rows):
         rows = with_contact_columns(record.rows.at(block), record.contacts, block.start)
         yield with_proven_between(rows, record.budget, block.start).arrow()
-        kept.let_go()
+        measured.let_go()
 
 
-def pair_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
+def pair_batches(record: Record, measured: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
     """Every pair at every step of a record that has them, in the same way."""
     assert record.every_pair is not None
     for batch in record.every_pair.batches():
         yield batch
-        kept.let_go()
+        measured.let_go()
 
 
 BUDGET = "budget.csv"
@@ -128,10 +128,13 @@ BUDGET_COLUMNS = {
 """Types in pyarrow. A frame has two tolerances, an offset [m] and an angle [rad]; all else has one."""
 
 
-def budget_table(record: Record, left: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
-    """The table of a record with tolerances; `left` as in `RunDetails`."""
+def budget_table(record: Record, worst_of: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
+    """The table of a record with tolerances; `worst_of` as in `RunDetails`."""
     rows = [
-        row for one in record.budget or () for worst in left[one.rule] for row in _rows(one, worst)
+        row
+        for one in record.budget or ()
+        for worst in worst_of[one.rule]
+        for row in _rows(one, worst)
     ]
     schema = [(name, pa.type_for_alias(kind)) for name, kind in BUDGET_COLUMNS.items()]
     return pa.Table.from_pylist(rows, schema=pa.schema(schema))

@@ -64,29 +64,29 @@ def _headline(model: ReportModel) -> Text:
     text = Text(verdict.headline(str.upper), style=_STYLES.get(verdict.shade, "bold red"))
     name, worst = record.case.name, verdict.worst
     if worst.touches:
-        told = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"
+        after = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"
     elif limits.rules or verdict.nearest:
-        told = f": {moment_line(record, worst)} ({name})"
+        after = f": {moment_line(record, worst)} ({name})"
     else:
-        told = f"  {name}: {least_text(worst)}"
-        told += f" ({limits_text(limits.fail, limits.warn)})"
+        after = f"  {name}: {least_text(worst)}"
+        after += f" ({limits_text(limits.fail, limits.warn)})"
         named = record.status_of(worst) != "clear"
-        told += f": {worst.link} - {worst.obstacle}" if named else ""
-    told += f", {verdict.at_level}" if verdict.at_level else ""
-    return text.append(told, style="default not bold")
+        after += f": {worst.link} - {worst.obstacle}" if named else ""
+    after += f", {verdict.at_level}" if verdict.at_level else ""
+    return text.append(after, style="default not bold")
 
 
 def _row(label: str, value: str) -> Text:
     return Text(f"  {label:<12}", style="dim").append(value, style="default not dim")
 
 
-def terminal_table(told: TerminalTable) -> Table:
+def terminal_table(content: TerminalTable) -> Table:
     """A table as it is printed."""
     table = Table(box=None, pad_edge=False, padding=(0, 2))
-    for i, head in enumerate(told.heads):
+    for i, head in enumerate(content.heads):
         name = head.removeprefix(">")
         table.add_column(name if i else f"  {name}", justify="right" if name != head else "left")
-    for first, *cells in told.rows:
+    for first, *cells in content.rows:
         table.add_row(Text(f"  {_not_a_command(first)}"), *map(Text, cells))
     return table
 

@@ -17,7 +17,7 @@ OLDER_SUMMARY = "summary.older.json"
 """The name of `summary.json` while the folder is not written anew."""
 
 _MARK = b'<header id="older">'
-_TOLD = _MARK + (
+_NOTE = _MARK + (
     b'<div class="title"><h1>Not finished</h1><p class="verdict violated">what follows is older</p></div>'
     b'<ul class="beside"><li>A later run into this folder has not come to its end; the same command goes on. '
     b"This page shows the run before it.</li></ul></header>\n"
@@ -46,4 +46,4 @@ def marked_page(content: bytes) -> bytes:
     if _MARK in content:
         return content
     titled = content.replace(b"<title>", b"<title>Not finished: ", 1)
-    return re.sub(rb"<body[^>]*>\n?", lambda found: found[0] + _TOLD, titled, count=1)
+    return re.sub(rb"<body[^>]*>\n?", lambda found: found[0] + _NOTE, titled, count=1)

@@ -74,9 +74,9 @@ def gap_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:
         where = f"{one['body_a']} - {one['body_b']} at step {one['step']}"
         yield f"{mm(one['gap'])} mm may catch {_parts(one)}: {where}"
     more = len(found) - MOST_LINES
-    told = f"{count(more, 'more pair')}; " if more > 0 else ""
-    told += "" if found else f"none below {limit_mm(max(WIDTHS.values()))} mm; "
-    yield f"{told}{SOURCE}; no verdict depends on it"
+    before = f"{count(more, 'more pair')}; " if more > 0 else ""
+    before += "" if found else f"none below {limit_mm(max(WIDTHS.values()))} mm; "
+    yield f"{before}{SOURCE}; no verdict depends on it"
 
 
 def _parts(gap: dict[str, Any]) -> str:
@@ -90,7 +90,7 @@ def sections(content: PageContent) -> Iterator[Section]:
     if found is None:
         return
     widths = ", ".join(f"{part} {limit_mm(width)} mm" for part, width in WIDTHS.items())
-    told = (
+    note = (
         "Information, no verdict: it is not known who can get there, nor which gaps are too narrow to enter. "
         "The pairs are those of a moving and a standing body, with their least gap at the steps, less padding. "
         f"Widths by the {SOURCE}: {widths}."
@@ -101,7 +101,7 @@ def sections(content: PageContent) -> Iterator[Section]:
     body = Table(heads, rows, "clickable bodies", tall=len(rows) > 24) if rows else none
     more = len(found) - len(rows)
     notes = [f"{count(more, 'more pair')} in summary.json."] if more else []
-    yield Section("Gaps that people may be caught in", [body, *map(faint, [*notes, told])])
+    yield Section("Gaps that people may be caught in", [body, *map(faint, [*notes, note])])
 
 
 def _row(gap: dict[str, Any]) -> Row:

@@ -33,8 +33,8 @@ def data(model: ReportModel) -> dict[str, Any]:
     """All that moves, and how clocks hang together."""
     record = model.record
     moves = moves_of(record)
-    told = {"moves": moves} if moves else {}
-    return told | {
+    moves_row = {"moves": moves} if moves else {}
+    return moves_row | {
         "actors": actors_of(record),
         "carries": carried_of(record),
         "clock": clock_of(record),
@@ -56,10 +56,10 @@ def actors_of(record: Record) -> list[dict[str, Any]]:
         if obstacle.stands and obstacle.name not in carried:
             continue
         kind = "part" if obstacle.name in carried else "obstacle"
-        told = {"name": obstacle.name, "kind": kind, "on": _on(obstacle.mount), "absent": absent}
+        row = {"name": obstacle.name, "kind": kind, "on": _on(obstacle.mount), "absent": absent}
         between = None if obstacle.moves is None else STRAIGHT
         timing = None if obstacle.moves is None else obstacle.moves.timing
-        found.append(told | {"between_samples": between, "timing": _timing(timing)})
+        found.append(row | {"between_samples": between, "timing": _timing(timing)})
     return found
 
 
@@ -170,9 +170,9 @@ def lines(model: ReportModel) -> Iterator[Line]:
     for row in carried_of(model.record)[:MOST_CARRIES]:
         yield "carried", f"{row['part']} by {row['by']}, {span_text(row['from'], row['until'])}"
     paddings = paddings_of(model.record).items()
-    told = [f"{name} {limit_mm(padding)} mm" for name, padding in paddings]
-    if told:
-        yield "padding", f"clearances are less that of both bodies: {listed(told, MOST_PADDINGS)}"
+    padded = [f"{name} {limit_mm(padding)} mm" for name, padding in paddings]
+    if padded:
+        yield "padding", f"clearances are less that of both bodies: {listed(padded, MOST_PADDINGS)}"
 
 
 class Bar(NamedTuple):
@@ -263,8 +263,8 @@ def _absences(summary: dict[str, Any], actor: dict[str, Any]) -> list[Bar]:
 
 
 def _why(summary: dict[str, Any], start: float, end: float) -> str:
-    left_out = any(start < until and since < end for since, until in summary["not_measured"])
-    return "not measured" if left_out else "not in the cell"
+    unmeasured = any(start < until and since < end for since, until in summary["not_measured"])
+    return "not measured" if unmeasured else "not in the cell"
 
 
 def _window(summary: dict[str, Any], rule: dict[str, Any]) -> Bar:

@@ -129,8 +129,8 @@ def lines(model: ReportModel) -> Iterator[Line]:
     yield from _certified_lines(record, model.verdict)
     bound = tessellation_bound(record)
     if bound > 0.01 * record.worst.clearance and bound != 0.0:
-        told = f"round shapes stand up to {bound * 1000:.3g} mm outside the true surfaces: a clearance can be "
-        yield "facets", f"{told}too small by that much, never too large"
+        shapes = f"round shapes are faceted from outside, by up to {bound * 1000:.3g} mm for a pair"
+        yield "facets", f"{shapes}: a clearance can be too small by that much, never too large"
     if record.cross_check is not None:
         yield from labelled("cross-check", _check_lines(record.cross_check))
     notes = _repeats_last(notes_of(record, model.session.hints))
@@ -150,8 +150,8 @@ def _certified_lines(record: Record, verdict: Verdict) -> Iterator[Line]:
     if record.certificate is None:
         yield "certified", "no: the motion between the samples is not checked"
         return
-    told = certified_of(record, record.certificate)
-    yield "certified", certified_text(record.moves.named(told))
+    proven = certified_of(record, record.certificate)
+    yield "certified", certified_text(record.moves.named(proven))
     sample = verdict.worst_sample
     if verdict.worst.between:
         at = seconds(sample.time, record.moves.at(sample.time))
@@ -265,8 +265,8 @@ def _sampling(summary: dict[str, Any]) -> Content:
     if error is None:
         return steps + proven
     greatest = f"{error['greatest']:.4g} rad or m"
-    told = f" The simulated joints leave the trajectory by at most {greatest}, at "
-    return [steps, proven, told, step_link(error["step"]), "."]
+    error_text = f" The simulated joints leave the trajectory by at most {greatest}, at "
+    return [steps, proven, error_text, step_link(error["step"]), "."]
 
 
 def _cross_check(check: dict[str, Any] | None) -> Iterator[Paragraph | Table]:

@@ -35,11 +35,11 @@ def contact_of(record: Record) -> dict[str, Any] | None:
         if pair not in by_pair or row.penetration > by_pair[pair].penetration:
             by_pair[pair] = row
     deepest = sorted(by_pair.values(), key=lambda row: -row.penetration)
-    pairs = [_told(row) | {"n_steps": n_steps[row.link, row.obstacle]} for row in deepest]
-    return {"deepest": _told(record.deepest), "pairs": pairs}
+    pairs = [_contact_row(row) | {"n_steps": n_steps[row.link, row.obstacle]} for row in deepest]
+    return {"deepest": _contact_row(record.deepest), "pairs": pairs}
 
 
-def _told(row: StepContact) -> dict[str, Any]:
+def _contact_row(row: StepContact) -> dict[str, Any]:
     found = row.known
     assert found is not None, "only overlaps with a depth are listed"
     return {
@@ -64,11 +64,11 @@ def lines(model: ReportModel) -> Iterator[Line]:
     found = contact_of(model.record)
     if found is None:
         return
-    told = found["deepest"]
-    text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
+    deepest = found["deepest"]
+    text = f"step {deepest['step']}, {deepest['link']} in {deepest['obstacle']}: {contact_text(deepest)}"
     of_link = model.record.sides[:2] == LINK_AND_OBSTACLE
-    whose = "the link" if of_link else told["link"]
-    yield "deepest", f"{text}; separation vector of {whose} ({_vector(told)}) mm"
+    whose = "the link" if of_link else deepest["link"]
+    yield "deepest", f"{text}; separation vector of {whose} ({_vector(deepest)}) mm"
 
 
 def _vector(contact: dict[str, Any]) -> str:
@@ -87,12 +87,12 @@ def sections(content: PageContent) -> Iterator[Section]:
         return
     deepest = found["deepest"]
     moved = "the link" if summary["sides"][0] == "link" else deepest["link"]
-    told = (
+    after = (
         f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest separation "
         f"vector found moves {moved} by ({_vector(deepest)}) mm, {depth_mm(deepest['penetration'])} mm in all."
     )
     at = f"Deepest at {time_of(deepest)}, "
-    first = Paragraph([at, step_link(deepest["step"]), told])
+    first = Paragraph([at, step_link(deepest["step"]), after])
     heads = (
         *BODIES[summary["sides"][0]], ">Steps", ">Deep, mm", ">At least", ">Shared, cm³", ">At least", ">Time",
     )  # fmt: skip
@@ -122,15 +122,15 @@ def _row(pair: dict[str, Any]) -> Row:
 
 
 def _meaning(pairs: Sequence[dict[str, Any]]) -> str:
-    told = (
+    shown = (
         "Each pair has the deepest of its computed steps: one for every event, its deepest by hulls or "
         "shared volumes, unless more was asked for. At these the replay shows the common region in "
         "red and the separation vector of the first body as an arrow of fixed length. "
     )
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
-        return f"{told}Depth and volume are exact to the rounding of float64."
+        return f"{shown}Depth and volume are exact to the rounding of float64."
     return (
-        f"{told}Depth and volume that are not exact are upper bounds, with the lower bound beside them. "
+        f"{shown}Depth and volume that are not exact are upper bounds, with the lower bound beside them. "
         '"How sure" names the substitute of bodies that are not convex. A separation vector of closed bodies '
         "is confirmed by their own distance after it."
     )

@@ -47,8 +47,8 @@ def sections(content: PageContent) -> Iterator[Section]:
     compared = ["Since baseline"] if comparison else []
     rows = [_row(one, since.get(one.id), bool(compared)) for one in found[:MOST_ROWS]]
     table = Table((*HEADS, *compared, "Waived", "Name"), rows, "clickable findings", tall=True)
-    told = [] if comparison is None else [*_since(comparison)]
-    yield Section("Findings", [*told, table, *map(faint, _notes(found))])
+    before = [] if comparison is None else [*_since(comparison)]
+    yield Section("Findings", [*before, table, *map(faint, _notes(found))])
 
 
 def rows_of_now(comparison: Comparison | None) -> dict[str, ComparedFinding]:

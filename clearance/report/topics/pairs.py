@@ -151,8 +151,8 @@ class Matrix:
 def sections(content: PageContent) -> Iterator[Section]:
     """The matrix, if the pairs were asked for, and what was not measured."""
     if content.summary["pairs"]:
-        told = [_matrix(content.summary), faint(_meaning(content.summary))]
-        yield Section("Least clearance of every pair, mm", told)
+        content_of = [_matrix(content.summary), faint(_meaning(content.summary))]
+        yield Section("Least clearance of every pair, mm", content_of)
     yield Section("Not measured", [*_unmeasured(content.summary)])
 
 
@@ -185,11 +185,11 @@ def groups_of(summary: dict[str, Any]) -> list[Group]:
 
 def _used(groups: Sequence[Group], names: Iterable[str]) -> list[Group]:
     """The groups with those of their bodies that are named; each body once, in the first group that has it."""
-    left = set(names)
+    unused = set(names)
     found = []
     for group in groups:
-        own = tuple(name for name in group.bodies if name in left)
-        left -= set(own)
+        own = tuple(name for name in group.bodies if name in unused)
+        unused -= set(own)
         if own:
             found.append(Group(group.name, own))
     return found
@@ -226,35 +226,35 @@ def _meaning(summary: dict[str, Any]) -> str:
     proven = [pair["proven"] is not None for pair in summary["pairs"]]
     when = "Over the motion" if any(proven) else "At the steps"
     when += " (at the steps for pairs that stay far)" if any(proven) > all(proven) else ""
-    told = (
+    text = (
         f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
         f"line and {shown}; \N{EN DASH} marks a pair that was not measured."
     )
-    told += " Less padding." if summary["paddings"] else ""
-    return told + (
+    text += " Less padding." if summary["paddings"] else ""
+    return text + (
         " Colours go by the rule that judges a pair." if len(summary["rules"]) > 1 else ""
     )
 
 
 def _unmeasured(summary: dict[str, Any]) -> Iterator[Paragraph | Table]:
     """Which links and pairs were left out, and why; how many for each reason, where there are many."""
-    left_out, of_links = summary["unmeasured"], summary["sides"][0] == "link"
+    unmeasured, of_links = summary["unmeasured"], summary["sides"][0] == "link"
     unchecked = [f"{name} not checked" for name in summary["not_checked"]]
-    if not left_out:
+    if not unmeasured:
         unchecked.insert(0, "every link with a shape was measured against every obstacle")
     if unchecked:
         yield Paragraph(f"{capital('; '.join(unchecked))}.")
-    if not left_out:
+    if not unmeasured:
         return
-    many = len(left_out) > MOST_SHOWN_AT_ONCE
+    many = len(unmeasured) > MOST_SHOWN_AT_ONCE
     if many:
-        reasons = Counter(pair["reason"] for pair in left_out)
-        told = ", ".join(f"{reason}: {number:,}" for reason, number in reasons.most_common())
-        yield Paragraph(f"{told}.")
+        reasons = Counter(pair["reason"] for pair in unmeasured)
+        by_reason = ", ".join(f"{reason}: {number:,}" for reason, number in reasons.most_common())
+        yield Paragraph(f"{by_reason}.")
     every = "every obstacle" if of_links else "everything"
     rows = [
         Row([one["link"], every if one["obstacle"] == "*" else one["obstacle"], one["reason"]])
-        for one in left_out
+        for one in unmeasured
     ]
     yield Table((*BODIES[summary["sides"][0]], "Why"), rows, "bodies", tall=many)
 

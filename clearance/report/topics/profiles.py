@@ -18,10 +18,10 @@ from clearance.report.topic import Line, Topic
 
 def data(model: ReportModel) -> dict[str, Any]:
     """The answer of each profile."""
-    return {"profiles": [_told(answer) for answer in model.record.profiles]}
+    return {"profiles": [_answer_row(answer) for answer in model.record.profiles]}
 
 
-def _told(answer: ProfileAnswer) -> dict[str, Any]:
+def _answer_row(answer: ProfileAnswer) -> dict[str, Any]:
     return {field.name: getattr(answer, field.name) for field in fields(answer)}
 
 
@@ -32,13 +32,13 @@ def lines(model: ReportModel) -> Iterator[Line]:
 
 def sections(content: PageContent) -> Iterator[Section]:
     """A table and the pictures; nothing where the case names no profile."""
-    told = content.summary["profiles"]
-    if not told:
+    answers = content.summary["profiles"]
+    if not answers:
         return
     heads = ("Profile", "Plane", "Kept", ">Gap, mm", ">Limit, mm", "Closest", "When")
     pictures = [
         _picture(answer["name"], content.pictures[answer["name"]])
-        for answer in told
+        for answer in answers
         if answer["name"] in content.pictures
     ]
     note = (
@@ -46,7 +46,7 @@ def sections(content: PageContent) -> Iterator[Section]:
         "the true gap is larger by at most the bound in summary.json. A negative gap is how far the swept "
         "outline is beyond the sketch."
     )
-    table = Table(heads, [_row(answer) for answer in told], "clickable")
+    table = Table(heads, [_row(answer) for answer in answers], "clickable")
     yield Section("Profiles", [table, faint(note), *pictures])
 
 

@@ -90,11 +90,11 @@ def sections(content: PageContent) -> Iterator[Section]:
         Row([one["path"], number(f"{one['n_bytes']:,}"), Inline(one["sha256"], element="code")])
         for one in summary["inputs"]
     ]
-    told = ", ".join(f"{name} {version}" for name, version in summary["versions"].items())
+    programs = ", ".join(f"{name} {version}" for name, version in summary["versions"].items())
     counted = ", ".join(f"{name.replace('_', ' ')} {n:,}" for name, n in summary["tally"].items())
     table = Table(("File", ">Bytes", "sha256"), files, "bodies")
     counters = [faint(f"Counted: {counted}.")] if counted else []
-    yield Section("Where this comes from", [table, faint(told), *counters])
+    yield Section("Where this comes from", [table, faint(programs), *counters])
     signed = summary["sign_off"]
     if signed is not None:
         roles = {"Author": signed["author"], "Checked": "", "Approved": ""}

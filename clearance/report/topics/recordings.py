@@ -17,8 +17,8 @@ from clearance.world.recording import SHARE
 
 def data(model: ReportModel) -> dict[str, Any]:
     """Recorded runs; nothing where nothing was recorded."""
-    told = recordings_of(model.record)
-    return {} if told is None else {"recordings": told}
+    recordings = recordings_of(model.record)
+    return {} if recordings is None else {"recordings": recordings}
 
 
 def recordings_of(record: Record) -> dict[str, Any] | None:
@@ -54,16 +54,16 @@ def _runs(record: Record) -> Iterator[dict[str, Any]]:
 
 def lines(model: ReportModel) -> Iterator[Line]:
     """How near what was asked comes, and how far joints were off, the farthest first."""
-    told = recordings_of(model.record)
-    yield from labelled("recorded", () if told is None else _lines(told))
+    recordings = recordings_of(model.record)
+    yield from labelled("recorded", () if recordings is None else _lines(recordings))
 
 
-def _lines(told: dict[str, Any]) -> Iterator[str]:
-    asked = told["asked"]
+def _lines(recordings: dict[str, Any]) -> Iterator[str]:
+    asked = recordings["asked"]
     at = f"{seconds(asked['time'])}, step {asked['step']}"
     where = f"{asked['body_a']} - {asked['body_b']} at {at}"
     yield f"as commanded {mm(asked['clearance'])} mm at the steps: {where}"
-    for run in told["runs"]:
+    for run in recordings["runs"]:
         joints = sorted(run["joints"], key=lambda one: -one["greatest"])[:4]
         off = ", ".join(
             f"{one['joint']} {_size(one, 'greatest')} ({_size(one, 'usual')})" for one in joints
@@ -78,16 +78,16 @@ def _size(joint: dict[str, Any], which: str) -> str:
 
 def sections(content: PageContent) -> Iterator[Section]:
     """Both clearances, and a table a robot; nothing where nothing was recorded."""
-    told = content.summary.get("recordings")
-    if told is None:
+    recordings = content.summary.get("recordings")
+    if recordings is None:
         return
-    asked, driven = told["asked"], content.summary["worst"]
+    asked, driven = recordings["asked"], content.summary["worst"]
     line = (
         f"As driven {mm(driven['clearance'])} mm at least, {driven['body_a']} and {driven['body_b']} at "
         f"{seconds(driven['time'])}; as commanded {mm(asked['clearance'])} mm at the steps, {asked['body_a']} and "
         f"{asked['body_b']} at {seconds(asked['time'])}. The dashed curve is the commanded motion."
     )
-    parts = [part for run in told["runs"] for part in _run(run)]
+    parts = [part for run in recordings["runs"] for part in _run(run)]
     yield Section("As driven", [Paragraph(line), *parts])
 
 
@@ -99,8 +99,8 @@ def _run(run: dict[str, Any]) -> list[Paragraph | Table]:
     ]
     offset = f", {run['offset']:g} s added to its times" if run["offset"] else ""
     span = f"{run['start']:.3f} to {seconds(run['end'])}"
-    told = f"{run['path']}, of robot {run['robot']}, compared with the commanded motion from {span}{offset}."
-    return [Paragraph(told), Table(heads, rows, "clickable bodies")]
+    heading = f"{run['path']}, of robot {run['robot']}, compared with the commanded motion from {span}{offset}."
+    return [Paragraph(heading), Table(heads, rows, "clickable bodies")]
 
 
 def _figures(joint: dict[str, Any]) -> list[str]:

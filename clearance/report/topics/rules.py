@@ -22,7 +22,7 @@ from clearance.record.wording import (
 )
 from clearance.report.blocks import Cell, Content, Inline, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import at_moment, moment_link, name_shown, time_of, told_moment
+from clearance.report.moment import at_moment, moment_link, moment_row, name_shown, time_of
 from clearance.report.topic import Line, Topic
 from clearance.world.rules import Rule
 
@@ -33,7 +33,7 @@ def data(model: ReportModel) -> dict[str, Any]:
     answers = {answer.name: answer for answer in model.record.rules}
     own: list[Rule | None] = [None, *limits.rules]
     rules = [
-        _told(model, i, name, rule, answers.get(name))
+        _rule_row(model, i, name, rule, answers.get(name))
         for i, (name, rule) in enumerate(zip(limits.rule_names, own, strict=True))
     ]
     return {
@@ -42,7 +42,7 @@ def data(model: ReportModel) -> dict[str, Any]:
     }
 
 
-def _told(
+def _rule_row(
     model: ReportModel, i: int, name: str, rule: Rule | None, answer: RuleAnswer | None
 ) -> dict[str, Any]:
     """A rule; one that judges no pair has no status."""
@@ -61,8 +61,8 @@ def _told(
         "status": None if answer is None else answer.status,
         "n_pairs": details.n_pairs.get(name),
         "lower_bound": _proven(answer),
-        "worst": None if worst is None else told_moment(record, worst),
-        "worst_sample": None if sample is None else told_moment(record, sample),
+        "worst": None if worst is None else moment_row(record, worst),
+        "worst_sample": None if sample is None else moment_row(record, sample),
     }
 
 
@@ -83,8 +83,8 @@ def lines(model: ReportModel) -> Iterator[Line]:
     answers = {answer.name: answer for answer in model.record.rules}
     for i, name in enumerate(limits.rule_names if limits.rules else ()):
         own = limits.of_rule(i)
-        told = _standing(model, answers.get(name))
-        yield "rule", f"{name} ({limits_text(own.fail, own.warn)}): {told}"
+        standing = _standing(model, answers.get(name))
+        yield "rule", f"{name} ({limits_text(own.fail, own.warn)}): {standing}"
 
 
 def _standing(model: ReportModel, answer: RuleAnswer | None) -> str:
@@ -99,14 +99,14 @@ def _standing(model: ReportModel, answer: RuleAnswer | None) -> str:
 
 def sections(content: PageContent) -> Iterator[Section]:
     """The rules as a table; nothing where the case has none."""
-    told = content.summary["rules"]
-    if len(told) < 2:
+    rules = content.summary["rules"]
+    if len(rules) < 2:
         return
     heads = (
         "Rule", "Between", "Holds", ">Fail, mm", ">Warn, mm", "Status", ">Least, mm", ">Certified, mm",
         "Where", "When",
     )  # fmt: skip
-    in_order = sorted(told, key=lambda rule: rule["worst"] is None)
+    in_order = sorted(rules, key=lambda rule: rule["worst"] is None)
     rows = [_row(rule, content.summary["worst"]["rule"]) for rule in in_order]
     note = "Where rules overlap, the last one that matches a pair judges it. Least has the padding taken off."
     yield Section("Rules", [Table(heads, rows, "clickable rules"), faint(note)])
@@ -121,8 +121,8 @@ def _row(rule: dict[str, Any], worst_of_all: str) -> Row:
     cells: list[Content | Cell] = [name, between, when_text(rule), *levels]
     worst = rule["worst"]
     if worst is None:
-        told = "judges nothing" if rule["status"] is None else "nothing nearer was asked for"
-        return Row([*cells, Cell(told, "faint", colspan=5)])
+        why = "judges nothing" if rule["status"] is None else "nothing nearer was asked for"
+        return Row([*cells, Cell(why, "faint", colspan=5)])
     at = f"{time_of(worst)}{other_time(worst['obstacle'], worst['time_b'])}"
     found: list[Content | Cell] = [
         Inline(rule["status"], f"tag {rule['status']}"),
@@ -136,10 +136,10 @@ def _row(rule: dict[str, Any], worst_of_all: str) -> Row:
 
 def when_text(rule: dict[str, Any]) -> str:
     """When a rule of the summary holds, in a few words."""
-    told = [] if rule["from"] is None else [f"from {rule['from']:g} s"]
-    told += [] if rule["until"] is None else [f"until {rule['until']:g} s"]
-    told += [] if rule["while_carried"] is None else [f"while {rule['while_carried']} is carried"]
-    return " ".join(told) or "always"
+    parts = [] if rule["from"] is None else [f"from {rule['from']:g} s"]
+    parts += [] if rule["until"] is None else [f"until {rule['until']:g} s"]
+    parts += [] if rule["while_carried"] is None else [f"while {rule['while_carried']} is carried"]
+    return " ".join(parts) or "always"
 
 
 TOPIC: Topic = Topic(data, lines, sections)

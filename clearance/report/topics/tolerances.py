@@ -48,20 +48,20 @@ _KINDS = {
 
 def source_text(record: Record, source: ErrorSource) -> str:
     """What an error is of, and when, if not now: `base of left`, `tracking of joint left/j at the grasp (2 s)`."""
-    told = _name(record, source)
-    return f"{told} at the {source.moment}" if source.moment else told
+    name = _name(record, source)
+    return f"{name} at the {source.moment}" if source.moment else name
 
 
 def _name(record: Record, source: ErrorSource) -> str:
     part = source.part
     if len(record.case.robots) > 1 and part:
         part = f"{source.owner}/{part}"
-    told = _KINDS[source.kind]
+    kind = _KINDS[source.kind]
     if source.kind == "facets":
-        return told
-    if "{}" in told:
-        return told.format(part or source.owner)
-    return f"{told} of {source.owner}"
+        return kind
+    if "{}" in kind:
+        return kind.format(part or source.owner)
+    return f"{kind} of {source.owner}"
 
 
 def value_text(value: float, unit: str) -> str:
@@ -77,12 +77,12 @@ def given_text(source: ErrorSource) -> str:
 
 def largest_text(source: ErrorSource) -> str:
     """What it may be at most, all others as given: `2.31 mm, 0.02 rad or more`; empty where 0 is not enough."""
-    told = []
+    sizes = []
     for value, (given, unit) in zip(source.largest, source.tolerances, strict=False):
         if value is not None:
             more = " or more" if math.inf > value >= most_searched(unit, given) else ""
-            told.append(_rounded_down(value, unit) + more)
-    return ", ".join(told)
+            sizes.append(_rounded_down(value, unit) + more)
+    return ", ".join(sizes)
 
 
 def _rounded_down(value: float, unit: str) -> str:
@@ -107,7 +107,7 @@ def _lines(model: ReportModel) -> Iterator[str]:
     if record.budget is None:
         return
     found = [(one, session.least_left(one)) for one in record.budget]
-    known = [(one, left[0].proven - one.limits.fail) for one, left in found if left]
+    known = [(one, moments[0].proven - one.limits.fail) for one, moments in found if moments]
     if known:
         worst = min(known, key=lambda pair: pair[1])[0]
         yield from source_lines(record, worst, session.error_sources(worst, 0, MOST_SOURCES))
@@ -120,13 +120,13 @@ def source_lines(record: Record, one: RuleBudget, worst: BudgetMoment) -> Iterat
     moment = worst.moment
     where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
     yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
-    taken = [
+    causes = [
         f"{source_text(record, source)} {depth_mm(source.proven)} mm ({given_text(source)})"
         for source in worst.sources[:MOST_SOURCES]
         if source.proven > 0.0
     ]
-    if taken:
-        yield f"largest causes: {', '.join(taken)}"
+    if causes:
+        yield f"largest causes: {', '.join(causes)}"
     yield from _largest_lines(record, one, worst.sources[:MOST_SOURCES])
 
 
@@ -135,9 +135,9 @@ def _largest_lines(
 ) -> Iterator[str]:
     """What of some errors would keep the limit, and which alone are not enough."""
     limit = f"the fail limit of {limit_mm(one.limits.fail)} mm{of_rule(one.rule)}"
-    told = [(source_text(record, source), largest_text(source)) for source in sources]
-    enough = [f"{name} {largest}" for name, largest in told if largest]
-    others = [name for name, largest in told if not largest]
+    sizes = [(source_text(record, source), largest_text(source)) for source in sources]
+    enough = [f"{name} {largest}" for name, largest in sizes if largest]
+    others = [name for name, largest in sizes if not largest]
     if enough:
         yield f"greatest value that keeps {limit}, others as given: {', '.join(enough)}"
     if others:
@@ -149,20 +149,20 @@ def data(model: ReportModel) -> dict[str, Any]:
     record, budget = model.record, model.record.case.tolerance
     if budget is None:
         return {}
-    left = model.details.least_remaining
-    told = {
+    worst_of = model.details.least_remaining
+    row = {
         "coverage": budget.coverage,
         "distributions": "normal" if budget.is_normal else "uniform",
         "unproven_ok": budget.unproven_ok,
         "sources": list(budget.sources),
         "lines": list(tolerance_lines(record)),
-        "rules": [_told(record, one, left[one.rule]) for one in record.budget or ()],
+        "rules": [_rule_row(record, one, worst_of[one.rule]) for one in record.budget or ()],
         "verdict": model.verdict.tolerances,
     }
-    return {"tolerances": told}
+    return {"tolerances": row}
 
 
-def _told(record: Record, one: RuleBudget, worst: Sequence[BudgetMoment]) -> dict[str, Any]:
+def _rule_row(record: Record, one: RuleBudget, worst: Sequence[BudgetMoment]) -> dict[str, Any]:
     return {
         "rule": one.rule,
         "fail": one.limits.fail,
@@ -236,19 +236,19 @@ class BudgetBar:
 
 def sections(content: PageContent) -> Iterator[Section]:
     """What is left, what takes it, what to tighten first; nothing where the case has no tolerances."""
-    told = content.summary.get("tolerances")
-    if told is None:
+    content_of = content.summary.get("tolerances")
+    if content_of is None:
         return
-    lines = told["lines"] or [f"{capital(NOT_WORKED_OUT)}."]
+    lines = content_of["lines"] or [f"{capital(NOT_WORKED_OUT)}."]
     parts: list[object] = [Paragraph(Inline(line, element="strong")) for line in lines]
-    rules = [rule for rule in told["rules"] if rule["worst"]]
+    rules = [rule for rule in content_of["rules"] if rule["worst"]]
     if rules:
         worst = min(rules, key=lambda rule: rule["worst"][0]["proven"] - rule["fail"])
         parts += _worst(worst, worst["worst"][0])
-    if len(told["rules"]) > 1:
+    if len(content_of["rules"]) > 1:
         heads = ("Rule", ">Fail, mm", ">Proven, mm", ">Expected, mm", "With tolerances")
-        parts.append(Table(heads, [*map(_rule, told["rules"])], "budget"))
-    yield Section("Tolerances", [*parts, *map(faint, _notes(told))])
+        parts.append(Table(heads, [*map(_rule, content_of["rules"])], "budget"))
+    yield Section("Tolerances", [*parts, *map(faint, _notes(content_of))])
 
 
 def _worst(rule: dict[str, Any], moment: dict[str, Any]) -> Iterator[object]:
@@ -257,9 +257,9 @@ def _worst(rule: dict[str, Any], moment: dict[str, Any]) -> Iterator[object]:
     where = (
         f"between the steps {step:,} and {step + 1:,}" if moment["between"] else f"step {step:,}"
     )
-    told = f"Where the errors leave least: {moment['body_a']} and {moment['body_b']} at "
+    heading = f"Least remaining clearance: {moment['body_a']} and {moment['body_b']} at "
     at = moment_link(moment, f"{time_of(moment)}, {where}")
-    yield Paragraph([told, at, f", {mm(moment['clearance'])} mm nominal."])
+    yield Paragraph([heading, at, f", {mm(moment['clearance'])} mm nominal."])
     yield _bar(moment, rule["fail"])
     heads = ("Error", "Given", ">Takes, mm", ">Std. deviation, mm", "At most, others as given")
     rows = [_source_row(i, one) for i, one in enumerate(moment["sources"])]
@@ -267,14 +267,18 @@ def _worst(rule: dict[str, Any], moment: dict[str, Any]) -> Iterator[object]:
 
 
 def _bar(moment: dict[str, Any], fail: float) -> BudgetBar:
-    left, nominal = max(0.0, moment["proven"]), moment["clearance"]
-    taken = [(one["name"], one["proven"]) for one in moment["sources"] if one["proven"] > 0.0]
-    whole = max(left + sum(value for _, value in taken), nominal, fail) or 1.0
-    state = "kept" if moment["proven"] >= fail and left > 0.0 else "open"
-    pieces = [BarPart(f"left {mm(left)} mm", left / whole, state)] if left > 0.0 else []
+    remaining, nominal = max(0.0, moment["proven"]), moment["clearance"]
+    shares = [(one["name"], one["proven"]) for one in moment["sources"] if one["proven"] > 0.0]
+    whole = max(remaining + sum(value for _, value in shares), nominal, fail) or 1.0
+    state = "kept" if moment["proven"] >= fail and remaining > 0.0 else "open"
+    pieces = (
+        [BarPart(f"remaining {mm(remaining)} mm", remaining / whole, state)]
+        if remaining > 0.0
+        else []
+    )
     pieces += [
         BarPart(f"{name} {depth_mm(value)} mm", value / whole, f"hue{i % HUES}")
-        for i, (name, value) in enumerate(taken)
+        for i, (name, value) in enumerate(shares)
     ]
     marks = [BarPart(f"fail limit {limit_mm(fail)} mm", fail / whole)] if fail > 0.0 else []
     if 0.0 < nominal < 0.999 * whole:
@@ -310,13 +314,13 @@ def _rule(rule: dict[str, Any]) -> Row:
     return Row(cells)
 
 
-def _notes(told: dict[str, Any]) -> Iterator[str]:
-    normal = told["distributions"] == "normal"
+def _notes(tolerances: dict[str, Any]) -> Iterator[str]:
+    normal = tolerances["distributions"] == "normal"
     spread = (
         "normal, their magnitude at three deviations" if normal else "uniform up to their magnitude"
     )
-    yield f"{METHOD} {told['coverage']:g} deviations are taken off; errors are {spread}."
-    yield from (f"Numbers: {source}." for source in told["sources"])
+    yield f"{METHOD} {tolerances['coverage']:g} deviations are taken off; errors are {spread}."
+    yield from (f"Numbers: {source}." for source in tolerances["sources"])
 
 
 TOPIC: Topic = Topic(data, lines, sections)

@@ -103,9 +103,9 @@ def header(content: PageContent) -> Header:
         ("Cross-check", _cross_check_word(summary["cross_check"])),
         *((name.capitalize(), value) for name, value in signed.items() if value),
     ]
-    beside = Bullets(_beside(verdict, summary.get("tolerances")), "beside")
-    told = [Bullets(_headline(summary, verdict), "beside headline"), beside]
-    shown = [block for block in told if block.lines]
+    others = Bullets(_other_lines(verdict, summary.get("tolerances")), "beside")
+    blocks = [Bullets(_headline(summary, verdict), "beside headline"), others]
+    shown = [block for block in blocks if block.lines]
     return Header(
         "Clearance report", summary["name"], badge_text(verdict), verdict.shade, shown, facts
     )
@@ -144,12 +144,12 @@ def _headline(summary: dict[str, Any], verdict: Verdict) -> list[Content | Cell]
     if len(summary["rules"]) == 1:
         return []
     status = summary["worst"]["status"]
-    told = next(iter(verdict.reasons), None) if status != "clear" else None
-    found: list[Content | Cell] = [Cell(told, f"text-{status}")] if told else []
+    reason = next(iter(verdict.reasons), None) if status != "clear" else None
+    found: list[Content | Cell] = [Cell(reason, f"text-{status}")] if reason else []
     return found + ([f"Nearest of all: {verdict.nearest}"] if verdict.nearest else [])
 
 
-def _beside(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content | Cell]:
+def _other_lines(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content | Cell]:
     """What a reader must know beside the clearance, right below the verdict."""
     failing = [
         *(f"Violated: {text}" for text in verdict.broken),
@@ -168,12 +168,12 @@ def _beside(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content
     ]
 
 
-def _with_tolerances(told: dict[str, Any] | None) -> list[Cell]:
+def _with_tolerances(tolerances: dict[str, Any] | None) -> list[Cell]:
     """What the tolerances leave, a line a rule; marked where a limit is not proven with them."""
-    if told is None:
+    if tolerances is None:
         return []
-    marked = told["verdict"] in (NOT_PROVEN, ACCEPTED)
-    found = told["lines"] or [f"{capital(NOT_WORKED_OUT)}."]
+    marked = tolerances["verdict"] in (NOT_PROVEN, ACCEPTED)
+    found = tolerances["lines"] or [f"{capital(NOT_WORKED_OUT)}."]
     return [Cell(line, "text-violated" if marked else "") for line in found]
 
 

@@ -19,9 +19,9 @@ from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import (
     depth_of,
     moment_link,
+    moment_row,
     name_shown,
     step_link,
-    told_moment,
     when_of,
 )
 from clearance.report.topic import Line, Topic
@@ -40,7 +40,7 @@ def data(model: ReportModel) -> dict[str, Any]:
     return {
         "worst": _worst(record, verdict.worst),
         "worst_sample": _worst(record, verdict.worst_sample),
-        "nearest": told_moment(record, record.nearest),
+        "nearest": moment_row(record, record.nearest),
         "sensitivity": sensitivity_data(model.sensitivity),
     }
 
@@ -48,7 +48,7 @@ def data(model: ReportModel) -> dict[str, Any]:
 def _worst(record: Record, worst: Moment) -> dict[str, Any]:
     of_robots = zip(record.motions, worst.positions, strict=True)
     joints = [joint for motion, positions in of_robots for joint in _joints(motion, positions)]
-    return told_moment(record, worst) | {"joints": joints}
+    return moment_row(record, worst) | {"joints": joints}
 
 
 def _joints(motion: Motion, positions: np.ndarray) -> list[dict[str, Any]]:
@@ -96,7 +96,7 @@ class JointRow(NamedTuple):
 
     name: str
     position: str
-    told: str
+    text: str
     share: float | None = None
     kind: str = ""
 
@@ -193,15 +193,15 @@ def _signed(value: float) -> str:
 
 
 def _note(given: dict[str, Any]) -> str:
-    told = "To first order, near this moment: a large move changes it differently, and other pairs come near."
+    note = "To first order, near this moment: a large move changes it differently, and other pairs come near."
     if len(given["pairs"]) > 1:
         names = [f"{a} and {b}" for a, b in given["pairs"][:MOST_PAIRS]]
         more = len(given["pairs"]) - len(names)
         names += [f"{more} more"] if more else []
-        told = f"As near are {'; '.join(names)}: the least of them counts. {told}"
+        note = f"As near are {'; '.join(names)}: the least of them counts. {note}"
     if not all(rate["both_ways"] for rate in given["rates"]):
-        told = f"Where up and down differ, each figure holds in its direction only. {told}"
-    return told
+        note = f"Where up and down differ, each figure holds in its direction only. {note}"
+    return note
 
 
 TOPIC: Topic = Topic(data, lines, sections)
