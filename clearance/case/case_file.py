@@ -22,12 +22,13 @@ from clearance.case.allow import (
 )
 from clearance.case.case_document import ScenePlace, read_schema
 from clearance.case.case_list import refuse_folder
+from clearance.case.driven_robots import Surroundings, require_still
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.packed import refuse_zip, require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
-from clearance.case.robots import RobotReader, in_motion
+from clearance.case.robots import InMotion, RobotReader, in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
-from clearance.case.standing import Rider, standing_frames
+from clearance.case.standing import Rider
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
 from clearance.formats.files.input_files import InputFiles, resolved
@@ -132,14 +133,18 @@ def with_trajectory_file(
         entry = entry._replace(trajectory=given, trajectory_field="trajectory")
         others = [one for i, one in enumerate(cell.case.robots) if i != i_robot]
         carried = {one.part for one in cell.case.carries}
-        standing = standing_frames(others, (_rider(one, carried) for one in cell.case.obstacles))
-        placed, notes = in_motion(
-            entry, cell.case.robots[i_robot], cell.path.parent, files, standing
+        around = Surroundings(
+            tuple(others), tuple(_rider(one, carried) for one in cell.case.obstacles)
         )
-    robots = tuple(placed if i == i_robot else one for i, one in enumerate(cell.case.robots))
+        moved = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files, around)
+    robots = tuple(
+        moved.placed if i == i_robot
+        else moved.driving(one) if one.robot.name in moved.driven else one
+        for i, one in enumerate(cell.case.robots)
+    )  # fmt: skip
     sources = sorted((*cell.files.sources, *files.sources), key=lambda source: source.path)
     case = replace(cell.case, robots=robots, name=checked_name(name))
-    motion_notes = (*cell.motion_notes[:i_robot], notes, *cell.motion_notes[i_robot + 1 :])
+    motion_notes = (*cell.motion_notes[:i_robot], moved.notes, *cell.motion_notes[i_robot + 1 :])
     return _finished(replace(cell, motion_notes=motion_notes), case, sources)
 
 
@@ -176,7 +181,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     with at(path.name):
         case = Case(
             name=given.name or _name_of(path),
-            robots=tuple(robot for robot, _ in moving),
+            robots=tuple(one.placed for one in moving),
             obstacles=obstacles,
             limits=limits_of(given.limits),
             allow=allowances_of(given.allow),
@@ -209,7 +214,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
         entries=tuple(entries),
         case=case,
         notes=tuple(reader.notes),
-        motion_notes=tuple(notes for _, notes in moving),
+        motion_notes=tuple(one.notes for one in moving),
         scene_notes=of_scene,
         scene=scene_at.content,
     )
@@ -268,22 +273,37 @@ def _notices(given: schema.Case) -> list[Notice]:
 
 def _moving(
     reader: RobotReader, entries: Sequence[schema.RobotEntry], given: schema.Case
-) -> list[tuple[PlacedRobot, tuple[str, ...]]]:
-    """The robots as they move, those with programs last, since their frames may be on the others."""
+) -> list[InMotion]:
+    """The robots as they move, those with programs last, since their frames may be on the others.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
     has_program = [
         one.trajectory is not None and one.trajectory.program is not None for one in entries
     ]
-    found = {i: reader.moving(one, {}) for i, one in enumerate(entries) if not has_program[i]}
+    found = {
+        i: reader.moving(one, Surroundings()) for i, one in enumerate(entries) if not has_program[i]
+    }
     carried = {one.part for one in given.carry}
-    riders = (
+    riders = tuple(
         Rider(one.name, one.on, one.pose.matrix(), one.moves is not None or one.name in carried)
         for one in given.scene.obstacles
     )
-    standing = standing_frames([placed for placed, _ in found.values()], riders)
-    for i, one in enumerate(entries):
-        if has_program[i]:
-            found[i] = reader.moving(one, standing)
-    return [found[i] for i in range(len(entries))]
+    read: dict[int, InMotion] = {}
+    for i, entry in enumerate(entries):
+        if not has_program[i]:
+            continue
+        around = Surroundings(tuple(one.placed for one in found.values()), riders)
+        read[i] = reader.moving(entry, around)
+        for j, one in found.items():
+            if one.placed.robot.name in read[i].driven:
+                found[j] = one._replace(placed=read[i].driving(one.placed))
+    around = Surroundings(tuple(one.placed for one in found.values()), riders)
+    for i, one in read.items():
+        with at(f"{entries[i].trajectory_field}.program"):
+            require_still(one.placed.given_trajectory, around)
+    return [(found | read)[i] for i in range(len(entries))]
 
 
 def _rider(obstacle: Obstacle, carried: Container[str]) -> Rider:

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
+from clearance.case.driven_robots import ProgramCell, ProgrammedMotion, Surroundings
+from clearance.case.standing import IN_WORLD, Place
 from clearance.errors import BadProgram, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
-from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.conversion import ConvertedProgram, converted
 from clearance.formats.schema import program as schema
@@ -34,37 +34,41 @@ def program_motion(
     placed: PlacedRobot,
     folder: Path,
     files: InputFiles,
-    standing: Mapping[str, np.ndarray | None],
-) -> ReadTrajectory:
-    """The motion of a program that a case names or holds, and a line each on what was assumed.
+    around: Surroundings,
+) -> ProgrammedMotion:
+    """The motion of a program that a case names or holds.
 
     Args:
         start: joints at its beginning that the case gives [rad or m]. folder: against which paths are looked up.
-        standing: what `standing_frames` finds.
+        around: all but the robot.
 
     Raises:
         BadInput: with the place in the file.
     """
+    cell = ProgramCell(placed, around)
     if asked.program_file is None:
         assert isinstance(asked.program, schema.Program)
         shown, read = "program", _of_schema(asked.program)
     else:
-        shown, read = _read(asked.program_file, placed.robot, start, folder, files)
+        shown, read = _read(asked.program_file, cell.robot, start, folder, files)
     given = read.program
     with at(shown):
-        own = {**given.start, **start}
-        frames = _Frames(given, placed, standing)
+        driven = cell.driven(given)
+        own = {**cell.start(driven), **given.start, **start}
+        frames = _Frames(given, placed, cell.places(driven))
         moves = tuple(_moves(read, frames))
         program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
-        found = motion_of(placed.robot, program)
-    trajectory = replace(
+        found = motion_of(cell.robot, program)
+    made = replace(
         found.trajectory,
         frames=tuple(sorted(frames.used)),
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
     )
-    notes = (*read.notes, *found.notes)
-    return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
+    moved = (f"it moves robot {name!r} too" for name in driven)
+    notes = tuple(f"{shown}: {note}" for note in (*read.notes, *moved, *found.notes))
+    trajectory, others = cell.parted(made, driven, given)
+    return ProgrammedMotion(trajectory, notes, others)
 
 
 def _read(
@@ -112,38 +116,23 @@ def _of_schema(program: schema.Program) -> ConvertedProgram:
     return ConvertedProgram(program, tuple(places), tuple(names))
 
 
-class _Place(NamedTuple):
-    """Where a frame is: its pose (4, 4) [m] on a link of the robot; on its root if that is empty."""
-
-    link: str
-    pose: np.ndarray
-
-    def on_it(self, pose: np.ndarray) -> _Place:
-        """A pose (4, 4) that is given in the frame."""
-        return _Place(self.link, self.pose @ pose)
-
-
 class _Frames:
     """The frames of a program, seen from links of the robot."""
 
     def __init__(
-        self,
-        given: schema.Program,
-        placed: PlacedRobot,
-        standing: Mapping[str, np.ndarray | None],
+        self, given: schema.Program, placed: PlacedRobot, places: Mapping[str, Place | None]
     ) -> None:
-        self._given, self._placed, self._standing = given, placed, standing
+        self._given, self._placed, self._places = given, placed, places
         self.used = set[str]()
 
-    def place(self, name: str, within: tuple[str, ...] = ()) -> _Place:
-        """Where a frame is.
+    def place(self, name: str, within: tuple[str, ...] = ()) -> Place:
+        """Where a frame is, on a link of the robot; on its root if that is empty.
 
         Raises:
             BadInput: a frame on what is not there, moves otherwise, or is on itself.
         """
-        robot, mount = self._placed.robot, self._placed.mount
         if name == schema.BASE:
-            return _Place("", np.eye(4))
+            return Place("", np.eye(4))
         if name in self._given.frames:
             if name in within:
                 raise BadProgram(
@@ -154,37 +143,38 @@ class _Frames:
             frame = self._given.frames[name]
             with at(f"frames.{name}"):
                 return self.place(frame.on, (*within, name)).on_it(frame.matrix())
-        own = name.removeprefix(f"{robot.name}/")
-        if own in robot.link_names and name not in self._standing:
-            return _Place(own, np.eye(4))
-        if mount is not None:
+        found = IN_WORLD if name == schema.WORLD else self._given_place(name)
+        if found.link:
+            return found
+        if self._placed.mount is not None:
             raise BadProgram(
-                f"the robot stands on {mount.on!r}, so the place of {name!r} seen from it may change",
+                f"the robot stands on {self._placed.mount.on!r}, so the place of {name!r} seen from it may change",
                 valid="frames on base",
             )
-        return _Place("", inverse(self._placed.world_from_base) @ self._world_from(name))
+        return Place("", inverse(self._placed.world_from_base) @ found.pose)
 
-    def _world_from(self, name: str) -> np.ndarray:
-        """(4, 4) the pose of what stands [m].
+    def _given_place(self, name: str) -> Place:
+        """Where something of the case is: in the world, or on a link.
 
         Raises:
-            BadInput: it is not there, or moves.
+            BadInput: it is not there, or moves otherwise than the program says.
         """
-        if name == schema.WORLD:
-            return np.eye(4)
-        known = (*self._given.frames, schema.WORLD, schema.BASE, *self._standing)
-        if name not in self._standing:
+        if name not in self._places:
+            known = (*self._given.frames, schema.WORLD, schema.BASE, *self._places)
             raise BadProgram(f"{name!r} is not there", valid=nearest_name(name, known))
-        found = self._standing[name]
+        found = self._places[name]
         if found is None:
-            valid = "a frame on what stands as long as the case runs, or on a link that the program moves"
-            raise BadProgram(
-                f"{name!r} moves, so the place of a target on it may change", valid=valid
+            valid = (
+                "a frame on what stands as long as the case runs, or on a link that the program moves "
+                "(hold: {turntable/turn: …}, and no trajectory of that robot)"
             )
-        self.used.add(name)
+            told = f"{name!r} moves, so the place of a target on it may change"
+            raise BadProgram(told, valid=valid)
+        if found.link not in self._placed.robot.link_names:
+            self.used.add(name)
         return found
 
-    def target(self, target: schema.Target) -> _Place:
+    def target(self, target: schema.Target) -> Place:
         """Where the tool is to be."""
         return self.place(target.frame).on_it(target.matrix())
 

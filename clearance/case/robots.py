@@ -7,16 +7,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from clearance.case.allow import checked_links
+from clearance.case.driven_robots import ProgrammedMotion, Surroundings
 from clearance.case.resting import positions_asked, resting_positions, with_start
 from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.formats.robot.formats import read_robot
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
 from clearance.formats.robot.request import RobotRequest, checked_args
@@ -30,6 +28,7 @@ from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.robot import Robot
 from clearance.world.rules import matches
+from clearance.world.trajectory import Trajectory
 
 
 class RobotReader:
@@ -47,15 +46,13 @@ class RobotReader:
         self._read: dict[RobotRequest, Robot] = {}
         self.notes: list[str] = []
 
-    def moving(
-        self, entry: schema.RobotEntry, standing: Mapping[str, np.ndarray | None]
-    ) -> tuple[PlacedRobot, tuple[str, ...]]:
+    def moving(self, entry: schema.RobotEntry, around: Surroundings) -> InMotion:
         """The robot of an entry as `in_motion` gives it.
 
         Raises:
             BadInput: with the field and the file.
         """
-        return in_motion(entry, self._standing(entry), self._folder, self._files, standing)
+        return in_motion(entry, self._standing(entry), self._folder, self._files, around)
 
     def _standing(self, entry: schema.RobotEntry) -> PlacedRobot:
         """The robot of an entry, without what it does.
@@ -141,18 +138,34 @@ class RobotReader:
         return SelfClearance(matrix, given.trust_never)
 
 
+class InMotion(NamedTuple):
+    """A robot as it moves, a line each on how, and the motion of other robots that its program drives, by name."""
+
+    placed: PlacedRobot
+    notes: tuple[str, ...]
+    driven: Mapping[str, Trajectory] = {}
+
+    def driving(self, other: PlacedRobot) -> PlacedRobot:
+        """Another robot as the program of this one moves it, in time with it."""
+        made, timing = self.driven[other.robot.name], self.placed.timing
+        names = {*made.joint_names}
+        resting = {name: at for name, at in other.fixed_positions.items() if name not in names}
+        if timing.after == "absent":  # the other robot is there all the time
+            timing = replace(timing, after="hold")
+        return replace(other, trajectory=made, timing=timing, fixed_positions=resting)
+
+
 def in_motion(
     entry: schema.RobotEntry,
     placed: PlacedRobot,
     folder: Path,
     files: InputFiles,
-    standing: Mapping[str, np.ndarray | None],
-) -> tuple[PlacedRobot, tuple[str, ...]]:
-    """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
+    around: Surroundings,
+) -> InMotion:
+    """The robot of an entry with its trajectory, the others of its joints at rest.
 
     Args:
-        placed: as it stands. folder: against which paths are looked up.
-        standing: what `standing_frames` finds, for the frames of a program.
+        placed: as it stands. folder: against which paths are looked up. around: all else, for a program.
 
     Raises:
         BadInput: with the field and the file.
@@ -160,10 +173,11 @@ def in_motion(
     asked, trajectory = entry.trajectory, None
     notes: tuple[str, ...] = ()
     moves: dict[str, Any] = {}
+    driven: Mapping[str, Trajectory] = {}
     if asked is not None:
         field = entry.trajectory_field
         if asked.program is not None:
-            trajectory, notes = _programmed(entry, placed, folder, files, standing)
+            trajectory, notes, driven = _programmed(entry, placed, folder, files, around)
             file = asked.program_file
             path = "" if file is None else str(resolved(file.file, folder))
         else:
@@ -176,7 +190,7 @@ def in_motion(
     resting = resting_positions(entry, placed.robot, moved, folder, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)
     moves["fixed_positions"] = resting.positions
-    return replace(placed, **moves), (*notes, *resting.notes, *on_limits)
+    return InMotion(replace(placed, **moves), (*notes, *resting.notes, *on_limits), driven)
 
 
 def _programmed(
@@ -184,8 +198,8 @@ def _programmed(
     placed: PlacedRobot,
     folder: Path,
     files: InputFiles,
-    standing: Mapping[str, np.ndarray | None],
-) -> ReadTrajectory:
+    around: Surroundings,
+) -> ProgrammedMotion:
     """The motion of the entry's program, from the start that the entry gives."""
     from clearance.case.program import program_motion
 
@@ -197,7 +211,7 @@ def _programmed(
         with at(f"{field}.start_state"):
             start = positions_asked(entry, names, placed.robot, folder, files)[1].positions
     with at(f"{field}.program"):
-        return program_motion(asked, start, placed, folder, files, standing)
+        return program_motion(asked, start, placed, folder, files, around)
 
 
 def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:

@@ -1,11 +1,11 @@
-"""What stands as long as a case runs: obstacles, links that no trajectory moves, and what rides on those.
+"""Where all is that frames of a program may be on: what stands as long as a case runs, and what the program moves.
 
-Not for: frames of programs, which are on it (`program`).
+Obstacles stand, links that no trajectory moves, and what rides on those. Not for: the frames (`program`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,23 +24,38 @@ class Rider(NamedTuple):
     moves: bool
 
 
+class Place(NamedTuple):
+    """Where something is: its pose (4, 4) [m] on a link that the program moves; in the world if that is empty."""
+
+    link: str
+    pose: np.ndarray
+
+    def on_it(self, pose: np.ndarray) -> Place:
+        """The place of a pose (4, 4) that is given on this one."""
+        return Place(self.link, self.pose @ pose)
+
+
+IN_WORLD = Place("", np.eye(4))
+
+
 def standing_frames(
-    robots: Sequence[PlacedRobot], obstacles: Iterable[Rider]
-) -> dict[str, np.ndarray | None]:
-    """(4, 4) `world_from_frame` [m] of all that stands, by name; None for what is there and may move.
+    robots: Sequence[PlacedRobot], obstacles: Iterable[Rider], moved: Mapping[str, str]
+) -> dict[str, Place | None]:
+    """Where all is, by name; None for what is there and may move otherwise than the program says.
 
     Args:
-        robots: as the links of several robots are called; those with a program left out.
+        robots: as the links of several robots are called; those with a program left out, and what it drives.
+        moved: the links that the program may move, by all names that they have.
     """
     waiting: list[Rider | PlacedRobot] = [*obstacles, *robots]
-    found: dict[str, np.ndarray | None] = {}
+    found: dict[str, Place | None] = {name: Place(link, np.eye(4)) for name, link in moved.items()}
     n_found = -1
     while len(found) > n_found:
         n_found, left = len(found), []
         for one in waiting:
             below = _below(one)
             if below is None or below in found:
-                found |= _on(one, np.eye(4) if below is None else found[below])
+                found |= _on(one, IN_WORLD if below is None else found[below])
             else:
                 left.append(one)
         waiting = left
@@ -49,11 +64,11 @@ def standing_frames(
     return found
 
 
-def _on(one: Rider | PlacedRobot, base: np.ndarray | None) -> dict[str, np.ndarray | None]:
-    """What one brings that is on a base (4, 4) [m], which may move if it is None."""
+def _on(one: Rider | PlacedRobot, base: Place | None) -> dict[str, Place | None]:
+    """What one brings that is on a base, which may move if it is None."""
     if isinstance(one, PlacedRobot):
         return dict(_of_robot(one, base))
-    return {one.name: None if base is None or one.moves else base @ one.pose}
+    return {one.name: None if base is None or one.moves else base.on_it(one.pose)}
 
 
 def _below(one: Rider | PlacedRobot) -> str | None:
@@ -62,9 +77,7 @@ def _below(one: Rider | PlacedRobot) -> str | None:
     return one.on
 
 
-def _of_robot(
-    placed: PlacedRobot, base: np.ndarray | None
-) -> Iterator[tuple[str, np.ndarray | None]]:
+def _of_robot(placed: PlacedRobot, base: Place | None) -> Iterator[tuple[str, Place | None]]:
     """The links of a robot, which stand where no joint above them moves."""
     asked, root = placed.trajectory, placed.robot.link_names[0]
     moving: set[str] = set()
@@ -78,5 +91,5 @@ def _of_robot(
     local = link_poses(placed, moving_positions(placed, names, first))[0]
     for i, link in enumerate(placed.robot.link_names):
         masters = {joint.name for joint in chain_between(placed.robot, root, link).masters}
-        own = None if base is None or masters & moving else base @ local[i]
+        own = None if base is None or masters & moving else base.on_it(local[i])
         yield f"{placed.robot.name}/{link}", own

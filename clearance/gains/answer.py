@@ -48,6 +48,7 @@ from clearance.gains.tool_poses import ToolMove
 from clearance.options import made
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
+from clearance.world.notice import listed
 
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
@@ -157,6 +158,9 @@ def _refuse_programs(case: Case, request: Request) -> None:
                 f"part of the program of robot {placed.robot.name!r} is not proven, whatever is changed",
                 valid="a program that `clearance check` proves",
             )
+        if asked is not None and asked.drives and request.kind != "obstacle":
+            told = f"the program of robot {placed.robot.name!r} moves {listed([*asked.drives])} too"
+            raise BadChange(told, valid="kind obstacle, which changes neither of their motions")
         if asked is None or not asked.moves or request.kind == "timing":
             continue
         if request.kind != "obstacle" or asked.frames:

@@ -108,6 +108,7 @@ class Trajectory:
         moves: of a program, when each is made. frames: the obstacles and links that its work frames are on.
         corners: stretches on which a controller may leave the path, and how far links may then be off.
         unproven: stretches of a program that are not proven.
+        drives: other robots that its program moves too, whose own trajectories are their part of it.
         wrap: one of `WRAPS`, or None if unknown; a case with such a step is then suspect.
             With the shortest way, a `PlacedRobot` subtracts whole turns.
 
@@ -133,6 +134,7 @@ class Trajectory:
     frames: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
     unproven: tuple[UnprovenSpan, ...] = ()
+    drives: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from clearance.case.driven_robots import Surroundings
 from clearance.case.robots import RobotReader
 from clearance.errors import NothingToMeasure
 from clearance.formats.files.input_files import path_from, resolved
@@ -212,7 +213,8 @@ def _placed(
     if given.trajectory is not None:
         motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
     reader = RobotReader(Path(), meshes)
-    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"), {})
+    entry = schema.RobotEntry("robot", robot, motion, "trajectory")
+    placed, on_motion, _ = reader.moving(entry, Surroundings())
     matrix = placed.self_clearance and placed.self_clearance.matrix
     told = (*placed.robot.notes, *reader.notes, *on_motion)
     return placed, [*told, *(matrix.notes if matrix else ())]

@@ -89,7 +89,8 @@ class JointMove(StrictModel):
 class PathMove(StrictModel):
     """What `lin` and `circ` share: speed of the tool's point [m/s], its acceleration [m/s^2], speed of a turn
     [rad/s], radius of the corner at its end [m], and joints that go straight to values meanwhile (`hold`). Joints
-    beside the arm, as of a turntable, stay unless `hold` says where they go, or `free` that they follow too.
+    beside the arm, as `turntable/turn` of another robot, stay unless `hold` says where they go, or `free` that
+    they follow too.
     """
 
     to: Target
@@ -142,6 +143,17 @@ class Program(StrictModel):
     start: dict[Name, float] = {}
     step: Annotated[float, Field(gt=0)] = 0.002
     moves: Annotated[list[Move], Field(min_length=1)]
+
+    @property
+    def joints_named(self) -> frozenset[str]:
+        """The joints that its moves name."""
+        found = set[str]()
+        for move in self.moves:
+            if move.ptp is not None:
+                found |= {*(move.ptp.joints or {}), *move.ptp.near, *move.ptp.within}
+            elif (path := move.lin or move.circ) is not None:
+                found |= {*path.hold, *path.free}
+        return frozenset(found)
 
     @model_validator(mode="after")
     def _frames_known(self) -> Program:

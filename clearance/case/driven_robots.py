@@ -1,0 +1,185 @@
+"""Robots that the program of another one moves, as a turntable: joined to it while the program is followed, each
+with its own part of the motion after.
+
+Not for: other robots of a case, which move by trajectories of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+from clearance.case.standing import Place, Rider, standing_frames
+from clearance.errors import BadProgram
+from clearance.formats.schema import program as schema
+from clearance.geometry.pose import inverse
+from clearance.world.case import PlacedRobot
+from clearance.world.corner_zone import CornerZone, Deviation
+from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.trajectory import Trajectory
+
+
+class ProgrammedMotion(NamedTuple):
+    """The motion of a program's robot, a line each on what was assumed, and that of robots that it drives."""
+
+    trajectory: Trajectory
+    notes: tuple[str, ...]
+    driven: Mapping[str, Trajectory]
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """All but the robot of a program: other robots, without those with a program of their own, and obstacles."""
+
+    robots: tuple[PlacedRobot, ...] = ()
+    obstacles: tuple[Rider, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramCell:
+    """The robot of a program among others, some of which it may drive: those that stand in the world and have no
+    trajectory.
+
+    Attributes:
+        own: the robot of the program.
+    """
+
+    own: PlacedRobot
+    around: Surroundings
+
+    @cached_property
+    def _others(self) -> dict[str, PlacedRobot]:
+        """The robots that may be driven, by name."""
+        if self.own.mount is not None:
+            return {}
+        return {
+            one.robot.name: one
+            for one in self.around.robots
+            if one.trajectory is None and one.mount is None
+        }
+
+    @cached_property
+    def robot(self) -> Robot:
+        """The robot of the program, joined with those that may be driven; links and joints of these have their
+        names before their own (`turntable/plate`)."""
+        own = self.own.robot
+        links, joints = [*own.link_names], [*own.joints]
+        for name, placed in self._others.items():
+            at = inverse(self.own.world_from_base) @ placed.world_from_base
+            root, *more = (f"{name}/{link}" for link in placed.robot.link_names)
+            links += [root, *more]
+            joints.append(Joint(f"{name}/", JointKind.FIXED, own.link_names[0], root, at))
+            joints += (_named(joint, f"{name}/") for joint in placed.robot.joints)
+        if len(links) == len(own.link_names):
+            return own
+        return replace(own, link_names=tuple(links), joints=tuple(joints), bodies=())
+
+    def driven(self, program: schema.Program) -> tuple[str, ...]:
+        """The robots that a program drives.
+
+        Raises:
+            BadInput: one that it may not.
+        """
+        named = {name.partition("/")[0] for name in program.joints_named if "/" in name}
+        for one in self.around.robots:
+            if one.robot.name in named - set(self._others):
+                raise _not_driven(self.own, one)
+        return tuple(name for name in self._others if name in named)
+
+    def start(self, driven: Sequence[str]) -> dict[str, float]:
+        """Where the case has the joints of driven robots, by their names in `robot` [rad or m]."""
+        return {
+            f"{name}/{joint}": value
+            for name in driven
+            for joint, value in self._others[name].fixed_positions.items()
+        }
+
+    def places(self, driven: Sequence[str]) -> dict[str, Place | None]:
+        """Where all is that a frame may be on, by name: in the world, or on a link of `robot`; None for what may
+        move otherwise."""
+        own = self.own.robot
+        links = {link: link for link in own.link_names}
+        links |= {f"{own.name}/{link}": link for link in own.link_names}
+        for name in driven:
+            links |= {
+                f"{name}/{link}": f"{name}/{link}" for link in self._others[name].robot.link_names
+            }
+        robots = [one for one in self.around.robots if one.robot.name not in driven]
+        return standing_frames(robots, self.around.obstacles, links)
+
+    def parted(
+        self, made: Trajectory, driven: Sequence[str], program: schema.Program
+    ) -> tuple[Trajectory, dict[str, Trajectory]]:
+        """The motion of `robot` as the own robot's, and that of each robot that is driven.
+
+        Joints that no move leaves free are on their cubics exactly.
+        """
+        paths = (move.lin or move.circ for move in program.moves)
+        free = {name.partition("/")[0] for path in paths if path for name in path.free}
+        others = {}
+        for name in driven:
+            part = replace(
+                _of(made, name), frames=(), moves=(), unproven=(), assumed=(), has_way_in=False
+            )
+            others[name] = part if name in free else replace(part, path_error=0.0, corners=())
+        return replace(_of(made, ""), drives=tuple(driven)), others
+
+
+def require_still(made: Trajectory, around: Surroundings) -> None:
+    """Nothing, if what the frames of a program are on stands, or is moved by it alone.
+
+    Args:
+        around: all but its robot, as they move by the programs of all robots.
+
+    Raises:
+        BadInput: the program of another robot moves it.
+    """
+    own = [one.robot for one in around.robots if one.robot.name in made.drives]
+    links = {f"{robot.name}/{link}": link for robot in own for link in robot.link_names}
+    others = [one for one in around.robots if one.robot.name not in made.drives]
+    places = standing_frames(others, around.obstacles, links)
+    for name in made.frames:
+        if places[name] is None:
+            told = f"the program of another robot moves {name!r}, which frames are on"
+            raise BadProgram(told, valid="frames on what no other program moves")
+
+
+def _of(made: Trajectory, robot: str) -> Trajectory:
+    """The part of a motion that is of one robot; of the own one, where it has no name."""
+    columns = [i for i, name in enumerate(made.joint_names) if name.rpartition("/")[0] == robot]
+    found = made.of_columns(columns)
+    names = tuple(name.removeprefix(f"{robot}/") for name in found.joint_names)
+    corners = tuple(replace(zone, links=_links_of(zone, robot)) for zone in made.corners)
+    return replace(found, joint_names=names, corners=corners)
+
+
+def _links_of(zone: CornerZone, robot: str) -> dict[str, Deviation]:
+    """How far links of a robot may be off, by their own names."""
+    links = {name.rpartition("/")[::2]: off for name, off in zone.links.items()}
+    return {link: off for (owner, link), off in links.items() if owner == robot}
+
+
+def _not_driven(own: PlacedRobot, other: PlacedRobot) -> BadProgram:
+    """Why a program may not drive a robot whose joints its moves name."""
+    name, valid = other.robot.name, "no trajectory of that robot, and both bases in the world"
+    if other.trajectory is not None:
+        why = "follows a trajectory of its own"
+    else:
+        stands = own if own.mount is not None else other
+        assert stands.mount is not None
+        name, why = stands.robot.name, f"stands on {stands.mount.on!r}"
+    return BadProgram(
+        f"the program moves joints of robot {other.robot.name!r}, and robot {name!r} {why}",
+        valid=valid,
+    )
+
+
+def _named(joint: Joint, before: str) -> Joint:
+    """A joint with something before its names."""
+    mimic = joint.mimic
+    if mimic is not None:
+        mimic = Mimic(before + mimic.joint, mimic.multiplier, mimic.offset)
+    parent, child = before + joint.parent, before + joint.child
+    return replace(joint, name=before + joint.name, parent=parent, child=child, mimic=mimic)

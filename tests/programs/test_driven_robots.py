@@ -1,0 +1,156 @@
+"""A turntable that is a robot of its own, moved by the program of the arm that works on it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import clearance as cl
+from tests.programs.arms import turned
+from tests.programs.test_programs_in_cases import (
+    BASE,
+    PLATE,
+    START,
+    as_yaml,
+    beside_a_turntable,
+    case,
+    far,
+    tool_at,
+)
+
+AXIS = np.array([2.0, 0.0, PLATE])
+"""[m] Where the turntable's plate turns about z; it begins at 0.5 rad."""
+
+TIP = tool_at(START)[:3, 3] + np.array(BASE)
+"""[m] Where the tool begins."""
+
+
+TIME = 2.0 * 0.05**0.5
+"""[s] In which the table turns by 0.4 rad: it would reach its greatest speed of 2 rad/s in 0.25 s."""
+
+
+def on_plate(way=(0.0, 0.0, 0.0)) -> list[float]:
+    """A place beside where the tool begins, seen from the plate."""
+    x, y, z = TIP + way - AXIS
+    cosine, sine = np.cos(0.5), np.sin(0.5)
+    return [float(cosine * x + sine * y), float(cosine * y - sine * x), float(z)]
+
+
+def driving(folder: Path, moves: list, on: str = "turntable/plate", **more) -> dict:
+    """What a case file has whose program drives the turntable; it is written to the folder too."""
+    path = beside_a_turntable(folder, moves, frames={"jig": {"on": on}}, **more)
+    return yaml.safe_load(path.read_text())
+
+
+def saved(folder: Path, content: dict) -> Path:
+    (folder / "case.yaml").write_text(yaml.safe_dump(content))
+    return folder / "case.yaml"
+
+
+def lin(way=(0.0, 0.0, 0.0), **more) -> dict:
+    return {"lin": {"to": {"frame": "jig", "xyz": on_plate(way)}, **more}}
+
+
+def ball(name: str, at: np.ndarray, radius: float) -> dict:
+    return {"name": name, "sphere": {"radius": radius}, "pose": {"xyz": at.tolist()}}
+
+
+def cube(name: str, on: str, pose: np.ndarray) -> dict:
+    """A box of 2 cm on a link."""
+    return {"name": name, "box": {"size": [0.02] * 3}, "on": on, "pose": as_yaml(pose)}
+
+
+@pytest.mark.slow
+def test_a_tool_that_stays_on_a_turning_plate_keeps_its_clearance_to_it(tmp_path):
+    """It goes round the axis of the table by 0.4 rad, and past a ball that is beside the middle of its way."""
+    content = driving(tmp_path, [lin(hold={"turntable/turn": 0.9})])
+    tip = tool_at(START)
+    seen = np.eye(4)
+    seen[:3, :3] = turned((0.0, 0.0, -0.5)) @ tip[:3, :3]
+    seen[:3, 3] = on_plate() + seen[:3, :3] @ [0.0, 0.1, 0.0]
+    out = TIP[:2] - AXIS[:2]
+    beside = AXIS[:2] + 1.3 * turned((0.0, 0.0, 0.2))[:2, :2] @ out
+    content["scene"]["obstacles"] = [
+        cube("torch", "arm/tool_tip", np.eye(4)),
+        cube("rides", "turntable/plate", seen),
+        ball("stands", np.array([*beside, TIP[2]]), 0.03),
+    ]
+    content["allow"] = [["arm/*", "*"], ["turntable/*", "*"]]
+    run = cl.check(saved(tmp_path, content))
+    assert np.abs(np.array(run.steps.to_pydict()["clearance"]) - 0.08).max() < 2e-5
+    assert run.record.certificate.lower_bound.min() > 0.08 - 1.2e-4
+    (passed,) = (one for one in run.pair_minima if (one.link, one.obstacle) == ("torch", "stands"))
+    corner = 0.3 * np.linalg.norm(out) - 0.03
+    assert corner - 0.01 * 3**0.5 - 2e-4 < passed.clearance < corner - 0.01 + 2e-5
+    turn = run.record.case.robots[1].trajectory
+    assert turn.positions[-1, 0] == pytest.approx(0.9) and turn.times[-1] == pytest.approx(TIME)
+    assert abs(passed.time - 0.5 * TIME) < 0.05
+
+
+def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
+    """Its joint begins where the case has it; on a table that stands a line is that in the world."""
+    to = {"frame": "jig", "xyz": on_plate((0.0, 0.1, 0.0))}
+    content = driving(tmp_path, [{"lin": {"to": to, "hold": {"turntable/turn": 0.5}}}])
+    path = saved(tmp_path, content)
+    arm, table = cl.load_case(path).robots
+    with pytest.raises(cl.BadInput, match="the program of robot 'arm' moves turntable too"):
+        cl.gain(path, "timing", robot="turntable")
+    world = {"lin": {"to": {"xyz": (TIP + [0.0, 0.1, 0.0]).tolist()}}}
+    same = cl.load_case(case(tmp_path, [world], [far()])).robots[0].trajectory
+    assert np.abs(arm.trajectory.positions - same.positions).max() < 1e-9
+    assert (table.trajectory.positions == 0.5).all() and not table.fixed_positions
+    assert np.array_equal(arm.trajectory.times, table.trajectory.times)
+    assert arm.trajectory.drives == ("turntable",) and table.timing == arm.timing
+
+
+def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path):
+    """On the part, 0.1 m out and 0.3 m above the plate's frame."""
+    xyz = np.array(on_plate((0.0, -0.05, 0.05))) - [0.1, 0.0, 0.3]
+    move = {"lin": {"to": {"frame": "jig", "xyz": xyz.tolist()}, "free": ["turntable/turn"]}}
+    arm, table = cl.load_case(saved(tmp_path, driving(tmp_path, [move], "part"))).robots
+    made = arm.trajectory
+    turn = float(table.trajectory.positions[-1, 0])
+    last = dict(zip(made.joint_names, map(float, made.positions[-1]), strict=True))
+    at = tool_at(last)[:3, 3] + np.array(BASE) - AXIS
+    assert abs(turn - 0.5) > 1e-3 and made.frames == ("part",)
+    seen = turned((0.0, 0.0, -turn)) @ at - [0.1, 0.0, 0.3]
+    assert np.abs(seen - xyz).max() < 1e-8
+    assert table.trajectory.path_error == made.path_error > 0.0
+
+
+REFUSED = {
+    "a trajectory of its own": "'turntable' follows a trajectory of its own",
+    "on the floor": "'turntable' stands on 'far'",
+    "the arm on it": "'arm' stands on 'far'",
+    "a joint it has not": "unknown joint 'turntable/tilt'",
+    "two programs": "the program of another robot moves 'part'",
+}
+
+
+@pytest.mark.parametrize("fault", REFUSED)
+def test_what_a_program_may_not_move_is_refused(tmp_path, fault):
+    joint = "turntable/tilt" if fault == "a joint it has not" else "turntable/turn"
+    content = driving(tmp_path, [lin(hold={joint: 0.6})])
+    arm, table = content["robots"]
+    if fault == "a trajectory of its own":
+        (tmp_path / "turn.csv").write_text("time,turn\n0,0.5\n9,0.6\n")
+        table |= {"trajectory": "turn.csv", "joints": {}}
+    elif fault == "on the floor":
+        table["base"] = {"on": "far"}
+    elif fault == "the arm on it":
+        arm["base"] = {"on": "far"}
+    elif fault == "two programs":
+        more = yaml.safe_load((tmp_path / "program.yaml").read_text())
+        more["frames"] = {"jig": {"on": "part", "xyz": [-0.1, 0.0, -0.3]}}
+        del more["moves"][0]["lin"]["hold"]
+        (tmp_path / "other.yaml").write_text(yaml.safe_dump(more))
+        content["robots"] = [
+            arm | {"name": "other", "trajectory": {"program": "other.yaml"}},
+            arm,
+            table,
+        ]
+    with pytest.raises(cl.ClearanceError, match=REFUSED[fault]):
+        cl.load_case(saved(tmp_path, content))
