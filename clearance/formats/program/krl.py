@@ -35,6 +35,7 @@ from clearance.formats.program.krl_settings import (
     first_variables,
     key_of,
 )
+from clearance.formats.program.krl_system import RobotRoot, not_followed, require_followed
 from clearance.formats.program.krl_values import (
     FRAME,
     MM,
@@ -79,7 +80,9 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                 run.kept.put(one.target.name, f"{one.target.name} ({one.line})", run.variables)
         run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
         notes = (*run.notes, *language.notes())
-        return ControllerProgram(tuple(run.moves), notes, doubts=(*run.doubts,), maker="kuka")
+        bodies = [routine.body for routine in files.routines.values()]
+        doubts = (*run.doubts, *language.root.doubts(asked.asked), *not_followed(bodies))
+        return ControllerProgram(tuple(run.moves), notes, doubts=doubts, maker="kuka")
 
 
 def _entry(names: Sequence[str], asked: str | None) -> str:
@@ -97,13 +100,15 @@ class _Krl:
 
     Attributes:
         asked: what the case says. pose: (4, 4) `base_from_flange` [m] where the robot is; None where its axes say
-            it. axes: [degrees] by name; None where its pose says it. unsaid: lines whose speed is in no file.
+            it. axes: [degrees] by name; None where its pose says it. root: where its foot is.
+            unsaid: lines whose speed is in no file.
             is_automatic: the program asks whether the controller runs by itself.
     """
 
     asked: ProgramFile
     pose: np.ndarray | None = None
     axes: Mapping[str, float] | None = None
+    root: RobotRoot = field(default_factory=RobotRoot)
     unsaid: dict[str, None] = field(default_factory=dict)
     is_automatic: bool = False
 
@@ -210,9 +215,7 @@ class _Krl:
             )
         if call.name.endswith("_REL"):
             targets = [self._absolute(targets[0], "#TOOL" in call.named, settings)]
-        if settings.value("$IPO_MODE") != "#BASE":
-            told = f"$IPO_MODE is {settings.value('$IPO_MODE')}: the tool may stand, and the robot bring the part"
-            raise BadProgram(told, valid="$IPO_MODE = #BASE")
+        require_followed(settings)
         to = self._target(kind, targets[-1], _name_of(call.args[-1]), settings)
         via = (
             self._target("via", {**dict.fromkeys("ABC", 0.0), **targets[0]}, "", settings)
@@ -288,6 +291,7 @@ class _Krl:
         if not any(key in AXES for key in given):
             asked = _configuration(given) if kind == "ptp" else {}
             pose = settings.frame("$BASE", "frames") @ self._pose(given, settings)
+            self.root.use(settings)
             return PoseTarget(pose, external, name=name, **asked)
         if kind != "ptp":
             raise BadProgram("axes are given", valid="X, Y, Z, A, B and C")

@@ -39,10 +39,11 @@ _ORIENTATIONS: Mapping[tuple[str, str], Literal["to", "constant", "tangent"]] = 
 
 _NULL = dict.fromkeys(FRAME, 0.0)
 
-_FIRST: Mapping[str, Any] = {
+FIRST: Mapping[str, Any] = {
     **{name: _NULL for name in ("$NULLFRAME", "$WORLD", "$ROBROOT")},
     **{"$ORI_TYPE": "#VAR", "$CIRC_TYPE": "#BASE", "$IPO_MODE": "#BASE"},
     **{name: {} for name in ("$VEL", "$ACC", "$APO", "$VEL_AXIS", "TOOL_DATA", "BASE_DATA")},
+    "$TECH": {number: {} for number in range(1, 7)},
     **{name: Unknown(f"{name} is not set before") for name in ("$TOOL", "$BASE")},
     **{name: Unknown(f"{name} is not set before") for name in ("FDAT_ACT", "PDAT_ACT", "LDAT_ACT")},
 }
@@ -333,7 +334,7 @@ def first_variables(asked: ProgramFile, routines: Mapping[str, Routine]) -> dict
     found: dict[str, Any] = {
         name: Unknown(f"{name} is in no file that is given") for name in shared
     }
-    found |= {name: dict(one) if isinstance(one, dict) else one for name, one in _FIRST.items()}
+    found |= {name: copy.deepcopy(one) for name, one in FIRST.items()}
     for name, pose in (*asked.tools.items(), *asked.frames.items()):
         root, _, index = name.upper().rstrip("]").partition("[")
         if index.isdigit():

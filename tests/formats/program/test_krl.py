@@ -222,6 +222,17 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "line 9: S 2 and T 18 do not agree on the sign of A5",
         ),
         (FRAMES + "$IPO_MODE=#TCP\nLIN XP1", "line 10: $IPO_MODE is #TCP: the tool may stand"),
+        (
+            FRAMES + "$TECH[1].MODE=#CYCLE\nLIN XP1",
+            "line 10: $TECH[1] is on: it moves the tool beside its path",
+        ),
+        (FRAMES + "$TECH=wave\nLIN XP1", "line 10: $TECH is not known"),
+        (FRAMES + "$WORLD.X=1.0\nPTP XP1", "line 10: $WORLD is set"),
+        (FRAMES + "PTP XP1\n$ROBROOT.Z=1.0\nPTP XP1", "line 11: $ROBROOT changes between moves"),
+        (
+            FRAMES + "$ROBROOT.Z=8E2\nPTP XP1",
+            "base: {on: base, xyz: [0, 0, -0.8], rpy: [0, 0, 0]}",
+        ),
         (FRAMES + "$ORI_TYPE=#JOINT\nLIN XP1", "line 10: $ORI_TYPE is #JOINT"),
         (FRAMES + "LIN XHOME", "line 9: axes are given; X, Y, Z, A, B and C"),
         (FRAMES + LINE + "\nLIN_REL {X 1,E1 5}", "line 10: a relative move of external axes"),
@@ -302,6 +313,22 @@ def test_a_branch_that_a_kept_value_decides_is_doubted(body, line):
     assert [one.split(",")[0] for one in found.doubts] == [told] * bool(line)
 
 
+def test_system_variables_that_are_not_followed_are_doubted():
+    quiet = "$ADVANCE=3\n$TECH[1].MODE=#OFF\n$TECH[2].CLASS=#PATH\n$OUT[1]=TRUE\nPTP XHOME"
+    assert program(quiet).doubts == ()
+    (told,) = program("$SEN_PINT[1]=2\nPTP XHOME").doubts
+    assert told == "system variables that are set, and not followed: $SEN_PINT (line 7)"
+    world = {"base": {"on": "base", "xyz": [0, 0, -0.8]}}
+    beside = {"weld.dat": POINTS.encode(), "machine.dat": MACHINE.encode()}
+    (told,) = read("weld.src", f"{HEAD}{FRAMES}PTP XP1\nEND\n", beside, **world).doubts
+    assert told.endswith("base in the program is taken for $WORLD")
+
+
+MACHINE = """DEFDAT $MACHINE PUBLIC
+$ROBROOT={X 0.0,Y 0.0,Z 800.0,A 0.0,B 0.0,C 0.0}
+$SERVO_MODE=1
+ENDDAT
+"""
 WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
 
 

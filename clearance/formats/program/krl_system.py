@@ -1,0 +1,114 @@
+"""System variables of KRL that change where a move goes. Not for: tool, base, speeds and corners (`krl_settings`).
+
+Source: KUKA, System Variables 8.x ($ROBROOT: the robot's foot seen from $WORLD, from which bases are seen; $TECH:
+functions that move the tool beside its path).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadProgram, MissingKey
+from clearance.formats.program.krl_settings import FIRST, HELD, Settings
+from clearance.formats.program.krl_values import MM, frame_of, matrix_of
+from clearance.formats.program.statements import Assign, Statement, assigned, within
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.geometry.pose import inverse
+from clearance.world.notice import listed
+
+QUIET = frozenset(
+    (
+        *("$ACT_BASE", "$ACT_TOOL", "$ADVANCE", "$ANIN", "$ANOUT", "$BWDSTART", "$CURR_RED", "$CYCFLAG", "$ERR"),
+        *("$FLAG", "$H_POS", "$IN", "$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3", "$LOOP_MSG", "$MSG_T", "$OUT"),
+        *("$OV_PRO", "$OV_ROB", "$PRO_MODE", "$SOFTN_END", "$SOFTP_END", "$TIMER", "$TIMER_STOP", "$TORQMON"),
+        *("$VEL_EXTAX", "$ACC_AXIS", "$ACC_EXTAX", "$JERK", "$GEAR_JERK", "$CP_VEL_TYPE", "$RED_VEL", "$RED_ACC"),
+    )
+)  # fmt: skip
+"""Those that say nothing of the way of a move."""
+
+_NULL = np.eye(4)
+
+
+def require_followed(settings: Settings) -> None:
+    """Checks that no system variable has a move go elsewhere than its instruction says.
+
+    Raises:
+        BadProgram: one does, or it is not known.
+    """
+    mode = settings.value("$IPO_MODE")
+    if mode != "#BASE":
+        told = f"$IPO_MODE is {mode}: the tool may stand, and the robot bring the part"
+        raise BadProgram(told, valid="$IPO_MODE = #BASE")
+    if not np.array_equal(_frame(settings, "$WORLD"), _NULL):
+        raise BadProgram("$WORLD is set", valid="$WORLD as it is, and $ROBROOT")
+    functions = settings.value("$TECH")
+    if not isinstance(functions, Mapping):
+        raise BadProgram(f"$TECH is not known: {functions}", valid="$TECH[…].MODE = #OFF")
+    for number, one in functions.items():
+        if not isinstance(one, Mapping) or one.get("MODE", "#OFF") != "#OFF":
+            told = f"$TECH[{number}] is on: it moves the tool beside its path, which is not read"
+            raise BadProgram(told, valid=f"$TECH[{number}].MODE = #OFF")
+
+
+def _frame(settings: Settings, name: str) -> np.ndarray:
+    value = settings.value(name)
+    if not isinstance(value, Mapping):
+        raise BadProgram(f"{name} is not known: {value}", valid="a value that the files decide")
+    return matrix_of(value, name)
+
+
+@dataclass(eq=False)
+class RobotRoot:
+    """Where the robot's foot is, seen from $WORLD; `pose` (4, 4) [m] is None before a pose is used."""
+
+    pose: np.ndarray | None = None
+
+    def use(self, settings: Settings) -> None:
+        """Keeps it for a move to a pose.
+
+        Raises:
+            BadProgram: it is elsewhere than at moves before.
+        """
+        pose = _frame(settings, "$ROBROOT")
+        if self.pose is not None and not np.array_equal(pose, self.pose):
+            raise BadProgram("$ROBROOT changes between moves", valid="one $ROBROOT")
+        self.pose = pose
+
+    def doubts(self, asked: ProgramFile) -> Iterator[str]:
+        """A line where the case's base has to be $WORLD.
+
+        Raises:
+            MissingKey: it is not said.
+        """
+        if self.pose is None or np.array_equal(self.pose, _NULL):
+            return
+        told = "$ROBROOT is not null: poses are seen from $WORLD, and not from the robot's foot"
+        if asked.base is None:
+            x, y, z, a, b, c = frame_of(inverse(self.pose)).values()
+            xyz = ", ".join(f"{one * MM + 0.0:.6g}" for one in (x, y, z))
+            rpy = ", ".join(f"{math.radians(one) + 0.0:.6g}" for one in (c, b, a))
+            world = f"base: {{on: base, xyz: [{xyz}], rpy: [{rpy}]}}"
+            valid = f"where $WORLD is, as {world} where the robot's root is its foot"
+            raise MissingKey(told, where="base", valid=valid)
+        yield f"{told}; base in the program is taken for $WORLD"
+
+
+def not_followed(bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
+    """A line on system variables that procedures set and that are not read, if there are any."""
+    found: dict[str, Any] = {}
+    for body in bodies:
+        for one in within(body):
+            name = assigned(one.target) if isinstance(one, Assign) else None
+            if name is not None and name.name.startswith("$"):
+                found.setdefault(name.name, one.line)
+    unread = [f"{name} ({line})" for name, line in found.items() if name not in KNOWN]
+    if unread:
+        yield f"system variables that are set, and not followed: {listed(unread, 6)}"
+
+
+KNOWN = QUIET | {*FIRST, *HELD}
