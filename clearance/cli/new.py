@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -40,9 +41,11 @@ _OPTION_OF_PROGRAM = {"link": "--flange", "entry": "--entry", "skip": "--skip"}
 _REMEDIES = {
     "robot.srdf: the file": "--srdf FILE",
     "trajectory: {program: …, start_state: {joint: …}}": "--start JOINT=VALUE,…",
-    "program: {": "write a case file with program: {",
 }
 """What is valid in a case file, and what the command has in its place."""
+
+_KEYS_OF_PROGRAM = re.compile(r"program: (\{.*\})")
+"""Keys of a program as errors name them."""
 
 _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
 
@@ -60,6 +63,27 @@ class _NamesParamType(click.ParamType):
         if not all(names):
             self.fail(f"{value!r} has an empty name; names with commas between them", param, ctx)
         return names
+
+
+class _KeysParamType(click.ParamType):
+    """Keys of a case file, as YAML."""
+
+    name = "keys"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> dict[str, Any]:
+        """The keys with their values."""
+        from clearance.errors import ClearanceError
+        from clearance.plain_yaml import plain_data
+
+        try:
+            found = plain_data(value.encode())
+        except ClearanceError as error:
+            self.fail(f"{value!r}: {error}", param, ctx)
+        if not isinstance(found, dict):
+            self.fail(f"{value!r} has no keys; as in 'zones: {{CNT: 0.05}}'", param, ctx)
+        return found
 
 
 class _StartParamType(click.ParamType):
@@ -148,6 +172,13 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     help="Instruction of the program to leave out, one that moves nothing. May be given again.",
 )
 @click.option(
+    "--program-keys",
+    multiple=True,
+    type=_KeysParamType(),
+    metavar="YAML",
+    help="Other keys of the program: 'beside: [HOME.LS]', 'zones: {CNT: 0.05}'. May be given again.",
+)
+@click.option(
     "--start",
     type=_StartParamType(),
     metavar="JOINT=VALUE,…|STATE",
@@ -198,6 +229,7 @@ def new(
     entry: str | None,
     flange: str | None,
     skip: tuple[str, ...],
+    program_keys: tuple[dict[str, Any], ...],
     start: dict[str, float] | str | None,
     scene: str | None,
     includes: tuple[tuple[str, str], ...],
@@ -242,7 +274,7 @@ def new(
         "columns": dict(columns or ()),
     }
     of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
-    asked = _motion(_given(motion), _given(of_program), states)
+    asked = _motion(_given(motion), _merged([_given(of_program), *program_keys]), states)
     given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
     made = _made(given, out_dir)
     _write(made, out_dir, force)
@@ -265,12 +297,27 @@ def _naming_options() -> Iterator[None]:
         error.where = ": ".join([option, *places])
         for key, remedy in _REMEDIES.items():
             error.valid = error.valid.replace(key, remedy)
+        error.valid = _KEYS_OF_PROGRAM.sub(r"--program-keys '\1'", error.valid)
         raise
 
 
 def _given(keys: dict[str, Any]) -> dict[str, Any]:
     """What is given of them."""
     return {key: value for key, value in keys.items() if value not in (None, False, [], {})}
+
+
+def _merged(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """All keys; lists and mappings of one key go together."""
+    found: dict[str, Any] = {}
+    for key, value in (pair for one in parts for pair in one.items()):
+        match found.get(key), value:
+            case dict(old), dict(new):
+                found[key] = {**old, **new}
+            case list(old), list(new):
+                found[key] = [*old, *new]
+            case _:
+                found[key] = value
+    return found
 
 
 def _motion(
@@ -287,6 +334,7 @@ def _motion(
         return table
     if "file" not in program:
         option = next(iter(program)).replace("link", "flange")
+        option = option if option in ("entry", "flange", "skip", "start") else "program-keys"
         raise click.UsageError(f"--{option} needs --program FILE")
     if table or states:
         raise click.UsageError("both --program and another motion; one of them")

@@ -4,6 +4,7 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -149,7 +150,9 @@ TIP = ["--flange", "tool_tip"]
         ([*TIP, "--start", "home"], HOME, "--start: state 'home' is in no file; --srdf FILE"),
         (TIP, FAR, "--program: cell/move.script: line 2: the first move ends at a pose, and the joints at its "
          "beginning are unknown; --start JOINT=VALUE"),
-        (TIP, "movel(p[0.4,0,0.4,0,0,0])", "; write a case file with program: {tools: "),
+        (TIP, "movel(p[0.4,0,0.4,0,0,0])", "; --program-keys '{tools: {tcp: {xyz: […]}}}'"),
+        (["--program-keys", "[1]"], HOME, "'[1]' has no keys; as in 'zones: {CNT: 0.05}'"),
+        (["--program-keys", "a: b: c"], HOME, "'a: b: c': line 1: not YAML"),
     ],
 )  # fmt: skip
 def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told, capsys):
@@ -157,6 +160,38 @@ def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told
     code = new("--program", "cell/move.script", *more, robot=str(FILES["heron6"]))
     said = capsys.readouterr().err
     assert code == 2 and told in said and "trajectory" not in said
+
+
+LISTING = """/PROG  CELL
+/MN
+   1:J P[1] 10% CNT50    ;
+   2:  CALL HOME    ;
+/POS
+P[1]{
+   GP1:
+	UF : 0, UT : 0,
+	J1= 5 deg, J2= 0 deg, J3= 0 deg, J4= 0 deg, J5= 30 deg, J6= 0 deg
+};
+/END
+"""
+
+
+@pytest.mark.slow
+def test_what_a_program_lacks_is_said_by_its_keys(capsys):
+    Path("cell/CELL.LS").write_text(LISTING)
+    home = LISTING.replace("CELL", "HOME").replace("CNT50", "FINE").replace("J1= 5", "J1= 10")
+    Path("cell/HOME.LS").write_text(home.replace("   2:  CALL HOME    ;\n", ""))
+    words = ["--program", "cell/CELL.LS", *TIP, "--scene", "cell/cell.scene"]
+    robot = str(FILES["heron6"])
+    assert new(*words, "--program-keys", "zones: {CNT: 0.05}", robot=robot) == 2
+    assert "--program-keys '{beside: [HOME.LS]}'" in capsys.readouterr().err
+    keys = ["zones: {CNT: 0.05}", "beside: [cell/HOME.LS]"]
+    keys += ["axes: {joint_5: {sign: -1}}", "axes: {joint_4: {sign: -1}}"]
+    said = [word for one in keys for word in ("--program-keys", one)]
+    assert new(*words, *said, robot=robot) == 0
+    placed = load_case("out/case.yaml").robots[0]
+    last = dict(zip(placed.trajectory.joint_names, placed.trajectory.positions[-1], strict=True))
+    assert np.degrees([last["joint_1"], last["joint_5"]]) == pytest.approx([10.0, -30.0])
 
 
 @pytest.mark.parametrize(

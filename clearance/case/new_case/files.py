@@ -206,6 +206,8 @@ def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path
     if "program" in (given.trajectory or {}):
         keys = dict(given.trajectory or {})
         program = {**keys["program"], "file": path_from(folder, keys["program"]["file"])}
+        program |= {"beside": [path_from(folder, one) for one in program.get("beside", ())]}
+        program = {key: value for key, value in program.items() if value != []}
         return {**keys, "program": program if len(program) > 1 else program["file"]}
     if (trajectory.holes or trajectory.has_way_in) and given.trajectory is not None:
         keys = dict(given.trajectory)

@@ -156,15 +156,20 @@ def _calls_of(one: Statement) -> Iterator[Call]:
         yield from calls_in(part)
 
 
-def unknown_word(call: Call, moves: bool | None = None) -> BadProgram:
-    """The error for an instruction or a function that may do anything, or that moves and has no value."""
+def unknown_word(call: Call, suffix: str, moves: bool | None = None) -> BadProgram:
+    """The error for an instruction or a function that may do anything, or that moves and has no value.
+
+    Args:
+        suffix: of the file that may have it.
+    """
     if moves:
         told = f"{call.name} moves the robot, and has no value"
         return BadProgram(told, where=str(call.line), valid="the move as a statement of its own")
+    file = f"program: {{beside: [{call.name}{suffix}]}}" if suffix else "a file beside that has it"
     return BadProgram(
         f"{call.name!r} is no known instruction, and may move the robot",
         where=str(call.line),
-        valid=f"a file beside that has it, or skip: [{call.name}] if it neither moves nor sets tool or frame",
+        valid=f"{file}, or skip: [{call.name}] if it neither moves nor sets tool or frame",
     )
 
 

@@ -182,7 +182,7 @@ class Execution(Remarks):
         if call.name in self.routines:
             return self._called(self.routines[call.name], call)[0]
         if (moves := self.language.moves(call.name)) is not False:
-            raise unknown_word(call, moves)
+            raise unknown_word(call, self.language.suffix, moves)
         return self.language.result_of(call, self)
 
     def items(self, values: list[Any], kind: str) -> Any:
@@ -245,7 +245,7 @@ class Execution(Remarks):
         elif call.name in self.routines:
             return self._called(self.routines[call.name], call)[1]
         elif self.language.moves(call.name) is None:
-            raise unknown_word(call)
+            raise unknown_word(call, self.language.suffix)
         else:
             self.language.instruct(call, self)
         return None

@@ -84,6 +84,7 @@ class _Fanuc:
 
     asked: ProgramFile
     unsaid: dict[str, None] = field(default_factory=dict)
+    suffix = ".LS"
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""

@@ -111,6 +111,7 @@ class _Krl:
     root: RobotRoot = field(default_factory=RobotRoot)
     unsaid: dict[str, None] = field(default_factory=dict)
     is_automatic: bool = False
+    suffix = ".src"
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""

@@ -9,7 +9,13 @@ from clearance.formats.program.expressions import Call, Expression
 
 
 class Language(Protocol):
-    """What the words of a language do."""
+    """What the words of a language do.
+
+    Attributes:
+        suffix: of the file that has a called program by its name; empty where its name says nothing of the file.
+    """
+
+    suffix: str
 
     def moves(self, name: str) -> bool | None:
         """Whether an instruction or a function can move the robot; None where it is not known."""

@@ -75,6 +75,7 @@ class Rapid:
     zones: dict[int, tuple[float, float]] = field(default_factory=dict)
     _persistent: bool = False
     _lines_keep: bool = False
+    suffix = ""
 
     @property
     def state(self) -> Any:

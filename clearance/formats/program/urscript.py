@@ -143,6 +143,7 @@ class _UrScript:
 
     tool: np.ndarray | None
     last: Any = None
+    suffix = ""
 
     @property
     def state(self) -> Any:

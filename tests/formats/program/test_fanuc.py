@@ -163,7 +163,7 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
         ("WAIT DI[1]=ON TIMEOUT,LBL[1] ;", "line 6: 'TIMEOUT' is not understood, and decides"),
         (
             "CALL GRIP ;",
-            "line 6: 'GRIP' is no known instruction, and may move the robot; a file beside",
+            "line 6: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.LS]}",
         ),
         (" Weave Sine[5] ;", "line 6: 'WEAVE' is not understood"),
         (FRAMES + "L P[2] 100mm/se", "line 8: 'L P[2] 100mm/se' has no end; ';', in a whole file"),

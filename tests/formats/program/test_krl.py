@@ -244,7 +244,10 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         (FRAMES + "SPLINE\nSPL XP1\nENDSPLINE", "line 9: a spline is not read"),
         ("WAIT FOR $IN[3]", "line 7: WAIT FOR waits for what is not known"),
         ("IF $IN[1] THEN\nPTP XHOME\nENDIF", "line 7: IF decides on PTP at line 8"),
-        ("grip()", "line 7: 'GRIP' is no known instruction, and may move the robot"),
+        (
+            "grip()",
+            "line 7: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.src]}",
+        ),
         ("HALT", "line 7: 'HALT' is not understood"),
         ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
         ("PTP XHOME\nEND\nDEF half()\nPTP XHOME\nEN", "line 9: half has no END; a whole file"),
