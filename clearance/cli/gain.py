@@ -43,7 +43,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     from clearance.case.packed import refuse_zip
     from clearance.files import refuse_inputs, require_folder_place
     from clearance.gains.changed_files import CASE, OWN
-    from clearance.gains.folder import FIGURES, PAGE, refuse_taken
+    from clearance.gains.folder import FIGURES, PAGE, refuse_existing
 
     asked = said(Request, options)
     spelled = spelled_by(Request)
@@ -57,7 +57,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
         refuse_zip(case)
         folders = _folders(read, out, asked.get("robot", ())) if kind == "all" else [out]
         for folder in folders:
-            refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
+            refuse_existing(folder, (*OWN, FIGURES, PAGE), force=force)
             refuse_inputs([folder / name for name in (CASE, FIGURES, PAGE)], read.files_read)
     say_notices(read)
     if kind == "all":

@@ -14,9 +14,14 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadChange, UnknownRobot, nearest_name
-from clearance.gains.binding_constraints import bound_by, ends_reached, joints_held, tools_held
+from clearance.gains.binding_constraints import (
+    bound_by,
+    ends_reached,
+    joints_at_limits,
+    tools_at_limits,
+)
 from clearance.gains.delay import TimingResult, least_delay, least_slowing
-from clearance.gains.detours import flat_moment, from_beside
+from clearance.gains.detours import flat_moment, from_detours
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.lower_bounds import least_base, least_offset, least_shift
 from clearance.gains.obstruction import (
@@ -41,7 +46,7 @@ from clearance.gains.request import Request
 from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
-from clearance.gains.stretches import kept_of, require_in_path, require_in_run, windows_of
+from clearance.gains.stretches import fixed_spans, require_in_path, require_in_run, windows_of
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove
@@ -203,10 +208,10 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
         found = _least_of_several(search, way, first, at_least)
     x = found.state.x
     who = before.robot.name
-    told = _gain(case, request, found, shift.change_of(x), way, at_least, who, blocked)
+    result = _gain(case, request, found, shift.change_of(x), way, at_least, who, blocked)
     after = found.state.case.robots[i_robot]
     return replace(
-        told,
+        result,
         joint_names=before.given_trajectory.joint_names,
         tool_path=tool_path_error(before, after, way.tool),
     )
@@ -275,12 +280,12 @@ def _by_path(case: Case, request: Request) -> Gain:
             break
     who = ", ".join(case.robots[i].robot.name for i in changed)
     change = offsets.offsets(found.state.x)
-    told = _gain(case, request, found, change, offsets, at_least, who, blocked)
+    result = _gain(case, request, found, change, offsets, at_least, who, blocked)
     moves = () if offsets.tool_poses is None else tuple(offsets.tool_poses.moves(found.state.x))
     names = tuple(
         name for part in offsets.parts for name in part.placed.given_trajectory.joint_names
     )
-    return replace(told, joint_names=names, tool_moves=moves)
+    return replace(result, joint_names=names, tool_moves=moves)
 
 
 def _path_obstruction(
@@ -302,7 +307,7 @@ def _least_path(
     found = search.from_state(first)
     coarse = all(part.basis.n_intervals == INTERVALS[0] for part in offsets.parts)
     flat = flat_moment(found.state, offsets) if coarse and not found.kept else None
-    return found if flat is None else from_beside(search, offsets, flat) or found
+    return found if flat is None else from_detours(search, offsets, flat) or found
 
 
 def _offsets(
@@ -311,7 +316,7 @@ def _offsets(
     """What may be changed of one robot's path, or of several at once."""
     parts = [
         joint_offsets(
-            case, i, n_intervals, kept_of(case, i, request), request.keep_tool, request.tool
+            case, i, n_intervals, fixed_spans(case, i, request), request.keep_tool, request.tool
         )
         for i in changed
     ]
@@ -323,12 +328,12 @@ def _kept_still(
 ) -> Obstruction:
     """The same, for the reason that all that moves the pair is to stay as it is then, if that is so."""
     approach = approach_of(blocked, first)
-    told = [
+    blocks = [
         kept_still(blocked, windows_of(part.case, part.i_robot, request))
         for part in offsets.parts
         if part.gradient(approach) is not None
     ]
-    return next((one for one in told if one.why == blocked.why), told[0]) if told else blocked
+    return next((one for one in blocks if one.why == blocked.why), blocks[0]) if blocks else blocked
 
 
 def _gain(
@@ -359,12 +364,16 @@ def _binding(found: SearchResult, way: Change, blocked: Obstruction) -> tuple[st
     """What the best that was reached is up against."""
     x, robots = found.state.x, found.state.case.robots
     if isinstance(way, JointOffsets | PathsTogether):
-        told = bound_by(found.state, blocked, [robots[part.i_robot] for part in way.parts])
-        return told if way.tool_poses is None else told + tools_held(way.tool_poses.moves(x))
-    told = bound_by(found.state, blocked)
+        binding = bound_by(found.state, blocked, [robots[part.i_robot] for part in way.parts])
+        return (
+            binding
+            if way.tool_poses is None
+            else binding + tools_at_limits(way.tool_poses.moves(x))
+        )
+    binding = bound_by(found.state, blocked)
     if isinstance(way, ToolPathKept):
-        told += joints_held(robots[way.i_robot])
-    return told + ends_reached(x, way.box)
+        binding += joints_at_limits(robots[way.i_robot])
+    return binding + ends_reached(x, way.box)
 
 
 def _by_delay(case: Case, request: Request) -> Gain:

@@ -23,19 +23,19 @@ class Basis:
 
     Attributes:
         times: (n,) [s] of the table.
-        kept: (start, end) of its times [s] in which there is no offset, nor a speed of one.
+        fixed: (start, end) of its times [s] in which there is no offset, nor a speed of one.
     """
 
     times: np.ndarray
     n_intervals: int
-    kept: Sequence[tuple[float, float]]
+    fixed: Sequence[tuple[float, float]]
 
     @cached_property
     def free(self) -> np.ndarray:
         """(m,) the splines that are 0 in all windows, with their speed, as places among all."""
         low, high = self._knots[: -DEGREE - 1], self._knots[DEGREE + 1 :]
         bound = np.zeros(len(low), dtype=bool)
-        for start, end in self.kept:
+        for start, end in self.fixed:
             bound |= (low < end) & (start < high)
             ends = np.clip([start, end], self.times[0], self.times[-1])
             for order in (0, 1):
@@ -47,8 +47,8 @@ class Basis:
 
         Before the table's first time and after its last they are what they are there.
         """
-        held = np.clip(times, self.times[0], self.times[-1])
-        return self._all_at(held, order)[:, self.free]
+        clipped = np.clip(times, self.times[0], self.times[-1])
+        return self._all_at(clipped, order)[:, self.free]
 
     def _all_at(self, times: np.ndarray, order: int) -> np.ndarray:
         from scipy.interpolate import BSpline

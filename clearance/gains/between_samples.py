@@ -38,10 +38,10 @@ def _places(asked: Trajectory, times: np.ndarray) -> tuple[np.ndarray, np.ndarra
     """(k,) the sample before each time, (k, 1) the length of its interval [s], and the share of it that has
     passed.
     """
-    held = np.clip(times, asked.times[0], asked.times[-1])
-    row = np.clip(np.searchsorted(asked.times, held, side="right") - 1, 0, asked.n_steps - 2)
+    clipped = np.clip(times, asked.times[0], asked.times[-1])
+    row = np.clip(np.searchsorted(asked.times, clipped, side="right") - 1, 0, asked.n_steps - 2)
     length = (asked.times[row + 1] - asked.times[row])[:, None]
-    return row, length, (held - asked.times[row])[:, None] / length
+    return row, length, (clipped - asked.times[row])[:, None] / length
 
 
 def _cubics(

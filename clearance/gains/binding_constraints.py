@@ -35,15 +35,15 @@ def bound_by(
     return (*_pairs(state, blocked)[:MOST], *joints[:MOST])
 
 
-def joints_held(placed: PlacedRobot) -> tuple[str, ...]:
+def joints_at_limits(placed: PlacedRobot) -> tuple[str, ...]:
     """The joints of a path that are at a limit at any moment, with the one at which they are most so."""
-    told = []
+    lines = []
     for one in joint_ranges(placed):
-        worst = int(one.room.argmin())
-        if one.room[worst] < CLOSE:
+        worst = int(one.headroom.argmin())
+        if one.headroom[worst] < CLOSE:
             time = placed.timing.start + one.times[worst] / placed.timing.rate
-            told.append(f"joint {one.joint} is at its {one.what} at {time:.3f} s")
-    return tuple(told[:MOST])
+            lines.append(f"joint {one.joint} is at its {one.what} at {time:.3f} s")
+    return tuple(lines[:MOST])
 
 
 def ends_reached(x: np.ndarray, box: Box) -> tuple[str, ...]:
@@ -56,7 +56,7 @@ def ends_reached(x: np.ndarray, box: Box) -> tuple[str, ...]:
     )
 
 
-def tools_held(moves: Iterable[ToolMove]) -> tuple[str, ...]:
+def tools_at_limits(moves: Iterable[ToolMove]) -> tuple[str, ...]:
     """The moments at which a tool has moved or turned as far as it may."""
     return tuple(
         f"tool {one.link} has no more to give at {one.keep.time:.3f} s"
@@ -66,7 +66,7 @@ def tools_held(moves: Iterable[ToolMove]) -> tuple[str, ...]:
 
 
 def _pairs(state: State, blocked: Obstruction) -> list[str]:
-    told = dict[tuple[str, str], str]()
+    by_pair = dict[tuple[str, str], str]()
     for approach in state.near:
         names = approach.pair.a.name_in(approach.case), approach.pair.b.name_in(approach.case)
         missing = state.missing(approach)
@@ -76,17 +76,17 @@ def _pairs(state: State, blocked: Obstruction) -> list[str]:
             continue
         phase, step = approach.section.phase, int(approach.steps[missing.argmax()])
         time = phase.motions[0].times[step - phase.first]
-        told.setdefault(names, f"{names[0]} and {names[1]} have no more to give at {time:.3f} s")
-    return list(told.values())
+        by_pair.setdefault(names, f"{names[0]} and {names[1]} have no more to give at {time:.3f} s")
+    return list(by_pair.values())
 
 
 def _joints(placed: PlacedRobot, time: float) -> list[str]:
     """The joints that are at a limit at the samples next to a time of the run [s]."""
     own = (time - placed.timing.start) * placed.timing.rate
-    told = []
+    lines = []
     for one in joint_ranges(placed):
         after = int(np.clip(np.searchsorted(one.times, own), 0, len(one.times) - 1))
-        near = one.room[max(after - 1, 0) : after + 1]
+        near = one.headroom[max(after - 1, 0) : after + 1]
         if near.min() < CLOSE:
-            told.append(f"joint {one.joint} is at its {one.what}")
-    return told
+            lines.append(f"joint {one.joint} is at its {one.what}")
+    return lines

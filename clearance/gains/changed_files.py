@@ -160,16 +160,16 @@ class _Files:
     def _i_robot(self) -> int:
         return index_of_robot(self.gain.case.robots, self.gain.who)
 
-    def _table(self, told: Node, i_robot: int) -> None:
+    def _table(self, section: Node, i_robot: int) -> None:
         """What is said of a robot's table."""
 
         def change(node: Node) -> None:
             _, holder = robot_node(node, i_robot)
             old = holder["trajectory"]
             old = {"file": old} if isinstance(old, str) else dict(old)
-            if "file" in told:
+            if "file" in section:
                 old = {key: value for key, value in old.items() if key in (*WHEN, "wrap")}
-            made = {**told, **old} if "file" in told else {**old, **told}
+            made = {**section, **old} if "file" in section else {**old, **section}
             holder["trajectory"] = made["file"] if [*made] == ["file"] else made
 
         self._changes.append(change)
@@ -190,9 +190,9 @@ class _Files:
             return
         self.contents[MOVES] = self._poses(made.moves)
         old = row["moves"]
-        kept = {} if isinstance(old, str) else {key: old[key] for key in WHEN if key in old}
+        times = {} if isinstance(old, str) else {key: old[key] for key in WHEN if key in old}
         file = MOVES if not written_out else str(self.folder.absolute() / MOVES)
-        row["moves"] = {"file": file, **kept}
+        row["moves"] = {"file": file, **times}
 
     def _pose(self, given: Node, before: np.ndarray, after: np.ndarray) -> Node:
         """A pose of a file in another place; where it is turned with the quaternion that it was made of."""
@@ -200,8 +200,8 @@ class _Files:
         if turn is None or change[3] == 0.0:
             return {**given, "xyz": after[:3, 3].tolist()}
         place, quaternion = Pivot(turn, before).placed(np.append(change[:3], change[3] * ARM))
-        kept = {key: one for key, one in given.items() if key not in ("rpy", "quat_xyzw")}
-        return {**kept, "xyz": place, "quat_xyzw": quaternion}
+        others = {key: one for key, one in given.items() if key not in ("rpy", "quat_xyzw")}
+        return {**others, "xyz": place, "quat_xyzw": quaternion}
 
     def _poses(self, made: PoseTable) -> bytes:
         """The obstacle's table with other places; where it is not turned, turns as they stand in its file."""

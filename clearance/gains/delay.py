@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadChange
-from clearance.gains.delay_obstruction import is_told_by, stays_whatever
+from clearance.gains.delay_obstruction import is_at_any_delay, stays_whatever
 from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
@@ -96,7 +96,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingR
 
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
         now, times = state.case.robots[i_robot], _times(approach)
-        known = is_told_by(state.case, i_robot, times)
+        known = is_at_any_delay(state.case, i_robot, times)
         since = times - now.timing.run_times(now.given_trajectory.times)[0]
         return np.where(known, _over(ways, speed), np.minimum(_over(ways, speed), since))
 
@@ -125,11 +125,11 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
         times = _times(approach)
         at = np.maximum((times - now.timing.start) * now.timing.rate, 0.0)
         then = np.maximum(at - _over(ways, speed), 0.0)
-        known = is_told_by(state.case, i_robot, times)
+        known = is_at_any_delay(state.case, i_robot, times)
         then = np.where(known, then, np.maximum(then, now.given_trajectory.times[0]))
         slower = np.divide(at, then, out=np.full(len(at), np.inf), where=then > 0.0)
-        taken = placed.timing.rate / now.timing.rate
-        return np.maximum(slower - 1.0, 0.0) * taken
+        ratio = placed.timing.rate / now.timing.rate
+        return np.maximum(slower - 1.0, 0.0) * ratio
 
     return _least(
         lambda more: case_slower(case, i_robot, more),

@@ -29,10 +29,10 @@ def stays_whatever(state: State, i_robot: int) -> Obstruction | None:
         if not transfers.has(approach)
         for row, why in _staying(state, approach, i_robot)
     ]
-    return min(found, key=lambda told: told.clearance - told.wanted, default=None)
+    return min(found, key=lambda one: one.clearance - one.wanted, default=None)
 
 
-def is_told_by(case: Case, i_robot: int, times: np.ndarray) -> np.ndarray:
+def is_at_any_delay(case: Case, i_robot: int, times: np.ndarray) -> np.ndarray:
     """(n,) True for moments [s of the run] that are in the run whatever the delay of a robot, which is there then.
 
     A run begins with the first path that does not loop; of robots that are not in the cell before their path no
@@ -54,17 +54,19 @@ def _staying(state: State, approach: Approach, i_robot: int) -> Iterator[tuple[i
     case, times = state.case, approach.section.phase.times
     at = times[approach.steps - approach.section.phase.first]
     missing = state.missing(approach)
-    told = is_told_by(case, i_robot, at)
+    is_always = is_at_any_delay(case, i_robot, at)
     movers = _movers(case, approach)
     own: Thing = (False, i_robot)
-    hold = all(_timing(case, one).after == "hold" for one in movers)
+    all_hold = all(_timing(case, one).after == "hold" for one in movers)
     reasons = (
-        (NOT_MOVED, told & (own not in movers)),
+        (NOT_MOVED, is_always & (own not in movers)),
         (ON_ITS_WAY, np.full(len(at), movers == {own} and _is_timeless(case, approach))),
-        (AT_REST, told & (own in movers) & (at <= _begins(case, own) + SAME)),
+        (AT_REST, is_always & (own in movers) & (at <= _begins(case, own) + SAME)),
         (
             AT_REST,
-            (at >= state.record.timeline.times[-1] - SAME) & hold & _is_timeless(case, approach),
+            (at >= state.record.timeline.times[-1] - SAME)
+            & all_hold
+            & _is_timeless(case, approach),
         ),
     )
     for why, stays in reasons:

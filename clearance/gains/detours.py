@@ -64,7 +64,7 @@ def flat_moment(state: State, offsets: Offsets) -> FlatMoment | None:
     return found
 
 
-def from_beside(search: Search, offsets: Offsets, flat: FlatMoment) -> SearchResult | None:
+def from_detours(search: Search, offsets: Offsets, flat: FlatMoment) -> SearchResult | None:
     """The least that searches from beside a path come to and prove; None where none does."""
     states = [search.state_at(start) for start in _starts(offsets, flat)]
     best: SearchResult | None = None
@@ -97,7 +97,7 @@ def _starts(offsets: Offsets, flat: FlatMoment) -> Iterator[np.ndarray]:
                     for far in (*FAR, *(-one for one in FAR)):
                         x = np.zeros(size)
                         x[own] = far / part.weights[joint] * shape
-                        yield _room(offsets, x) * x
+                        yield _share_within_limits(offsets, x) * x
         before += part.n_joints * part.n_splines
 
 
@@ -111,8 +111,8 @@ def _shapes(part: JointOffsets, time: float) -> list[np.ndarray]:
     return [np.maximum(0.0, 1.0 - off / (1.0 + WIDE * part.n_splines)), np.ones(part.n_splines)]
 
 
-def _room(offsets: Offsets, x: np.ndarray) -> float:
+def _share_within_limits(offsets: Offsets, x: np.ndarray) -> float:
     """[-] The share of a change up to 1 that keeps all limits of joints."""
-    grown, kept = offsets.kept.a @ x, offsets.kept.b
-    some = grown > kept
-    return float((kept[some] / grown[some]).min(initial=1.0))
+    grown, most = offsets.inequalities.a @ x, offsets.inequalities.b
+    some = grown > most
+    return float((most[some] / grown[some]).min(initial=1.0))

@@ -63,12 +63,12 @@ def name_of(kind: str, robot: Robots, case: Case) -> str:
 
 
 def every_kind(
-    case: Case, options: Mapping[str, Any], told: Callable[[str], AbstractContextManager[None]]
+    case: Case, options: Mapping[str, Any], progress: Callable[[str], AbstractContextManager[None]]
 ) -> Iterator[Trial]:
     """What each kind comes to, of each robot and of the obstacle of the worst pair, where none is named.
 
     Args:
-        options: as `gain` takes them. told: around each search, with its kind.
+        options: as `gain` takes them. progress: around each search, with its kind.
 
     Raises:
         UnknownRobot, UnknownObstacle: with the nearest name.
@@ -87,7 +87,7 @@ def every_kind(
                 continue
             own["obstacle"] = nearest
         try:
-            with told(name):
+            with progress(name):
                 found = gain(case, kind, **own)
         except (UnknownObstacle, UnknownRobot):
             raise
@@ -110,12 +110,12 @@ def table_lines(tried: Sequence[Trial]) -> list[str]:
             rows.append((one.name, "-", "-", f"does not apply: {one.why}"))
             continue
         if one.kept and one.gain.size == 0.0:
-            told = ("yes", "none", f"{one.gain.who}; nothing had to be changed")
+            cells = ("yes", "none", f"{one.gain.who}; nothing had to be changed")
         elif one.kept:
-            told = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
+            cells = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
         else:
-            told = ("no", "-", f"{one.gain.who}; {one.gain.blocked}")
-        rows.append((one.name, *told))
+            cells = ("no", "-", f"{one.gain.who}; {one.gain.blocked}")
+        rows.append((one.name, *cells))
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     return ["  ".join([*(row[i].ljust(widths[i]) for i in range(3)), row[3]]) for row in rows]
 

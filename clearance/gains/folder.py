@@ -43,7 +43,7 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
     drawn = all(is_installed(library) for library in LIBRARIES["report"])
     names = [*dict.fromkeys((*OF_CASE, FIGURES, PAGE, *made.files))]
     sources = gain.before.record.case.files_read
-    refuse_taken(folder, names, force=force)
+    refuse_existing(folder, names, force=force)
     refuse_inputs([folder / name for name in names], sources)
     page = page_of(gain, made.notes, with_reports=drawn)
 
@@ -60,7 +60,7 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
     return folder
 
 
-def refuse_taken(folder: Path, names: Collection[str], *, force: bool) -> None:
+def refuse_existing(folder: Path, names: Collection[str], *, force: bool) -> None:
     """Nothing, if the files of a gain, and its reports, can be put into a folder without loss.
 
     Raises:

@@ -23,7 +23,7 @@ from clearance.gains.shortfalls import (
 from clearance.record.record import Record
 
 
-def looked_closer(wanted: Requirement, record: Record, state: State) -> Requirement:
+def refined(wanted: Requirement, record: Record, state: State) -> Requirement:
     """What is wanted, with moments in the motions that are farthest from being proven, and more in the others.
 
     Args:

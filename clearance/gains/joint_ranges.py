@@ -29,14 +29,14 @@ class JointRange:
 
     Attributes:
         joint: its name. what: which limit. times: (n,) [s] of the table.
-        room: (n,) [unit] left; negative beyond it.
+        headroom: (n,) [unit] left; negative beyond it.
         unit: "rad" or "m", or that a second or a second squared.
     """
 
     joint: str
     what: str
     times: np.ndarray
-    room: np.ndarray
+    headroom: np.ndarray
     unit: str
 
 
@@ -63,19 +63,19 @@ def joint_ranges(placed: PlacedRobot) -> Iterator[JointRange]:
             (ACCELERATION, limit.acceleration, acceleration * rate**2, f"{unit}/s²"),
         ):
             if np.isfinite(most):
-                room = (1.0 + SIX_DIGITS) * most - given
-                yield JointRange(name, what, times[:-1], room, unit_of)
+                headroom = (1.0 + SIX_DIGITS) * most - given
+                yield JointRange(name, what, times[:-1], headroom, unit_of)
 
 
 def too_fast(placed: PlacedRobot) -> str:
     """Which joints are faster than the robot's own file lets them be; empty if none is."""
     beyond = [one for one in joint_ranges(placed) if one.what == OWN_SPEED]
-    told = [
-        f"{one.joint} by {-one.room.min():.3g} {one.unit}"
+    parts = [
+        f"{one.joint} by {-one.headroom.min():.3g} {one.unit}"
         for one in beyond
-        if one.room.min() < -ROUNDING
+        if one.headroom.min() < -ROUNDING
     ]
-    return listed(told, 4)
+    return listed(parts, 4)
 
 
 def require_within_limits(placed: PlacedRobot) -> None:
@@ -89,10 +89,10 @@ def require_within_limits(placed: PlacedRobot) -> None:
     if placed.trajectory is None:
         return
     for one in joint_ranges(placed):
-        worst = int(np.argmin(one.room))
-        if one.what != OWN_SPEED and one.room[worst] < -ROUNDING:
+        worst = int(np.argmin(one.headroom))
+        if one.what != OWN_SPEED and one.headroom[worst] < -ROUNDING:
             raise BadChange(
-                f"joint {one.joint!r} is {-one.room[worst]:.6g} {one.unit} beyond its {one.what} at "
+                f"joint {one.joint!r} is {-one.headroom[worst]:.6g} {one.unit} beyond its {one.what} at "
                 f"{one.times[worst]:.3f} s of its table already",
                 valid="a path within the limits of the joints, or other limits",
             )

@@ -76,18 +76,18 @@ def _below(
     """Rows that keep factor times a quantity below a level, or where it is, and what is left for each."""
     values = factor * controls.values[:, :, column]
     beyond = values.max(axis=0) > level
-    left = np.where(beyond, 0.0, level - values)
+    slack = np.where(beyond, 0.0, level - values)
     rows = factor * controls.splines.reshape(-1, controls.splines.shape[-1])
-    return _once(rows, left.ravel())
+    return _once(rows, slack.ravel())
 
 
-def _once(rows: np.ndarray, left: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _once(rows: np.ndarray, slack: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The rows that splines change at all, of equal ones the tighter: a sample stands in two intervals."""
     moved = np.flatnonzero(rows.any(axis=1))
-    order = moved[np.argsort(left[moved], kind="stable")]
+    order = moved[np.argsort(slack[moved], kind="stable")]
     _, first = np.unique(rows[order], axis=0, return_index=True)
-    kept = order[first]
-    return rows[kept], left[kept]
+    chosen = order[first]
+    return rows[chosen], slack[chosen]
 
 
 def _quantities(asked: Trajectory, basis: Basis) -> tuple[Controls, ...]:

@@ -62,8 +62,8 @@ def least_offset(offsets: JointOffsets | PathsTogether, state: State, margin: fl
 def way_needed(approach: Approach, margin: float) -> np.ndarray:
     """(k,) [m] how far the bodies must at least be moved against each other."""
     depths, padding = approach.depths_at_least, approach.section.padding
-    apart = np.where(depths > 0.0, 0.0, approach.clearances + padding)
-    return approach.rule.limits.least_kept + margin + padding - apart + depths
+    clearances = np.where(depths > 0.0, 0.0, approach.clearances + padding)
+    return approach.rule.limits.least_kept + margin + padding - clearances + depths
 
 
 def _way_of_unit(offsets: JointOffsets, approach: Approach) -> float:

@@ -22,7 +22,7 @@ from clearance.world.forest import WORLD, forest_of
 
 NOT_MOVED = "nothing of this change moves them"
 KEPT_STILL = "that moment is to be kept"
-NOT_APART = "small changes of this kind do not part them there"
+NOT_SEPARATED = "small changes of this kind do not separate them there"
 NOT_FOUND = "the search found no change that gives more"
 NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
 TOO_FAR = "no change within what is allowed is large enough"
@@ -60,11 +60,13 @@ class Obstruction:
         far = f"{self.clearance * 1e3:.3f} mm apart"
         if self.clearance < 0.0:
             far = f"{-self.clearance * 1e3:.3f} mm deep in each other"
-        told = f"{self.body_a} and {self.body_b} are {far} at {self.time:.3f} s"
+        claim = f"{self.body_a} and {self.body_b} are {far} at {self.time:.3f} s"
         needed = f"{self.wanted * 1e3:.6g} mm"
         if abs(self.clearance - self.wanted) < SHOWN:
-            return f"{told}, equal to the {needed} that are needed but for rounding, and {self.why}"
-        return f"{told}, {needed} are needed, and {self.why}"
+            return (
+                f"{claim}, equal to the {needed} that are needed but for rounding, and {self.why}"
+            )
+        return f"{claim}, {needed} are needed, and {self.why}"
 
 
 def blocked_by(
@@ -76,8 +78,8 @@ def blocked_by(
         transfers: parts that the change hands over elsewhere, which it moves though none of it carries them then.
     """
     near = [one for one in state.near if not transfers.has(one)]
-    found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
-    return min(found, key=lambda told: told.clearance - told.wanted, default=None)
+    found = [one_pair for one in near if (one_pair := _worst(state, one, gradient)) is not None]
+    return min(found, key=lambda one_pair: one_pair.clearance - one_pair.wanted, default=None)
 
 
 def approach_of(blocked: Obstruction, state: State) -> Approach:
@@ -89,7 +91,7 @@ def approach_of(blocked: Obstruction, state: State) -> Approach:
 def kept_still(blocked: Obstruction, windows: Sequence[tuple[float, float]]) -> Obstruction:
     """The same, for the reason that a path stays as it is then, if one of the windows [s of the run] says so."""
     within = any(start <= blocked.time <= end for start, end in windows)
-    return replace(blocked, why=KEPT_STILL) if within and blocked.why == NOT_APART else blocked
+    return replace(blocked, why=KEPT_STILL) if within and blocked.why == NOT_SEPARATED else blocked
 
 
 def pair_at(state: State, approach: Approach, row: int, why: str) -> Obstruction:
@@ -136,7 +138,7 @@ def _worst(state: State, approach: Approach, gradient: Gradient) -> Obstruction 
     rows = np.flatnonzero(stays)
     if not len(rows):
         return None
-    why = NOT_MOVED if by_unit is None else NOT_APART
+    why = NOT_MOVED if by_unit is None else NOT_SEPARATED
     return pair_at(state, approach, int(rows[np.argmax(missing[rows])]), why)
 
 

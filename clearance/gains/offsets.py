@@ -197,7 +197,7 @@ class JointOffsets:
         offsets = self._sized @ x.reshape(self.n_joints, -1).T
         return float((np.abs(offsets) * self.weights).max(initial=0.0))
 
-    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
         return None if self.tool_poses is None else self.tool_poses.rows(x, beyond)
 
     @cached_property
@@ -217,7 +217,7 @@ class JointOffsets:
         return ARM * float((farthest * self.weights).max())
 
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
-        return least_greatest(rows, x, box, self.sized, self.weight_of_each, self.kept)
+        return least_greatest(rows, x, box, self.sized, self.weight_of_each, self.inequalities)
 
     @property
     def sized(self) -> Any:
@@ -232,23 +232,24 @@ class JointOffsets:
         return np.repeat(self.weights, self.n_splines)
 
     @cached_property
-    def kept(self) -> Inequalities:
+    def inequalities(self) -> Inequalities:
         """The limits of joints, of their speeds and of their accelerations, at the samples and between."""
         return joint_rows(self.placed, self.basis)
 
 
 def least_greatest(
-    rows: Rows, x: np.ndarray, box: Box, sized: Any, weights: np.ndarray, kept: Inequalities
+    rows: Rows, x: np.ndarray, box: Box, sized: Any, weights: np.ndarray, inequalities: Inequalities
 ) -> np.ndarray | None:
     """(m,) the variables of least greatest offset that keep all rows, linear about x; None if none do.
 
     Args:
-        sized: (r, m) sparse: what offsets are at samples. weights: (m,) of each variable. kept: beside the rows.
+        sized: (r, m) sparse: what offsets are at samples. weights: (m,) of each variable.
+        inequalities: kept beside the rows.
     """
     from scipy.optimize import linprog
     from scipy.sparse import block_array, csr_array, eye_array
 
-    size, rows, kept = len(x), reachable(rows, x, box), within_reach(kept, *box)
+    size, rows, inequalities = len(x), reachable(rows, x, box), within_reach(inequalities, *box)
     wanted = rows.missing + rows.gradients @ x
     ones, unit = csr_array(np.ones((sized.shape[0], 1))), eye_array(size)
     a = block_array(
@@ -258,14 +259,14 @@ def least_greatest(
             [-sized, None, -ones],
             [unit, -unit, None],
             [-unit, -unit, None],
-            [kept.a, None, None],
+            [inequalities.a, None, None],
         ],
         format="csr",
     )
     flat = np.zeros(2 * sized.shape[0] + 2 * size)
     cost = np.concatenate([np.zeros(size), EVENLY / size * weights, [1.0]])
     bounds = [*zip(box.low, box.high, strict=True), *([(0.0, None)] * (size + 1))]
-    b = np.concatenate([-wanted, flat, kept.b])
+    b = np.concatenate([-wanted, flat, inequalities.b])
     found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
     return None if found.x is None else np.asarray(found.x[:size])
 
@@ -274,7 +275,7 @@ def joint_offsets(
     case: Case,
     i_robot: int,
     n_intervals: int,
-    kept: tuple[tuple[float, float], ...],
+    fixed: tuple[tuple[float, float], ...],
     tool_keeps: tuple[ToolKeep, ...] = (),
     tool: str | None = None,
 ) -> JointOffsets:
@@ -294,7 +295,7 @@ def joint_offsets(
             valid="a path that ends",
         )
     return JointOffsets(
-        case, i_robot, Basis(placed.given_trajectory.times, n_intervals, kept), tool_keeps, tool
+        case, i_robot, Basis(placed.given_trajectory.times, n_intervals, fixed), tool_keeps, tool
     )
 
 

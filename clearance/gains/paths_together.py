@@ -48,11 +48,11 @@ class PathsTogether:
         return np.concatenate([part.first_reach for part in self.parts])
 
     @cached_property
-    def kept(self) -> Inequalities:
+    def inequalities(self) -> Inequalities:
         """The limits of all joints."""
         from scipy.sparse import block_diag
 
-        own = [part.kept for part in self.parts]
+        own = [part.inequalities for part in self.parts]
         return Inequalities(
             block_diag([one.a for one in own], format="csr"),
             np.concatenate([one.b for one in own]),
@@ -99,9 +99,9 @@ class PathsTogether:
 
         sized = block_diag([part.sized for part in self.parts], format="csr")
         weights = np.concatenate([part.weight_of_each for part in self.parts])
-        return least_greatest(rows, x, box, sized, weights, self.kept)
+        return least_greatest(rows, x, box, sized, weights, self.inequalities)
 
-    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
         return None
 
     def swing(self, reach: np.ndarray) -> float:

@@ -53,10 +53,10 @@ def least_norm(rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
     aim = np.zeros(size + 1)
     aim[-1] = 1.0
     weights, _ = nnls(system, aim, maxiter=30 * (size + len(b)))
-    left = system @ weights - aim
-    if -left[-1] < 1e-12:
+    residual = system @ weights - aim
+    if -residual[-1] < 1e-12:
         return None
-    return -left[:size] / left[-1] * scale
+    return -residual[:size] / residual[-1] * scale
 
 
 class Inequalities(NamedTuple):
@@ -70,20 +70,20 @@ class Inequalities(NamedTuple):
     b: np.ndarray
 
 
-def within_reach(kept: Inequalities, low: np.ndarray, high: np.ndarray) -> Inequalities:
+def within_reach(inequalities: Inequalities, low: np.ndarray, high: np.ndarray) -> Inequalities:
     """Those that some point between (m,) `low` and `high`, all finite, may break."""
-    most = kept.a.maximum(0.0) @ high + kept.a.minimum(0.0) @ low
-    some = most > kept.b
-    return Inequalities(kept.a[some], kept.b[some])
+    most = inequalities.a.maximum(0.0) @ high + inequalities.a.minimum(0.0) @ low
+    some = most > inequalities.b
+    return Inequalities(inequalities.a[some], inequalities.b[some])
 
 
 def least_missing(
-    rows: Rows, x: np.ndarray, box: Box, kept: Inequalities | None
+    rows: Rows, x: np.ndarray, box: Box, inequalities: Inequalities | None
 ) -> tuple[np.ndarray, float]:
     """(m,) the point of a box at which the worst row, linear about x, is least below 0, and how much that is.
 
     Args:
-        kept: what is kept beside the box; None for nothing.
+        inequalities: what is kept beside the box; None for nothing.
     """
     from scipy.optimize import linprog
 
@@ -92,13 +92,13 @@ def least_missing(
     cost = np.zeros(size + 1)
     cost[-1] = 1.0
     above, most = np.hstack([-rows.gradients, -np.ones((n_rows, 1))]), -rows.missing
-    if kept is not None:
+    if inequalities is not None:
         from scipy.sparse import csr_array, hstack, vstack
 
-        left = Inequalities(kept.a, kept.b - kept.a @ x)
-        near = within_reach(left, box.low - x, box.high - x)
-        beside = hstack([near.a, csr_array((len(near.b), 1))])
-        above, most = vstack([csr_array(above), beside]), np.concatenate([most, near.b])
+        shifted = Inequalities(inequalities.a, inequalities.b - inequalities.a @ x)
+        near = within_reach(shifted, box.low - x, box.high - x)
+        with_zeros = hstack([near.a, csr_array((len(near.b), 1))])
+        above, most = vstack([csr_array(above), with_zeros]), np.concatenate([most, near.b])
     bounds = [*zip(box.low - x, box.high - x, strict=True), (0.0, None)]
     found = linprog(cost, A_ub=above, b_ub=most, bounds=bounds, method="highs")
     if found.x is None:

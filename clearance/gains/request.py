@@ -207,8 +207,8 @@ class Request:
         check_values(self)
         for name, one in options_in(Request).items():
             if getattr(self, name) and one.of and self.kind not in one.of:
-                told = f"{name} says nothing with kind {self.kind}"
-                raise BadChange(told, valid=f"kind {' or '.join(one.of)}")
+                fault = f"{name} says nothing with kind {self.kind}"
+                raise BadChange(fault, valid=f"kind {' or '.join(one.of)}")
         _require_robots(self)
         if self.tool is not None and not self.keep_tool and self.tool_path != "kept":
             raise BadChange(
@@ -220,7 +220,7 @@ class Request:
             object.__setattr__(self, "about", None)
             object.__setattr__(self, "most_turn", None)
         if self.within is not None:
-            _require_room(self.within, self.turn)
+            _require_freedom(self.within, self.turn)
 
 
 def kinds_of(name: str) -> tuple[str, ...]:
@@ -249,7 +249,7 @@ def _require_robots(request: Request) -> None:
         raise BadChange("a robot is named twice", valid="each once")
 
 
-def _require_room(within: Sequence[Range], turn: Turn | None) -> None:
+def _require_freedom(within: Sequence[Range], turn: Turn | None) -> None:
     """Nothing, if a shift within these ranges can be none, and can be another.
 
     Raises:

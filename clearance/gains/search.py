@@ -11,17 +11,17 @@ from typing import Protocol
 
 import numpy as np
 
-from clearance.gains.interval_moments import looked_closer
+from clearance.gains.interval_moments import refined
 from clearance.gains.programme import Box, Inequalities, least_missing
 from clearance.gains.shortfalls import (
     Requirement,
     Rows,
     State,
     keeps,
-    looked_into,
     measured,
     proven,
     raised,
+    with_moments_within,
 )
 from clearance.record.record import Record
 from clearance.simulate.answers.approaches import Approach
@@ -84,7 +84,7 @@ class Change(Protocol):
         """What the variables may be."""
 
     @property
-    def kept(self) -> Inequalities | None:
+    def inequalities(self) -> Inequalities | None:
         """What the variables keep beside the box."""
 
     @property
@@ -114,7 +114,7 @@ class Change(Protocol):
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
 
-    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
         """What is kept beside clearances, as it is measured; None for nothing.
 
         Args:
@@ -170,7 +170,7 @@ class Search:
         x = np.zeros(len(self.change.first_reach))
         if known is None:
             return replace(self.state_at(x), moved=None, bounded=True)
-        return known.about(x, self.change.beside(x, self.wanted.beyond))
+        return known.about(x, self.change.other_rows(x, self.wanted.beyond))
 
     def state_at(self, x: np.ndarray) -> State:
         """The case of some variables (m,), measured."""
@@ -198,12 +198,12 @@ class Search:
             finer = proven(state.case, self.margin, PATH_GAP)
             # The finer one may hold where that of a plain check does not.
             unproven = unproven if keeps(finer) else finer
-            self.wanted = looked_closer(self.wanted, unproven, state)
+            self.wanted = refined(self.wanted, unproven, state)
             return self._state(state.x, self.change.first_reach)
         self.wanted = raised(self.wanted, unproven)
         state = self._state(state.x, self.change.first_reach)
         if state.worst <= FINE:
-            self.wanted = looked_into(self.wanted, unproven)
+            self.wanted = with_moments_within(self.wanted, unproven)
             state = self._state(state.x, self.change.first_reach)
         return state
 
@@ -211,7 +211,7 @@ class Search:
         self.n_measured += 1
         beyond = self.change.swing(reach) + FINE
         found = measured(self.change.case_of(x), x, self.wanted, beyond, self.change.moves)
-        return replace(found, beside=self.change.beside(x, self.wanted.beyond))
+        return replace(found, other_rows=self.change.other_rows(x, self.wanted.beyond))
 
     def _improved(self, state: State, share: float = 1.0) -> State:
         """The best state that steps from one lead to: one on the way that keeps all, where the last does not.
@@ -249,11 +249,11 @@ class Search:
             if len(missing) > PATIENCE and min(late) > FINE and late[-1] > LESS * late[0]:
                 return state
             x = self._aim(state, rows, reach)
-            left = _foretold(rows, x - state.x)
-            gain = self._merit(state.x, state.worst) - self._merit(x, left)
-            if gain <= 0.0 and state.worst - left > FINE:
-                self._raise_price(state, x, left)
-                gain = self._merit(state.x, state.worst) - self._merit(x, left)
+            foretold = _foretold(rows, x - state.x)
+            gain = self._merit(state.x, state.worst) - self._merit(x, foretold)
+            if gain <= 0.0 and state.worst - foretold > FINE:
+                self._raise_price(state, x, foretold)
+                gain = self._merit(state.x, state.worst) - self._merit(x, foretold)
             if gain <= SMALLER * self.change.size(state.x):
                 return state
             tried = self._state(x, reach)
@@ -314,8 +314,8 @@ class Search:
         if not self.change.bends or (rows.missing <= 0.0).all():
             x = self.change.least(rows, state.x, box)
         if x is None:
-            nearest, left = least_missing(rows, state.x, box, self.change.kept)
-            more = left * (1.0 + 1e-6) + FINE if left > 0.01 * FINE else 0.0
+            nearest, missing = least_missing(rows, state.x, box, self.change.inequalities)
+            more = missing * (1.0 + 1e-6) + FINE if missing > 0.01 * FINE else 0.0
             relaxed = rows._replace(missing=rows.missing - more)
             x = self.change.least(relaxed, state.x, box)
             x = nearest if x is None else x
@@ -325,10 +325,10 @@ class Search:
         """What a step is to lower: the size of the change, and what is missing at its price."""
         return self.change.size(x) + self.price * max(0.0, missing - FINE)
 
-    def _raise_price(self, state: State, x: np.ndarray, left: float) -> None:
+    def _raise_price(self, state: State, x: np.ndarray, foretold: float) -> None:
         """Makes what a step is to mend worth twice what it costs: some clearances hardly grow with any change."""
         costs = self.change.size(x) - self.change.size(state.x)
-        self.price = max(self.price, 2.0 * costs / (state.worst - max(left, FINE)))
+        self.price = max(self.price, 2.0 * costs / (state.worst - max(foretold, FINE)))
 
 
 def _foretold(rows: Rows, step: np.ndarray) -> float:

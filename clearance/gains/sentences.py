@@ -58,8 +58,8 @@ def _too_fast(gain: Gain) -> str:
         return ""
     robots = gain.before.record.case.robots
     names = gain.request.robot or (gain.who,)
-    told = [too_fast(robots[index_of_robot(robots, name)]) for name in names]
-    return ", ".join(line for line in told if line)
+    lines = [too_fast(robots[index_of_robot(robots, name)]) for name in names]
+    return ", ".join(line for line in lines if line)
 
 
 def _kept(gain: Gain) -> Iterator[Line]:
@@ -197,8 +197,8 @@ def _counted(gain: Gain) -> str:
 def _not_kept_text(gain: Gain) -> str:
     if is_hopeless(gain):
         ends = gain.request.kind == "waypoints" and gain.request.keep_ends and not gain.request.keep
-        kept = " while the ends of the path are kept (--free-ends frees them)" if ends else ""
-        return f"no change of this kind can make every rule hold{kept}"
+        of_ends = " while the ends of the path are kept (--free-ends frees them)" if ends else ""
+        return f"no change of this kind can make every rule hold{of_ends}"
     if gain.request.kind == "timing":
         return _not_in_time(gain)
     return "no change of this kind was found with which every rule is proven to hold"
@@ -206,16 +206,16 @@ def _not_kept_text(gain: Gain) -> str:
 
 def _not_in_time(gain: Gain) -> str:
     """Up to what was looked."""
-    looked = max(gain.size, gain.lower_bound)
+    searched = max(gain.size, gain.lower_bound)
     slow = gain.request.slow_down
     finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.request.most_delay)
     more = "; longer ones were not tried"
-    if looked + finest >= most:
-        looked, more = most, ""
+    if searched + finest >= most:
+        searched, more = most, ""
     how = (
-        f"slow-down to {1.0 + looked:.4g} times its duration"
+        f"slow-down to {1.0 + searched:.4g} times its duration"
         if slow
-        else f"delay up to {looked:.4g} s"
+        else f"delay up to {searched:.4g} s"
     )
     return f"no {how} was found with which every rule holds{more}"
 
@@ -235,13 +235,13 @@ def _worst(run: Run) -> str:
     far = "touch" if worst.touches else f"{mm(worst.clearance)} mm"
     if not worst.touches and worst.clearance < 0.0:
         far = f"{depth_mm(-worst.clearance)} mm too near for their padding"
-    told = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(run.record, worst)}"
-    return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.headline()}"
+    text = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(run.record, worst)}"
+    return f"{text}; fail below {limit_mm(fail)} mm: {run.verdict.headline()}"
 
 
 def _joint(part: ChangePart) -> str:
-    told = f"joint {part.name} by up to {signed_text(part)}"
-    return f"{told} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
+    text = f"joint {part.name} by up to {signed_text(part)}"
+    return f"{text} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
 
 
 def _signed(part: ChangePart) -> str:

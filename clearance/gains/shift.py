@@ -59,7 +59,7 @@ class Shift:
     moved_frame: Callable[[Case, int], bool] | None = None
     pivot: Pivot | None = None
     price: float = 30.0
-    kept: None = None
+    inequalities: None = None
     bends: bool = False
 
     @property
@@ -84,8 +84,8 @@ class Shift:
         return self.place(self.case, x)
 
     def moves(self, case: Case, pair: Pair) -> bool:
-        apart = self.moved(case, pair.a) != self.moved(case, pair.b)
-        return apart or self.transfers.has_of(case, pair)
+        one_moves = self.moved(case, pair.a) != self.moved(case, pair.b)
+        return one_moves or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.moved_frame is not None and self.transfers.has(approach):
@@ -126,7 +126,7 @@ class Shift:
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         return least_norm(rows, x, box)
 
-    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
         return None
 
     def swing(self, reach: np.ndarray) -> float:

@@ -96,7 +96,7 @@ class State:
 
     Attributes:
         x: (m,) the variables that it is made of. beyond: [m] above what is wanted, what counts as near.
-        beside: what is kept beside clearances; None for nothing.
+        other_rows: what is kept beside clearances; None for nothing.
         moved: the pairs that are looked at, those that the change may move; None for all.
         bounded: depths are bounded from below as well.
     """
@@ -106,7 +106,7 @@ class State:
     run: Run
     beyond: float
     wanted: Requirement
-    beside: Rows | None = None
+    other_rows: Rows | None = None
     moved: OfPair | None = None
     bounded: bool = False
 
@@ -138,8 +138,8 @@ class State:
         found = [0.0]
         if not self._holds:
             found += [float(self.missing(one).max(initial=0.0)) for one in self.near]
-        if self.beside is not None:
-            found.append(float(self.beside.missing.max(initial=0.0)))
+        if self.other_rows is not None:
+            found.append(float(self.other_rows.missing.max(initial=0.0)))
         return max(found)
 
     @cached_property
@@ -151,13 +151,13 @@ class State:
             for rule in self.record.rules
         )
 
-    def about(self, x: np.ndarray, beside: Rows | None) -> State:
+    def about(self, x: np.ndarray, other_rows: Rows | None) -> State:
         """The same case as it is, about other variables (m,), of which none changes it.
 
         Args:
-            beside: what is kept beside clearances, of these variables.
+            other_rows: what is kept beside clearances, of these variables.
         """
-        again = replace(self, x=x, beside=beside)
+        again = replace(self, x=x, other_rows=other_rows)
         vars(again).update({name: one for name, one in vars(self).items() if name in OF_CASE})
         return again
 
@@ -182,12 +182,12 @@ class State:
             own = self.missing(approach)
             if found is None:
                 found = np.zeros((len(own), len(self.x)))
-            kept = (own > self.wanted.beyond) | found.any(axis=1)
-            missing.append(own[kept])
-            gradients.append(found[kept])
-        if self.beside is not None:
-            missing.append(self.beside.missing)
-            gradients.append(self.beside.gradients)
+            counted = (own > self.wanted.beyond) | found.any(axis=1)
+            missing.append(own[counted])
+            gradients.append(found[counted])
+        if self.other_rows is not None:
+            missing.append(self.other_rows.missing)
+            gradients.append(self.other_rows.gradients)
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 
@@ -244,7 +244,7 @@ def raised(
     return replace(wanted, extra=extra, times=times, more=more)
 
 
-def looked_into(wanted: Requirement, record: Record) -> Requirement:
+def with_moments_within(wanted: Requirement, record: Record) -> Requirement:
     """What is wanted, at moments too in the motions that are farthest from being proven."""
     times, short = record.motions[0].times, short_of(record)
     short[intervals(times, wanted.moments)] = 0.0

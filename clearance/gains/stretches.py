@@ -15,13 +15,13 @@ from clearance.gains.tool_poses import ToolKeep
 from clearance.world.case import Case, PlacedRobot
 
 
-def require_in_run(keeps: Sequence[tuple[float, float]], times: np.ndarray) -> None:
+def require_in_run(windows: Sequence[tuple[float, float]], times: np.ndarray) -> None:
     """Nothing, if a part at least of each stretch that is kept is of the run.
 
     Raises:
         BadInput: which is not.
     """
-    for start, end in keeps:
+    for start, end in windows:
         if end < times[0] or start > times[-1]:
             raise BadChange(
                 f"from {start:g} s to {end:g} s is to be kept, which is not in the run",
@@ -29,7 +29,7 @@ def require_in_run(keeps: Sequence[tuple[float, float]], times: np.ndarray) -> N
             )
 
 
-def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
+def require_in_path(placed: PlacedRobot, tool_keeps: Sequence[ToolKeep]) -> None:
     """Nothing, if the moments at which a tool is kept are of its robot's path.
 
     Raises:
@@ -38,7 +38,7 @@ def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
     if placed.trajectory is None:
         return
     start, end = placed.timing.run_times(placed.given_trajectory.times)[[0, -1]]
-    for one in keeps:
+    for one in tool_keeps:
         if not start <= one.time <= end:
             raise BadChange(
                 f"a tool is to be kept at {one.time:g} s, at which its path is not",
@@ -46,19 +46,19 @@ def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
             )
 
 
-def kept_of(case: Case, i_robot: int, request: Request) -> tuple[tuple[float, float], ...]:
+def fixed_spans(case: Case, i_robot: int, request: Request) -> tuple[tuple[float, float], ...]:
     """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
     next to a window draw the path in it."""
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].given_trajectory.times
-    kept = []
+    spans = []
     for window in request.keep:
         start, end = ((time - timing.start) * timing.rate for time in window)
         before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
         after = min(int(np.searchsorted(times, end)), len(times) - 1)
-        kept.append((times[before], times[after]))
+        spans.append((times[before], times[after]))
     if request.keep_ends:
-        kept += [(times[0], times[0]), (times[-1], times[-1])]
-    return tuple((float(start), float(end)) for start, end in kept)
+        spans += [(times[0], times[0]), (times[-1], times[-1])]
+    return tuple((float(start), float(end)) for start, end in spans)
 
 
 def windows_of(case: Case, i_robot: int, request: Request) -> list[tuple[float, float]]:
@@ -66,7 +66,7 @@ def windows_of(case: Case, i_robot: int, request: Request) -> list[tuple[float, 
     be kept."""
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].given_trajectory.times
     found = []
-    for start, end in kept_of(case, i_robot, request):
+    for start, end in fixed_spans(case, i_robot, request):
         first = -np.inf if start <= times[0] else timing.start + start / timing.rate
         last = np.inf if end >= times[-1] else timing.start + end / timing.rate
         found.append((float(first), float(last)))

@@ -36,19 +36,19 @@ def limit_rows(
     """
     missing, gradients = [np.empty(0)], [np.empty((0, followed.shape[2]))]
     parts = [(*_places(one, followed), *_rates(one, followed)) for one in (before, after)]
-    for (arm, was, _), (_, room, by_unit) in zip(*parts, strict=True):
-        short = arm * (np.minimum(was, 0.0) - room)
+    for (arm, was, _), (_, headroom, by_unit) in zip(*parts, strict=True):
+        short = arm * (np.minimum(was, 0.0) - headroom)
         near = short > -arm * NEAR
         missing.append(short[near] + beyond)
         gradients.append(arm * by_unit[near])
     return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 
-_Room = tuple[float, np.ndarray, np.ndarray]
+_Headroom = tuple[float, np.ndarray, np.ndarray]
 """Metres for a unit, (n,) what is left, and (n, m) what that grows by."""
 
 
-def _places(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
+def _places(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Headroom]:
     """Of joints that a table moves, and of those that follow them, with what is between the samples."""
     for course in joint_courses(placed):
         if course.i_column is None or course.factor == 0.0:
@@ -68,7 +68,7 @@ def _places(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
             yield arm, low - course.joint.lower, by_unit
 
 
-def _rates(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
+def _rates(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Headroom]:
     asked, rate = placed.given_trajectory, placed.timing.rate
     lengths = np.diff(asked.times)[:, None]
     for one in joint_ranges(placed):
@@ -79,4 +79,4 @@ def _rates(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
         by_unit = -signs * np.diff(followed[:, column], axis=0) / lengths * rate
         if one.what == ACCELERATION:
             by_unit = 0.0 * by_unit
-        yield WEIGHT * (ARM if one.unit.startswith("rad") else 1.0), one.room, by_unit
+        yield WEIGHT * (ARM if one.unit.startswith("rad") else 1.0), one.headroom, by_unit

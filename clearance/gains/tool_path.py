@@ -48,13 +48,13 @@ class FollowedPath:
 
     Attributes:
         followed: (n, k, m) what each joint moves by with each variable, at the samples.
-        missed: (n, 6, m) what the tool then moves by all the same. left: what is left of the poses at worst.
+        missed: (n, 6, m) what the tool then moves by all the same. residual: of the poses, at worst.
     """
 
     trajectory: Trajectory
     followed: np.ndarray
     missed: np.ndarray
-    left: float
+    residual: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class ToolPathKept:
     i_robot: int
     tool: Tool
     price: float = 30.0
-    kept: None = None
+    inequalities: None = None
     bends: bool = False
     _known: dict[bytes, FollowedPath] = field(default_factory=dict)
 
@@ -115,22 +115,22 @@ class ToolPathKept:
         return self._known[key]
 
     def _solution(self, base: np.ndarray) -> FollowedPath:
-        asked, left, rates_kept = self.placed.given_trajectory, 0.0, None
+        asked, residual, velocities = self.placed.given_trajectory, 0.0, None
         if not np.array_equal(base, self.placed.world_from_base):
             wanted = inverse(base) @ self.world_from_tool
             at, missed = joints_at(self.tool, wanted, asked.positions, None, MOST_FROM_AFAR)
-            left = float(missed.max())
-            rates_kept = asked.velocities
+            residual = float(missed.max())
+            velocities = asked.velocities
             asked = replace(asked, positions=at, path_error=0.0, points=None)
         poses, rates = self.tool.poses_and_rates(asked.positions)
         rates = _seen_from_world(rates, base)
-        if rates_kept is not None:
-            more = self._twists - np.einsum("nij,nj->ni", rates, rates_kept)
+        if velocities is not None:
+            more = self._twists - np.einsum("nij,nj->ni", rates, velocities)
             more = least_motion(rates, more[:, :, None])[:, :, 0]
-            asked = replace(asked, velocities=rates_kept + more)
+            asked = replace(asked, velocities=velocities + more)
         by_base = self._by_base(base @ poses, base)
         followed = -least_motion(rates, by_base)
-        return FollowedPath(asked, followed, by_base + rates @ followed, left)
+        return FollowedPath(asked, followed, by_base + rates @ followed, residual)
 
     @cached_property
     def world_from_tool(self) -> np.ndarray:
@@ -197,12 +197,12 @@ class ToolPathKept:
         """True if the base alone moves the bodies of an approach against each other, and no joint of its path."""
         return self.shift.gradient(approach) is not None and not self._by_joint(approach).any()
 
-    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
         solved = self.solved(self.shift.pose_in(self.shift.case_of(x)))
         changed = replace(self.placed, trajectory=solved.trajectory)
         parts = [limit_rows(self.placed, changed, solved.followed, beyond), _same_poses(solved)]
-        if solved.left > REACHED:
-            parts.append(Rows(np.array([UNREACHED + solved.left]), np.zeros((1, len(x)))))
+        if solved.residual > REACHED:
+            parts.append(Rows(np.array([UNREACHED + solved.residual]), np.zeros((1, len(x)))))
         missing, gradients = zip(*parts, strict=True)
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
@@ -211,8 +211,8 @@ def _same_poses(solved: FollowedPath) -> Rows:
     """Rows that leave out the directions in which the joints cannot make up for the base."""
     flat = solved.missed.reshape(-1, solved.missed.shape[2])
     _, sizes, directions = np.linalg.svd(flat, full_matrices=False)
-    kept = directions[sizes > STILL * np.sqrt(len(flat))]
-    return Rows(np.full(2 * len(kept), -1e-12), np.concatenate([kept, -kept]))
+    barred = directions[sizes > STILL * np.sqrt(len(flat))]
+    return Rows(np.full(2 * len(barred), -1e-12), np.concatenate([barred, -barred]))
 
 
 def _seen_from_world(rates: np.ndarray, base: np.ndarray) -> np.ndarray:

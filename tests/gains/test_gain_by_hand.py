@@ -175,7 +175,7 @@ def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
     assert found.kept == found.after.passed
     assert "joint limits" not in found.after.verdict.headline()
     ranges = joint_ranges(found.case.robots[0])
-    assert all(one.room.min() > -1e-9 for one in ranges)
+    assert all(one.headroom.min() > -1e-9 for one in ranges)
 
 
 def with_own_speed(case, speed):
@@ -189,7 +189,7 @@ def with_own_speed(case, speed):
 @pytest.mark.parametrize("speed, is_kept", [(0.06, True), (0.004, False)])
 def test_speeds_of_the_robots_own_file_are_kept(speed, is_kept):
     found = gain(with_own_speed(quick(41, 1.0), speed), "waypoints")
-    worst = {one.what: one.room.min() for one in joint_ranges(found.case.robots[0])}
+    worst = {one.what: one.headroom.min() for one in joint_ranges(found.case.robots[0])}
     assert found.kept == is_kept and worst["speed limit of the robot's own file"] > -1e-9
     assert is_kept or any("limit of the robot's own file" in line for line in found.binding)
 

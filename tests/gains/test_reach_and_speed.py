@@ -58,6 +58,6 @@ def test_a_cubic_is_nowhere_faster_than_is_said(velocities, rate):
     )
     accelerations = rate**2 * (2.0 * (3.0 - 2.0 * one - two) + 6.0 * (one + two - 2.0) * shares)
     assert greatest_speed(case, 0) >= np.abs(speeds).max() - 1e-12
-    room = {one.what: one.room.min() for one in joint_ranges(case.robots[0])}
+    room = {one.what: one.headroom.min() for one in joint_ranges(case.robots[0])}
     assert room[SPEED] == pytest.approx(4.0 - np.abs(speeds).max(), abs=1e-4)
     assert room[ACCELERATION] == pytest.approx(20.0 - np.abs(accelerations).max(), abs=1e-4)
