@@ -191,7 +191,9 @@ def span_text(start: float, end: float, moves: str = "") -> str:
 
 
 def least_proven(certified: dict) -> str:
-    """The least proven clearance, and of which moments."""
+    """The least proven clearance, and of which moments; a bound of 0 but for rounding says nothing."""
+    if -SEEN_PADDING < certified["lower_bound"] <= 0.0:
+        return "contact is not ruled out"
     when = "at every moment that is measured" if certified["not_measured"] else "at every moment"
     when = "at every moment that is proven" if certified.get("not_proven") else when
     when = "at this pose" if certified["is_pose"] else when

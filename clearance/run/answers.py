@@ -5,9 +5,13 @@ Not for: what may be asked (`question`), and the record that is made of it (`mad
 
 from __future__ import annotations
 
+import operator
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
+
+import numpy as np
 
 from clearance.record.session import PairTest
 from clearance.run.question import Question
@@ -76,10 +80,48 @@ def section_answers(plan: MeasurementPlan, resources: Resources) -> list[Section
     """What each section of a run comes to."""
     sections = plan.sections.sections
     parts = _resources_of(sections, resources)
-    return [
+    answers = [
         _of_section(plan.question, section, own)
         for section, own in zip(sections, parts, strict=True)
     ]
+    if not plan.question.certify or plan.question.need not in ("steps", "pairs"):
+        return answers
+    return _with_least_proven(answers)
+
+
+ROUNDS = 4
+"""Proofs of the least clearance: each may see a lesser one, of which the next proves more."""
+
+
+def _with_least_proven(answers: list[SectionAnswer]) -> list[SectionAnswer]:
+    """The answers, in which the least clearance of each rule is proven to within `LEAST_GAP`."""
+    for _ in range(ROUNDS):
+        least = _least_by_rule(answers)
+        before, answers = answers, [_sharpened(one, least[one.section.rule]) for one in answers]
+        if all(map(operator.is_, before, answers)):
+            break
+    return answers
+
+
+def _least_by_rule(answers: Sequence[SectionAnswer]) -> dict[int, float]:
+    """[m] the least clearance that occurs, by rule."""
+    least: dict[int, float] = defaultdict(lambda: np.inf)
+    for one in answers:
+        if one.certificate is not None:
+            own = float(one.certificate.upper_bound.min()) - one.section.padding
+            least[one.section.rule] = min(own, least[one.section.rule])
+    return least
+
+
+def _sharpened(one: SectionAnswer, least: float) -> SectionAnswer:
+    """An answer, proven finer where its bound is below the least clearance of its rule [m]."""
+    if one.certificate is None or not one.section.tied:
+        return one
+    from clearance.simulate.measure.certify import with_least_proven
+
+    reached = least + one.section.padding
+    proven = with_least_proven(one.section.in_motion, one.found, one.certificate, reached)
+    return replace(one, certificate=proven)
 
 
 def _resources_of(sections: Sequence[Section], resources: Resources) -> list[Resources]:

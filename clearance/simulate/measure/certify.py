@@ -31,7 +31,7 @@ from clearance.simulate.measure.measure import PARTS_IN_MEMORY
 from clearance.simulate.measure.measured import ProvenMotion
 from clearance.simulate.measure.moment_query import MomentQuery
 from clearance.simulate.measure.parts import in_order, parts
-from clearance.simulate.measure.refine import Refinement
+from clearance.simulate.measure.refine import LEAST_GAP, Refinement
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
@@ -77,13 +77,37 @@ def certify_motion(
             resources.progress(done + 1, n_steps)
     resources.rows.let_go()
     limits = what.limits
-    finest = FINEST_CERTIFY_GAP * farthest_reach(what.case, tuple(what.motions))
-    refinement = Refinement(work.prove, gap, finest, limits.rounding)
-    bounds, counts = refinement.decided(log.bounds, (limits.fail, limits.warn, *levels))
+    bounds, counts = work.refinement(gap).decided(log.bounds, (limits.fail, limits.warn, *levels))
+    return _proven(what, found, bounds, gap, log.tally + counts, notices)
+
+
+def with_least_proven(
+    what: PairsInMotion, found: Measurement, proven: ProvenMotion, least: float
+) -> ProvenMotion:
+    """The same proof, finer where it is more than `LEAST_GAP` below the least clearance [m] of the run."""
+    work = _Work(what, _Question.of(found, what.limits, "steps", proven.gap))
+    refinement = work.refinement(proven.gap)
+    target = least - max(LEAST_GAP, refinement.finest)
+    if target <= what.limits.rounding or proven.lower_bound.min() >= target:
+        return proven
+    bounds = IntervalBounds(proven.lower_bound, proven.upper_bound, proven.share, proven.pair)
+    bounds, counts = refinement.raised(bounds, target)
+    tally = np.array([proven.tally[name] for name in COUNTERS]) + counts
+    return _proven(what, found, bounds, proven.gap, tally, proven.notices)
+
+
+def _proven(
+    what: PairsInMotion,
+    found: Measurement,
+    bounds: IntervalBounds,
+    gap: float,
+    counts: np.ndarray,
+    notices: tuple[Notice, ...],
+) -> ProvenMotion:
     return ProvenMotion(
         *bounds,
         gap,
-        dict(zip(COUNTERS, (log.tally + counts).tolist(), strict=True)),
+        dict(zip(COUNTERS, counts.tolist(), strict=True)),
         notices,
         moment_of=_moment_of(MomentQuery(what.case, what.motions, what.pairs), bounds, found),
     )
@@ -183,6 +207,11 @@ class _Work:
 
     what: PairsInMotion
     question: _Question
+
+    def refinement(self, gap: float) -> Refinement:
+        """Proves intervals of these pairs again."""
+        finest = FINEST_CERTIFY_GAP * farthest_reach(self.what.case, tuple(self.what.motions))
+        return Refinement(self.prove, gap, finest, self.what.limits.rounding)
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""

@@ -28,6 +28,12 @@ MOST_EXPECTED = 4 * MOST_QUERIES
 """Most expected searches of an interval that is at the level throughout. A part is as long as the root of its gap;
 a quarter of the searches estimated from that was measured."""
 
+LEAST_GAP = 1e-6
+"""[m] How far the proof of the least clearance may lie below one that occurs."""
+
+LEAST_PARTS, LEAST_QUERIES = 2**9, 2**11
+"""The same two limits for that: some milliseconds. A motion that stays at its least distance may use them up."""
+
 Prove = Callable[[int, np.ndarray, CertificateGoal], tuple[IntervalBounds, np.ndarray]]
 """Proves an interval, given the distance (2,) [m] that is asked about at its ends; bounds of it, and counters."""
 
@@ -58,24 +64,34 @@ class Refinement:
         for level in sorted({0.0, *levels}):
             target = level - self.rounding if level > self.rounding else self.rounding
             if ((bounds.lower < target) & (bounds.upper >= target)).any():
-                if not bounds.lower.flags.owndata:
-                    bounds = IntervalBounds(*(np.array(column) for column in bounds))
-                counts += self._decide(bounds, target)
+                bounds = _writable(bounds)
+                counts += self._decide(bounds, target, MOST_PARTS, MOST_QUERIES)
         return bounds, counts
 
-    def _decide(self, bounds: IntervalBounds, target: float) -> np.ndarray:
+    def raised(self, bounds: IntervalBounds, target: float) -> tuple[IntervalBounds, np.ndarray]:
+        """The bounds, finer where they are below a target [m] just below the least clearance, and counters."""
+        bounds = _writable(bounds)
+        return bounds, self._decide(bounds, target, LEAST_PARTS, LEAST_QUERIES)
+
+    def _decide(
+        self,
+        bounds: IntervalBounds,
+        target: float,
+        most_parts: int,
+        most_queries: int,
+    ) -> np.ndarray:
         """Proves again, into `bounds`, the intervals not proven to have a clearance of `target` [m]; counters."""
         counts, gap = np.zeros(4, dtype=np.int64), self.gap
         expected = np.zeros(len(bounds.lower) - 1)  # searches until an interval is decided
         while True:
-            aim = CertificateGoal(gap, target, MOST_PARTS)
+            aim = CertificateGoal(gap, target, most_parts)
             finer = max(gap * FINER, self.finest)
             last = finer if target <= self.rounding else self.finest  # contact may still be seen
             at_level = bounds.upper[:-1] - target <= (SEEN_AT_LEVEL + 1.0) * self.rounding
             is_open = (bounds.lower[:-1] < target) & (bounds.upper[:-1] >= target)
             is_open &= ~(at_level & (expected > MOST_EXPECTED))
             for step in np.flatnonzero(is_open).tolist():
-                if counts[1] > MOST_QUERIES:
+                if counts[1] > most_queries:
                     return counts
                 own = self._again(bounds, step, aim)
                 expected[step] = own[1] * np.sqrt(gap / last)
@@ -91,3 +107,10 @@ class Refinement:
             bounds.upper[step], bounds.share[step] = own.upper[0], own.share[0]
             bounds.pair[step] = own.pair[0]
         return counts
+
+
+def _writable(bounds: IntervalBounds) -> IntervalBounds:
+    """The bounds, or a copy of them if they are stored."""
+    if bounds.lower.flags.owndata:
+        return bounds
+    return IntervalBounds(*(np.array(column) for column in bounds))

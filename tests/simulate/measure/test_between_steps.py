@@ -194,7 +194,8 @@ def test_a_proof_that_takes_too_many_parts_is_widened_and_ends(monkeypatch):
     case = sweeping(THROUGH, post_height=PAST)
     tight = cl.answer(cl.Question(case, certify_gap=1e-6)).certificate
     monkeypatch.setattr(certify, "MOST_PARTS", 4)
-    monkeypatch.setattr(refine, "MOST_QUERIES", -1)  # which would decide whether there is contact
+    for most in ("MOST_QUERIES", "LEAST_QUERIES"):  # which would decide whether there is contact
+        monkeypatch.setattr(refine, most, -1)
     wide = cl.answer(cl.Question(case, certify_gap=1e-6)).certificate
     assert wide.lower_bound[0] < tight.lower_bound[0] <= wide.upper_bound[0]
     assert wide.tally["queries"] < tight.tally["queries"]

@@ -64,6 +64,14 @@ def test_what_is_a_tenth_of_a_nanometre_off_its_limit_is_decided(made, off, stat
     assert (run.status, run.verdict.unproven, run.verdict.at_level) == (status, None, "")
 
 
+@pytest.mark.parametrize("gap", [0.0123, 0.0777])
+def test_the_least_clearance_is_proven_to_a_thousandth_of_a_millimetre_whatever_gap_is_allowed(gap):
+    run = cl.check(passing(gap), certify_gap=1e-3)
+    lower = run.certificate.lower_bound.min()
+    assert gap - 1.001 * refine.LEAST_GAP <= lower <= gap
+    assert gap - 1e-12 <= run.worst["clearance"] <= gap + refine.LEAST_GAP
+
+
 def test_a_limit_that_takes_more_than_its_share_of_work_stays_undecided(monkeypatch):
     monkeypatch.setattr(refine, "MOST_QUERIES", 100)
     run = cl.check(passing(0.005))
