@@ -27,7 +27,8 @@ from clearance.world.cubic import positions_along
 from clearance.world.trajectory import Trajectory
 
 SMALLEST = [
-    "--arms", "heron6", "iiwa", "--motions", "3", "--finer", "21", "--paths", "50", "--moves", "4",
+    "--arms", "heron6", "iiwa", "--motions", "1", "--finer", "11", "--paths", "20",
+    "--only", "enclosure", "peers", "zones", "table",
 ]  # fmt: skip
 
 AT_ONCE = 20
