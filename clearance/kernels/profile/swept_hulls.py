@@ -13,8 +13,8 @@ from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.rows import with_room
 from clearance.kernels.profile.swept_cover import Raster, SweptEdges, lies_covered
 
-MOST = 8
-"""Corners of the largest polygon that is handed out here."""
+MOST = 16
+"""Corners of the largest polygon that is handed out here: the hull of four squares, if rounding keeps them all."""
 
 COUNT, INTERVAL, CORNERS = range(3)
 """Columns of a polygon's row: how many corners, of which interval, and from there on x and y of each corner."""
@@ -23,6 +23,8 @@ COUNT, INTERVAL, CORNERS = range(3)
 @inline
 def with_polygon(rows, n, corners, count, interval):
     """The array of `n` polygons as rows and one more; a larger copy where there was no room."""
+    if CORNERS + 2 * count > rows.shape[1]:
+        raise AssertionError("a polygon has more corners than its row")
     rows = with_room(rows, n, 1)
     rows[n, COUNT], rows[n, INTERVAL] = count, interval
     for i in range(count):
@@ -39,7 +41,8 @@ def _turn(ax, ay, bx, by, cx, cy):
 def hull_of(points, n, out):
     """Writes the convex hull of `points[:n]` counter-clockwise into `out`; returns its number of corners.
 
-    `points` is sorted in place. Source: Andrew (1979).
+    `points` is sorted in place. Points on either side of the line from the first to the last make a chain each, so
+    that no point is there twice, however turns are rounded. Source: Andrew (1979).
     """
     for i in range(1, n):
         x, y = points[i, 0], points[i, 1]
@@ -54,6 +57,9 @@ def hull_of(points, n, out):
         for step in range(n):
             i = step if way == 0 else n - 1 - step
             x, y = points[i, 0], points[i, 1]
+            side = _turn(points[0, 0], points[0, 1], points[n - 1, 0], points[n - 1, 1], x, y)
+            if 0 < i < n - 1 and (side >= 0.0 if way == 0 else side <= 0.0):
+                continue
             while (
                 k - base >= 2
                 and _turn(out[k - 2, 0], out[k - 2, 1], out[k - 1, 0], out[k - 1, 1], x, y) <= 0.0
