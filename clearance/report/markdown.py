@@ -1,12 +1,11 @@
 """A run as Markdown, for the summary of a step or a comment on a change. Not for: the page (`page`).
 
-What comes from files is written so that it stays text: each sign that Markdown or HTML could read is its number.
+What comes from files is written so that it stays text, and that it can be read where nobody renders it.
 """
 
 from __future__ import annotations
 
 import re
-import string
 from collections.abc import Sequence
 
 from clearance.findings.comparison import Comparison
@@ -22,16 +21,25 @@ from clearance.report.topics.findings import figures, rows_of_now
 MOST_ROWS = 50
 """Most findings in the table."""
 
-_SIGNS = {ord(sign): f"&#{ord(sign)};" for sign in string.punctuation if sign not in ",-/()'.:;%"}
+_MEANING = re.compile(
+    r"""[\\`*~$<>|@]                                   # anywhere
+    | (?<![^\W_])_ | _(?![^\W_])                       # but for those inside a word
+    | \[(?!CL\d{3}\](?![(:\[])) | (?<!\[CL\d{3})\]      # but for codes, which are no links
+    | \](?=[(:\[]) | &(?=\#?\w+;) | :(?=//) | (?i:(?<=www)\.)
+    | ^(?:[-+](?=\s|$|-) | \#(?=\#*(?:\s|$)))""",
+    re.VERBOSE,
+)
+"""The signs that Markdown, as GitHub reads it, or HTML would not show as they are."""
 
-_LINK_OR_LIST = re.compile(r"^[-+](?=\s)|(?<=^\d)[.)](?=\s)|:(?=\S)|(?i:(?<=www)\.)")
-"""What is read as a link, an icon or a list only where it stands so."""
+
+_NUMBER = re.compile(r"^(\d+)([.)])(?=\s|$)")
+"""What begins an item of a list."""
 
 
 def plain(text: str) -> str:
-    """A text that Markdown shows as it is, in one line."""
+    """A text that Markdown shows as it is, in one line; each sign with a meaning has a backslash before it."""
     shown = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
-    return _LINK_OR_LIST.sub(lambda sign: f"&#{ord(sign[0])};", shown.translate(_SIGNS))
+    return _NUMBER.sub(r"\1\\\2", _MEANING.sub(r"\\\g<0>", shown))
 
 
 def refusal_markdown(name: str, text: str) -> str:
