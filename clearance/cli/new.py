@@ -16,6 +16,7 @@ from clearance.cli.notices import say_notices
 from clearance.cli.options import INCLUDE_OPTION, XACRO_OPTIONS, OutputPath, SortParamType
 from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
+from clearance.options import LENGTH
 from clearance.run.options import COLUMNS
 
 if TYPE_CHECKING:
@@ -197,6 +198,18 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     metavar="STATE",
     help="State of the SRDF or MJCF for joints that nothing moves. May be given again.",
 )
+@click.option(
+    "--fail-mm",
+    "fail",
+    type=SortParamType(LENGTH),
+    help="Fail limit; without it only contact fails.",
+)
+@click.option(
+    "--warn-mm",
+    "warn",
+    type=SortParamType(LENGTH),
+    help="Warn limit: steps closer than this are near misses.",
+)
 @click.option("--joint-limits", metavar="FILE", help="Joint limits: joint_limits.yaml of MoveIt.")
 @click.option("--controllers", metavar="FILE", help="Tracking tolerances: ros2_controllers.yaml.")
 @click.option(
@@ -243,6 +256,7 @@ def new(
     xacro_args: dict[str, str],
     at_once: bool,
     force: bool,
+    **limits: float | None,
 ) -> int:
     """Writes a case from a robot, a motion and a scene.
 
@@ -275,7 +289,8 @@ def new(
     }
     of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
     asked = _motion(_given(motion), _merged([_given(of_program), *program_keys]), states)
-    given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
+    beside = (states or (), rest, scene, dict(includes), limits)
+    given = NewCaseRequest(_given(keys), asked or None, *beside)
     made = _made(given, out_dir)
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)

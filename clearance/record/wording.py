@@ -164,8 +164,11 @@ def of_rule(rule: str) -> str:
 
 
 def limits_text(fail: float, warn: float) -> str:
-    """`fail below 5 mm, warn below 20 mm`."""
-    return f"fail below {limit_mm(fail)} mm, warn below {limit_mm(warn)} mm"
+    """`fail below 5 mm, warn below 20 mm`; where no gap is asked for, only contact fails."""
+    warned = f"warn below {limit_mm(warn)} mm"
+    if fail == 0.0:
+        return f"only contact fails, {warned}" if warn > 0.0 else "only contact fails"
+    return f"fail below {limit_mm(fail)} mm, {warned}"
 
 
 def clock_text(slack: float) -> str:

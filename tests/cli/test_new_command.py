@@ -229,6 +229,10 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
     assert "took      scene from cell/scene.yaml: 3 obstacles" in told
     assert "assumed   link 'base' stands at the origin of the world" in told
     assert "assumed   joints that nothing moves rest at 0: lift" in told
+    assert (
+        "assumed   fail limit 0 mm: only contact fails, any gap passes; "
+        "--fail-mm 5, or limits: in case.yaml, asks for 5 mm" in told
+    )
     assert told[-1] == "run       clearance check out/case.yaml --out out/report"
     text = Path("out/case.yaml").read_text()
     assert "#   lift: 0.0  # assumed: nothing moves it" in text and "urdf: ../cell/arm.urdf" in text
@@ -238,6 +242,16 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
         "joints given neither by the trajectory nor by robot.joints stay at 0: lift"
         in capsys.readouterr().out
     )
+
+
+def test_limits_are_those_that_are_given(capsys):
+    given = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--fail-mm", "7.5")
+    assert new(*given, "--warn-mm", "20") == 0
+    assert "fail limit" not in capsys.readouterr().out
+    limits = load_case("out/case.yaml").limits
+    assert (limits.fail, limits.warn) == (0.0075, 0.02)
+    assert new(*given, "--warn-mm", "2", "--force") == 2
+    assert "the warn limit 2 mm is below the fail limit 7.5 mm" in capsys.readouterr().err
 
 
 def test_how_a_file_was_read_stays_in_the_case(capsys):

@@ -150,7 +150,9 @@ def test_names_from_files_do_not_break_out_of_the_table(run):
     vars(model)["findings"] = (finding,) * (MOST_ROWS + 7)
     text = markdown(model)
     rows = [line for line in text.splitlines() if line.startswith("|")]
-    assert len(rows) == MOST_ROWS + 2 and len({row.replace(r"\|", "").count("|") for row in rows}) == 1
+    assert (
+        len(rows) == MOST_ROWS + 2 and len({row.replace(r"\|", "").count("|") for row in rows}) == 1
+    )
     assert r"\<script\>" in text and r"\`r\`" in text and "7 more findings." in text
 
 

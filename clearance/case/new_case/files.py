@@ -108,7 +108,11 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
         case,
         files.sources,
         (*robot.taken, f"trajectory {motion.source}", *scene.taken),
-        (*robot.assumed(trajectory, scene.name is None), *_assumed_of_motion(given)),
+        (
+            *robot.assumed(trajectory, scene.name is None),
+            *_assumed_of_motion(given),
+            *_no_limit(given),
+        ),
         tuple(dict.fromkeys(note for note in robot.notes if note not in motion.notes)),
         (*motion.notes, *scene.notes),
         text,
@@ -167,6 +171,15 @@ def _assumed_of_motion(given: NewCaseRequest) -> list[str]:
     ]
 
 
+def _no_limit(given: NewCaseRequest) -> list[str]:
+    """What it means that nobody asks for a clearance."""
+    if given.limits.get("fail") is not None:
+        return []
+    return [
+        "fail limit 0 mm: only contact fails, any gap passes; --fail-mm 5, or limits: in case.yaml, asks for 5 mm"
+    ]
+
+
 def _text(
     given: NewCaseRequest,
     robot: NewRobot,
@@ -196,6 +209,7 @@ def _text(
         carry=scene.carry,
         allow=scene.allow,
         remarks=robot.remarks(motion.trajectory) | {"scene": scene.remark},
+        limits=given.limits,
     )
 
 

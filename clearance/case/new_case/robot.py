@@ -46,7 +46,7 @@ class NewCaseRequest:
         keys: of a robot in a case file, but for its trajectory and joints.
         trajectory: keys of a trajectory; of a program, those of its file.
         states: to move between where there is none. rest: states for the joints that the motion leaves alone.
-        scene: a file. includes: of it, as in a case.
+        scene: a file. includes: of it, as in a case. limits: `fail` and `warn` [m]; None where not given.
     """
 
     keys: Mapping[str, Any]
@@ -55,6 +55,7 @@ class NewCaseRequest:
     rest: Sequence[str] = ()
     scene: str | None = None
     includes: Mapping[str, str] = field(default_factory=dict)
+    limits: Mapping[str, float | None] = field(default_factory=dict)
 
     @property
     def motion_file(self) -> str | None:

@@ -31,6 +31,7 @@ class CaseText:
         carry: parts that links carry, as a case has them. allow: pairs that are not measured.
         touching: pairs that touch at every step, to be allowed where that is meant.
         remarks: why a key is as it is, by key. includes: models that the scene includes, as they are taken.
+        limits: `fail` and `warn` [m]; None where not given.
     """
 
     name: str
@@ -49,6 +50,7 @@ class CaseText:
     touching: Sequence[tuple[str, str]] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
     includes: Mapping[str, str] = field(default_factory=dict)
+    limits: Mapping[str, float | None] = field(default_factory=dict)
 
 
 def text_of(case: CaseText) -> str:
@@ -73,8 +75,10 @@ def _lines(case: CaseText) -> Iterator[str]:
         yield from (f"- {flow(one)}" for one in case.carry)
     yield from _allow(case)
     yield "limits:"
-    yield "  fail: 0.0  # assumed: contact alone is a violation; 0.005 asks for 5 mm"
-    yield "  # warn: 0.02  # closer than this is a near miss"
+    assumed = "  # assumed: only contact fails, any gap passes; 0.005 asks for 5 mm"
+    fail, warn = case.limits.get("fail"), case.limits.get("warn")
+    yield f"  fail: {fail or 0.0}{assumed if fail is None else ''}"
+    yield f"  {'# ' if warn is None else ''}warn: {warn or 0.02}  # closer than this is a near miss"
     yield "  # joints: fail  # a joint beyond its limits is a violation, not a warning"
     yield f"# accept: [units]  # suspect input that is meant: {', '.join(KINDS)}"
     yield "# report: {author: J. Doe, revision: A}  # shown on the page, with fields to sign"
