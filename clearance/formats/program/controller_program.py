@@ -88,12 +88,13 @@ class ControllerMove:
 
 @dataclass(frozen=True)
 class ControllerWait:
-    """Nothing moves for some time [s]."""
+    """Nothing moves for some time [s]; a controller that `reads_on` may begin to wait while the robot moves."""
 
     line: int
     seconds: float
     file: str = ""
     own: int = 0
+    reads_on: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,7 +100,7 @@ def converted(
     notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, unproven = (*notes, *unproven), ()
-    rests_on = (*unproven, *read.doubts)
+    rests_on = (*unproven, *dict.fromkeys(made.waits), *read.doubts)
     return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on)
 
 
@@ -111,7 +111,8 @@ class _Conversion:
     Attributes:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
         others: where external axes are that no joint follows. begins_at_first: the tool begins where the first
-            move ends. seeds: a line each on axes that are not those of the pose beside them.
+            move ends. seeds: a line each on axes that are not those of the pose beside them. waits: a line each on
+            corners before waits.
     """
 
     read: ControllerProgram
@@ -121,6 +122,7 @@ class _Conversion:
     others: dict[str, float] = field(default_factory=dict)
     begins_at_first: bool = False
     seeds: list[str] = field(default_factory=list)
+    waits: list[str] = field(default_factory=list)
     _before: ControllerMove | None = None
 
     @cached_property
@@ -168,7 +170,12 @@ class _Conversion:
         for one, other in zip(self.read.moves, after, strict=True):
             if isinstance(one, ControllerMove):
                 why = self._why_it_stops(before, one, other) if one.zone else ""
-                if why:
+                if why and isinstance(other, ControllerWait) and other.reads_on:
+                    told = "a wait follows a corner zone: the tool is taken to stop"
+                    self.waits.append(
+                        f"{place_of(one)}: {told}, and the controller may cut the corner"
+                    )
+                elif why:
                     self.notes.append(f"{place_of(one)}: the tool stops, since {why}")
                 before = replace(one, zone=0.0) if why else one
             yield before if isinstance(one, ControllerMove) and before else one

@@ -294,9 +294,13 @@ class Execution(Remarks):
         """Runs one way of a branch, of which so many conditions were looked at."""
         asked = [condition for condition, _ in one.branches[:n_asked] if condition is not None]
         origin, left = self.kept.origin_of(asked), self.run(body)
+        self._doubt(one, origin)
+        return left
+
+    def _doubt(self, one: If | While | For, origin: str) -> None:
+        """Keeps what rests on the value that decided a branch or a loop, if the controller keeps it."""
         if origin:
             self.doubts |= self.kept.doubts_on(one, origin)
-        return left
 
     def _pass_branches(self, one: If, why: Unknown) -> None:
         """Nothing but that variables are not known any more, where no branch moves the robot.
@@ -341,6 +345,7 @@ class Execution(Remarks):
         """
         value = value_of(one.condition, self)
         if not isinstance(value, Unknown):
+            self._doubt(one, self.kept.origin_of([one.condition]))
             return bool(value) != one.at_end
         culprit = next(self.effects.deciding(one.body), None)
         if culprit is not None or one.word not in self.skip:
@@ -360,6 +365,7 @@ class Execution(Remarks):
         if step == 0.0:
             raise BadProgram("a step of 0", where=str(one.line), valid="another")
         name, at = one.name.name, first
+        origin = self.kept.origin_of(filter(None, (one.first, one.last, one.step)))
         place = self.frames[-1] if one.is_own else self._place(name)
         before = {key: place[key] for key in (name,) if key in place}
         left = None
@@ -369,6 +375,7 @@ class Execution(Remarks):
             left = self.run(one.body)
             left = None if left is not None and left.what == CONTINUE else left
             at += step
+        self._doubt(one, origin)
         if one.is_own:
             place.pop(name, None)
             place |= before

@@ -136,9 +136,8 @@ class _Fanuc:
             elif call.name == WAIT:
                 seconds = number(run.evaluated(call.args[0]), call.line, "the time")
                 if seconds > 0.0:
-                    run.add(
-                        ControllerWait(call.line.number, seconds, call.line.file, call.line.own)
-                    )
+                    where = call.line.number, seconds, call.line.file, call.line.own
+                    run.add(ControllerWait(*where, reads_on=True))
             else:
                 run.pass_over(call)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from clearance.formats.program.effects import Effects
 from clearance.formats.program.expressions import Expression
-from clearance.formats.program.statements import If
+from clearance.formats.program.statements import For, If, While
 
 
 @dataclass(eq=False)
@@ -43,13 +43,15 @@ class Kept:
         elif not is_part:
             origins.pop(name, None)
 
-    def doubts_on(self, one: If, origin: str) -> dict[str, None]:
-        """A line on a branch that a kept value decided, if the robot moves; variables that it changes rest on
-        the value too.
+    def doubts_on(self, one: If | While | For, origin: str) -> dict[str, None]:
+        """A line on a branch or a loop that a kept value decided, if the robot moves; variables that it changes
+        rest on the value too.
         """
-        bodies = [body for _, body in one.branches]
+        is_branch = isinstance(one, If)
+        bodies = [body for _, body in one.branches] if is_branch else [one.body]
         for name, _ in self.effects.changed_in(bodies):
             self.origins[-1 if name in self.frames[-1] else 0][name] = origin
-        told = f"{one.line}: the way not taken is not measured; {origin} decides"
+        other = "the way not taken is" if is_branch else "other numbers of passes are"
+        told = f"{one.line}: {other} not measured; {origin} decides"
         moves = any(True for body in bodies for _ in self.effects.deciding(body))
         return {f"{told}, which the controller keeps between runs": None} if moves else {}

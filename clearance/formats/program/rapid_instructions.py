@@ -165,7 +165,9 @@ class Rapid:
                 number(run.evaluated(call.args[0]), call.line, "the time") if call.args else 0.0
             )
             if seconds > 0.0:
-                run.add(ControllerWait(call.line.number, seconds, call.line.file))
+                reads_on = "inpos" not in call.named
+                where = call.line.number, seconds, call.line.file
+                run.add(ControllerWait(*where, reads_on=reads_on))
         elif name in WAITS:
             raise BadProgram(
                 f"{name} waits for what only the controller knows",

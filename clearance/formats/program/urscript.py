@@ -188,7 +188,8 @@ class _UrScript:
         elif call.name == "sleep":
             (seconds,) = (number(run.evaluated(one), call.line, "the time") for one in call.args)
             if seconds > 0.0:
-                run.add(ControllerWait(call.line.number, seconds, call.line.file))
+                where = call.line.number, seconds, call.line.file
+                run.add(ControllerWait(*where, reads_on=True))
         elif call.name == "set_tcp":
             (pose, *_) = (run.evaluated(one) for one in (*call.args, *call.named.values()))
             self.tool, self.last = _placed(pose, call.line), None

@@ -84,6 +84,16 @@ def test_controllers_stop_where_no_way_follows():
     assert [note.partition(":")[0] for note in stops] == ["line 4", "line 4", "line 5", "line 3"]
 
 
+def test_a_corner_before_a_wait_that_begins_on_the_way_stands_in_the_headline():
+    line = replace(POSE, kind="lin", zone=0.01)
+    last = replace(line, zone=0.0)
+    for reads_on in (False, True):
+        found = made(HOME, line, ControllerWait(8, 0.5, reads_on=reads_on), last)
+        told = "line 3: a wait follows a corner zone: the tool is taken to stop"
+        assert [one.split(",")[0] for one in found.assumed if "wait" in one] == [told] * reads_on
+        assert any("no move follows" in note for note in found.notes) != reads_on
+
+
 def test_a_link_called_base_is_the_controllers():
     robot = arm("heron6").robot
     turned = np.diag([-1.0, -1.0, 1.0, 1.0])

@@ -80,7 +80,9 @@ WAIT   1.50(sec) ;
     assert (line.speed, line.zone, line.to.name) == (0.25, 0.02, "P[2]")
     assert next_.speed == pytest.approx(0.05) and next_.zone == 0.01
     assert arc.via.pose[:3, 3] == pytest.approx([0.5, 0.1, 0.25])
-    assert place(arc) == pytest.approx([0.4, 0.2, 0.25]) and wait == ControllerWait(15, 1.5, own=10)
+    assert place(arc) == pytest.approx([0.4, 0.2, 0.25]) and wait == ControllerWait(
+        15, 1.5, own=10, reads_on=True
+    )
     told = "\n".join(found.notes)
     assert "DO (line 12)" in told and "TB, TA, DB" in told
 

@@ -291,8 +291,8 @@ def test_each_module_has_points_and_procedures_of_its_own():
     assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
 
 
-KEPT = "DEFDAT CELL PUBLIC\nDECL GLOBAL BOOL high=TRUE\nENDDAT"
-"""A value that the controller keeps between runs, in line 2."""
+KEPT = "DEFDAT CELL PUBLIC\nDECL GLOBAL BOOL high=TRUE\nDECL GLOBAL INT times=2\nENDDAT"
+"""Values that the controller keeps between runs, in lines 2 and 3."""
 
 
 @pytest.mark.parametrize(
@@ -313,6 +313,24 @@ def test_a_branch_that_a_kept_value_decides_is_doubted(body, line):
     beside = {"weld.dat": POINTS.encode(), "cell.dat": KEPT.encode()}
     found = read("weld.src", f"{HEAD}{body}\n{more}END\n", beside)
     told = f"line {line}: the way not taken is not measured; HIGH (cell.dat line 2) decides"
+    assert [one.split(",")[0] for one in found.doubts] == [told] * bool(line)
+
+
+@pytest.mark.parametrize(
+    ("body", "line"),
+    [
+        ("FOR n=1 TO times\nPTP XHOME\nENDFOR", 7),
+        ("n=1\nWHILE n<times\nPTP XHOME\nn=n+1\nENDWHILE", 8),
+        ("n=1\nREPEAT\nPTP XHOME\nn=n+1\nUNTIL n>times", 8),
+        ("b=0\nFOR n=1 TO times\nb=n\nENDFOR\nFOR n=1 TO b\nPTP XHOME\nENDFOR", 11),
+        ("times=2\nFOR n=1 TO times\nPTP XHOME\nENDFOR", 0),
+        ("FOR n=1 TO times\n$OUT[1]=TRUE\nENDFOR\nPTP XHOME", 0),
+    ],
+)
+def test_a_loop_whose_passes_a_kept_value_counts_is_doubted(body, line):
+    beside = {"weld.dat": POINTS.encode(), "cell.dat": KEPT.encode()}
+    found = read("weld.src", f"{HEAD}{body}\nEND\n", beside)
+    told = f"line {line}: other numbers of passes are not measured; TIMES (cell.dat line 3) decides"
     assert [one.split(",")[0] for one in found.doubts] == [told] * bool(line)
 
 

@@ -75,7 +75,10 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert place(arc.via) == pytest.approx([350, 170, 100])
     assert place(arc.to) == pytest.approx([400, 220, 100]) and arc.speed == 0.05
     assert arc.turn_speed == pytest.approx(math.radians(500))
-    assert place(last.to) == pytest.approx([400, 120, 200]) and wait.seconds == 0.5
+    assert place(last.to) == pytest.approx([400, 120, 200])
+    assert wait.seconds == 0.5 and wait.reads_on
+    (stands,) = moves_of("WaitTime \\InPos, 0.5;")
+    assert not stands.reads_on
     # a quarter about the tool's z, which looks down
     assert np.allclose(last.to.pose[:3, :3], np.diag([1, -1, -1]), atol=1e-6)
     assert home.tool[2, 3] == 0.1
