@@ -108,7 +108,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         run,
         samples,
         _contacts(plan, found, resources),
-        notices_of(question, plan.sections, run.answer.certificate, found),
+        notices_of(question, plan.sections, plan.timeline.phases, run.answer.certificate, found),
         _profiles(plan),
         peer,
         budget,

@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.record.certificate import Certificate
 from clearance.run.question import Question
+from clearance.simulate.answers.handling import far_grasps
 from clearance.simulate.measure import inside
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.measure.sections import SectionPlan
@@ -30,6 +31,7 @@ _BY_PAPER = Notice(
 def notices_of(
     question: Question,
     plan: SectionPlan,
+    phases: Sequence[Phase],
     certificate: Certificate | None,
     found: Sequence[SectionAnswer],
 ) -> tuple[Notice, ...]:
@@ -37,6 +39,7 @@ def notices_of(
     measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_far_off(question.case, found)]
+    empty += far_grasps(phases) if question.case.carries else []
     empty += [_BY_PAPER] if question.method == "paper" else []
     untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []
     untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]

@@ -7,7 +7,7 @@ and it is meant. Not for: pairs that touch all the time (`standing`).
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,14 +18,21 @@ from clearance.query.distance import distance
 from clearance.record.record import Record
 from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
 from clearance.world.carry import Carry
-from clearance.world.forest import link_poses_at
-from clearance.world.pairs import Pair
+from clearance.world.extents import metres
+from clearance.world.forest import link_poses_at, owner_of
+from clearance.world.mount import Mount
+from clearance.world.notice import Notice, Severity
+from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
+from clearance.world.phase import Phase
 
 TOUCHING = 1e-6
 """[m] What stands on something touches it, whichever way rounding goes."""
 
 FAR = 1.0
 """[m] Balls with more than this between them need no search: no limit is so wide that it would matter here."""
+
+FAR_GRASP = 0.3
+"""[m] No gripper that a model leaves out is so long: a part that is farther away is picked up too soon."""
 
 MOST_STEPS = 2000
 """Most steps before and after that are checked for the end of a contact."""
@@ -74,6 +81,46 @@ def handling_hints(record: Record) -> list[HandlingHint]:
         for hint in _at_change(record, plan, carry, step, f"{what} at {time:g} s"):
             found.setdefault((hint.pair, hint.start), hint)
     return list(found.values())
+
+
+def far_grasps(phases: Sequence[Phase]) -> Iterator[Notice]:
+    """A warning on each part that is far from what picks it up: it would swing along as if on a rod."""
+    seen: set[Carry] = set()
+    for phase in phases:
+        for carry in phase.carried.values():
+            if carry in seen:
+                continue
+            seen.add(carry)
+            gap = _grasp_gap(phase, carry)
+            if FAR_GRASP < gap < np.inf:
+                text = (
+                    f"part {carry.part!r} is {metres(gap)} m away from all of what picks it up at "
+                    f"{carry.window.start:g} s ({carry.by}): check the times of its carry"
+                )
+                yield Notice(Severity.WARNING, "carry", text)
+
+
+def _grasp_gap(phase: Phase, carry: Carry) -> float:
+    """[m] From a part to the nearest body of what carries it, as it is picked up; infinite if that has no body."""
+    case = phase.case
+    owner = owner_of(case, Mount(carry.by))
+    names = [one.name for one in case.obstacles]
+    part = BodyIndex(OBSTACLE, names.index(carry.part))
+    others = [
+        BodyIndex(OBSTACLE, i)
+        for i, one in enumerate(case.obstacles)
+        if one.mount and one.name != carry.part and owner_of(case, one.mount) == owner
+    ]
+    if owner[0]:
+        others.append(BodyIndex(OBSTACLE, owner[1]))
+    else:
+        others += [BodyIndex(owner[1], k) for k in range(len(case.robots[owner[1]].robot.bodies))]
+    poses = link_poses_at(case, phase.motions, slice(0, 1))
+    placed = part.shape_in(case), part.poses_in(case, poses)[0]
+    gaps = (
+        gap_between(*placed, one.shape_in(case), one.poses_in(case, poses)[0]) for one in others
+    )
+    return min(gaps, default=np.inf)
 
 
 def _changes(record: Record) -> list[tuple[float, Carry, str]]:

@@ -141,3 +141,14 @@ def test_a_link_that_stands_because_its_joint_rests_is_standing_too(run):
     resting = replace(run.record.case, robots=(replace(placed, trajectory=asked),))
     found = standing_contacts(check(resting).record)
     assert ("upper", "collar") in found
+
+
+def test_a_part_far_from_what_picks_it_up_stands_in_the_headline():
+    """At 0.5 s the tool's lower side is at 0.75 - 0.05 m, and the part's upper one at 0.14 + 0.05 m."""
+    case = lifting()
+    early = replace(case, carries=(Carry("part", "left/tool", Window(0.5, 4.0)),))
+    (warning,) = [one for one in cl.check(early).verdict.warnings if "picks it up" in one]
+    assert warning.startswith("part 'part' is 0.51 m away") and warning.endswith(
+        "of its carry [CL428]"
+    )
+    assert not any("picks it up" in one for one in cl.check(case).verdict.warnings)
