@@ -5,6 +5,7 @@ Rings are (n, 2) arrays without the first point repeated, outer ones counter-clo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -32,6 +33,17 @@ def polygons(corners: np.ndarray, n_corners: np.ndarray) -> np.ndarray:
     used = corners[np.arange(corners.shape[1]) < n_corners[:, None]]
     rings = shapely.linearrings(used, indices=np.repeat(np.arange(len(n_corners)), n_corners))
     return shapely.polygons(rings)
+
+
+def widened(corners: np.ndarray, n_corners: np.ndarray, by: float, excess: float) -> np.ndarray:
+    """(m,) regions of the same polygons with all points within `by` [m], and none beyond that and `excess`."""
+    n = max(8, math.ceil(math.pi / math.acos(by / (by + excess))))
+    angles = 2.0 * np.pi / n * np.arange(n)
+    around = by / math.cos(math.pi / n) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    last = np.minimum(np.arange(corners.shape[1]), n_corners[:, None] - 1)
+    used = np.take_along_axis(corners, last[:, :, None], axis=1)
+    points = (used[:, :, None] + around).reshape(len(used), -1, 2)
+    return shapely.convex_hull(shapely.multipoints(shapely.points(points)))
 
 
 def union(parts: Sequence[Region] | np.ndarray) -> Region:

@@ -7,18 +7,26 @@ velocities. Not for: measuring clearances.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadDimension, NothingToMeasure
+from clearance.errors import BadDimension, BadInput, NothingToMeasure
 from clearance.kernels.profile.swept_cover import Raster, row_sums
 from clearance.profiles.contour import Contour
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Origin, Profile
-from clearance.profiles.region import Region, RegionIndex, covered_region, polygons, touching, union
+from clearance.profiles.region import (
+    Region,
+    RegionIndex,
+    covered_region,
+    polygons,
+    touching,
+    union,
+    widened,
+)
 from clearance.profiles.silhouette import Hulls, Silhouette
 from clearance.profiles.swept_bodies import (
     RecordHolder,
@@ -53,6 +61,9 @@ MOST_POLYGONS = 20_000
 TWIST = 0.08
 """Of the tolerance: how far hulls of turning edges may exceed their sweep."""
 
+OFF_SHARE = 0.05
+"""How far what is swept in corner zones may be exceeded."""
+
 CUT_SHARE = 0.15
 """The same for sections, where it counts three times."""
 
@@ -84,10 +95,10 @@ def swept_profile(
         progress: called with links done and all links.
 
     Exactness: contains what the faceted links sweep, joints moving linearly between steps or on their cubics, and
-        obstacles straight and about one axis; no point is farther than `Profile.bound` <= `tolerance` from a swept
-        point. Holes narrower than that may be filled.
+        obstacles straight and about one axis, and all that links may sweep in corner zones of programs; no point
+        is farther than `Profile.bound` <= `tolerance` from a swept point. Holes narrower than that may be filled.
     Raises:
-        BadInput: not a plane. BadDimension: not a tolerance.
+        BadInput: not a plane; a section of a program with corner zones. BadDimension: not a tolerance.
         UnknownLink, UnknownObstacle.
         NothingToMeasure: the plane cuts nothing.
     """
@@ -121,16 +132,25 @@ def _swept(
     parts: dict[str, Profile] | None,
 ) -> Profile:
     require_no_shortfall([one.body for one in bodies], "a profile")
+    off = max(one.off for one in bodies)
+    if off > 0.0 and section is not None:
+        told = (
+            f"links may be {off * 1e3:.3g} mm off in corner zones, which a section does not count"
+        )
+        raise BadInput(told, where="section", valid="the projection, or a program without zones")
     views = _views(bodies, plane, section, tolerance)
     raster = _page(views)
     for view in views:
         view.cover(raster)
     collected = PolygonCollection(covered_region(raster))
-    sums = row_sums(raster.covered)
+    # what is off reaches beyond pixels that cover it where it is not
+    rasters = {is_off: _without(raster) if is_off else raster for is_off in (off > 0.0, False)}
+    sums = {is_off: row_sums(one.covered) for is_off, one in rasters.items()}
     labels = _labels(bodies)
     for i, (view, one) in enumerate(zip(views, bodies, strict=True)):
-        for hulls in view.hulls(raster, sums, WIDTH, TWIST * tolerance):
-            collected.add(hulls, labels.index(one.label))
+        is_off = one.off > 0.0
+        for hulls in view.hulls(rasters[is_off], sums[is_off], WIDTH, TWIST * tolerance):
+            collected.add(hulls, labels.index(one.label), one.off, OFF_SHARE * tolerance)
         if progress:
             progress(i + 1, len(views))
     region = collected.region()
@@ -142,6 +162,7 @@ def _swept(
         )
     short = max(float(view.short) for view in views) + 2.0 * WIDTH
     excess = max(float(view.excess) for view in views) + 2.0 * WIDTH + TWIST * tolerance
+    excess += OFF_SHARE * tolerance if off > 0.0 else 0.0
     outline = outline_of(region, short, tolerance - excess)
     return Profile(
         contours=outline.contours,
@@ -156,8 +177,18 @@ def _swept(
         n_steps=_last_step(bodies) + 1,
         origin=collected.origin(outline.contours, labels),
         parts=parts or {},
-        notes=tuple(dict.fromkeys(note for view in views for note in view.notes)),
+        notes=(*_notes(off), *dict.fromkeys(note for view in views for note in view.notes)),
     )
+
+
+def _notes(off: float) -> Iterator[str]:
+    if off > 0.0:
+        yield f"in corner zones links are up to {off * 1e3:.3g} mm off, which is swept as well"
+
+
+def _without(raster: Raster) -> Raster:
+    """The same page with nothing covered."""
+    return raster._replace(covered=np.zeros_like(raster.covered))
 
 
 def _last_step(bodies: Sequence[SweptBody]) -> int:
@@ -208,8 +239,10 @@ class PolygonCollection:
         self._makers = np.zeros((0, 2), dtype=np.int64)
         self._fresh = 0
 
-    def add(self, hulls: Hulls, i_view: int) -> None:
-        made = polygons(hulls.corners, hulls.n_corners)
+    def add(self, hulls: Hulls, i_view: int, off: float = 0.0, excess: float = 0.0) -> None:
+        """Adds polygons; with all points within `off` [m] of them, and none beyond that and `excess`."""
+        given = hulls.corners, hulls.n_corners
+        made = widened(*given, off, excess) if off > 0.0 and len(given[1]) else polygons(*given)
         makers = np.stack([np.full(len(made), i_view), hulls.instant.astype(np.int64)], axis=1)
         self._parts = np.concatenate([self._parts, made])
         self._makers = np.concatenate([self._makers, makers])

@@ -15,6 +15,7 @@ from clearance.profiles.chords import BodyKnots, knots_of, standing
 from clearance.profiles.plane import Plane
 from clearance.world.body import Body
 from clearance.world.case import Case
+from clearance.world.corner_paddings import corner_off
 from clearance.world.forest import WORLD
 from clearance.world.holders import holding_link
 from clearance.world.motion import kinematic_motion
@@ -44,13 +45,18 @@ class TimedCase:
 
 @dataclass(frozen=True, eq=False)
 class SweptBody:
-    """A body in one phase of a run; `chain` carries it, or it stands at `pose`."""
+    """A body in one phase of a run; `chain` carries it, or it stands at `pose`.
+
+    Attributes:
+        off: [m] how far it may be off, in a corner zone of its program.
+    """
 
     label: str
     body: Body
     first: int
     chain: Chain | None
     pose: np.ndarray | None = None
+    off: float = 0.0
 
     def knots(self, plane: Plane, limit: float, *, solid: bool) -> BodyKnots:
         """The instants of its poses, in steps of the run."""
@@ -191,7 +197,8 @@ def _over_phases(
         frame = index.frame_in(phase.case)
         if frame != WORLD:
             chain = chain_of(phase.case, phase.motions, frame)
-            yield SweptBody(label, body, phase.first, chain)
+            off = corner_off(run.case, phase, index)
+            yield SweptBody(label, body, phase.first, chain, off=off)
             last = None
             continue
         pose = phase.case.obstacles[index.i_body].world_from_body

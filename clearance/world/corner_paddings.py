@@ -16,6 +16,7 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.corner_zone import CornerZone
 from clearance.world.forest import links_by_name, owner_of, resolved_mount
+from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase
 from clearance.world.timing import Window
 
@@ -58,6 +59,11 @@ def with_corner_paddings(
                 case = _padded(case, i_robot, zone)
         found.append(phase if case is phase.case else replace(phase, case=case))
     return found
+
+
+def corner_off(case: Case, phase: Phase, body: BodyIndex) -> float:
+    """[m] How far a body of a case may be off its nominal motion in a phase, since a corner zone is passed."""
+    return body.padding_in(phase.case) - body.padding_in(case)
 
 
 def _window(placed: PlacedRobot, zone: CornerZone) -> Window:

@@ -1,6 +1,7 @@
 """Swept profiles: closed forms, and against sampling a hundred times finer."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import clearance as cl
 from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
 from clearance.profiles.chain import positions_at
 from clearance.profiles.plane import Plane
+from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
 from clearance.world.robot import JointKind
@@ -43,6 +45,29 @@ def test_a_bar_turning_about_a_point_sweeps_a_sector_of_an_annulus():
     assert math.sqrt(corner_sq) <= radius.max() <= math.sqrt(corner_sq) + found.bound
     assert near - found.bound <= radius.min() <= near
     assert found.n_pieces <= 20  # two arcs, two sides, two ends, and their corners
+
+
+def test_in_a_corner_zone_all_that_links_may_sweep_is_swept():
+    """A slab of 0.1 m slides by 1 m; on 0.25 m of its way it may be 20 mm off: a strip of 0.35 m either side and
+    two quarters of a circle at its ends."""
+    case, off, wide = (
+        sliding(slab([0, -0.05, 0], [0.1, 0.05, 0.1]), np.linspace(0.0, 1.0, 5)),
+        0.02,
+        0.1,
+    )
+    (placed,) = case.robots
+    times = placed.trajectory.times
+    zone = CornerZone(
+        "LIN 1", times[1], times[2], 0.05, {placed.robot.bodies[0].name: Deviation(off, 0.0)}
+    )
+    in_zone = replace(placed, trajectory=replace(placed.trajectory, corners=(zone,)))
+    case = replace(case, robots=(in_zone,))
+    found = cl.swept_profile(case)
+    area = 1.1 * wide + 2.0 * (0.35 * off + 0.5 * math.pi * off**2)
+    assert area <= found.area <= area + found.bound * found.length and found.bound <= 5e-4
+    assert found.notes == ("in corner zones links are up to 20 mm off, which is swept as well",)
+    with pytest.raises(BadInput, match="links may be 20 mm off in corner zones"):
+        cl.swept_profile(case, section=0.05)
 
 
 def test_a_sphere_on_a_line_sweeps_a_stadium():

@@ -20,6 +20,7 @@ from clearance.simulate.answers.workspace.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot
+from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
@@ -87,9 +88,28 @@ def test_timing_does_not_matter_and_apart_is_empty():
     assert far.volume == 0.0 and far.region.is_empty and far.links == ()
 
 
+@WITH_MANIFOLD
+def test_what_may_be_passed_in_a_corner_zone_is_shared():
+    """The two are 10 mm apart, and the first may be 15 mm off on part of its way."""
+    one, other = (
+        slider("one", (1, 0, 0), -1.0, 1.0),
+        slider("two", (0, 1, 0), -1.0, -0.9, (0.3, 0.69, 0.0)),
+    )
+    assert shared_workspace([one, other]).volume == 0.0
+    (placed,) = one.robots
+    times = placed.trajectory.times
+    zone = CornerZone(
+        "LIN 1", times[0], times[-1], 0.05, {placed.robot.bodies[0].name: Deviation(0.015, 0.0)}
+    )
+    cornering = replace(placed, trajectory=replace(placed.trajectory, corners=(zone,)))
+    found = shared_workspace([replace(one, robots=(cornering,)), other])
+    assert found.volume > 0.0 and not found.region.is_empty
+
+
 def pieces_of(motion, within):
     """The pieces of a robot that is alone."""
-    return swept_pieces(timeline_of(Case("alone", (motion.placed,), ()), (motion,)), 0, within)
+    case = Case("alone", (motion.placed,), ())
+    return swept_pieces(case, timeline_of(case, (motion,)), 0, within)
 
 
 def between_the_steps(motion, n_parts):
@@ -211,7 +231,7 @@ def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, wi
     case = on_the_door(cells.cell(seed))
     run = timeline(case)
     for i, placed in enumerate(case.robots):
-        pieces = swept_pieces(run, i, within)
+        pieces = swept_pieces(case, run, i, within)
         names = {body.name: f"{placed.robot.name}/{body.name}" for body in placed.robot.bodies}
         shapes = {body.name: body.shape for body in placed.robot.bodies}
         for obstacle in case.obstacles:
@@ -235,7 +255,7 @@ def test_what_is_in_hand_belongs_to_the_robot_that_holds_it(seed):
     for i, placed in enumerate(case.robots):
         windows = [c.window for c in case.carries if c.by == f"{placed.robot.name}/tool"]
         for name in ("part", "lid"):
-            own = [p for p in swept_pieces(run, i, 0.05) if p.link == name]
+            own = [p for p in swept_pieces(case, run, i, 0.05) if p.link == name]
             spans = [(run.times[p.first], run.times[p.last]) for p in own]
             assert all(any(w.holds(*span) for w in windows) for span in spans)
             held = sum(end - start for start, end in spans)

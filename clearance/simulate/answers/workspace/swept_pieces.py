@@ -22,10 +22,13 @@ from clearance.geometry.polytope import Polytope
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL, SLIDING, TURNING, Links
 from clearance.simulate.measure.certify import path_of
+from clearance.world.case import Case
+from clearance.world.corner_paddings import corner_off
 from clearance.world.cubic import cubics_of, extremes_between
 from clearance.world.extents import own_floor
 from clearance.world.forest import carried_by, forest_of, link_poses_at
 from clearance.world.holders import holding_link
+from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
 
@@ -40,7 +43,7 @@ class SweptPiece:
     Attributes:
         link: the name of a link of the robot, or of a part that it has in hand.
         points: (n, 3) [m] the part's corners at those steps, world frame.
-        leaves: [m] how far a point can be from the hull of `points` between two steps.
+        leaves: [m] how far a point can be from the hull of `points` between two steps, and in a corner zone.
     """
 
     link: str
@@ -64,7 +67,7 @@ class SweptPiece:
 
 
 def swept_pieces(
-    timeline: Timeline, i_robot: int, within: float, cut_links: Collection[str] = ()
+    case: Case, timeline: Timeline, i_robot: int, within: float, cut_links: Collection[str] = ()
 ) -> list[SweptPiece]:
     """Pieces that together contain every measured link of a robot, and what it has in hand, at every moment.
 
@@ -83,32 +86,36 @@ def swept_pieces(
     present = [phase for phase in timeline.phases if i_robot not in phase.absent_robots]
     pieces: list[SweptPiece] = []
     for phase in present:
-        pieces += _pieces_of_phase(phase, list(_held_bodies(phase, i_robot)), within, cut_links)
+        bodies = list(_held_bodies(case, phase, i_robot))
+        pieces += _pieces_of_phase(phase, bodies, within, cut_links)
     return pieces
 
 
 class _HeldBody(NamedTuple):
-    """A body at the pose of a link of the forest."""
+    """A body at the pose of a link of the forest, or up to `off` [m] from there."""
 
     name: str
     shape: Polyhedron
     link: int
+    off: float
 
 
-def _held_bodies(phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
+def _held_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
     """The measured links of a robot, then what it has in hand."""
     placed, forest = phase.case.robots[i_robot], forest_of(phase.case)
-    for body in placed.robot.bodies:
+    for i, body in enumerate(placed.robot.bodies):
         if body.name not in (*placed.exclude_links, own_floor(placed)):
             link = forest.robot_starts[i_robot] + placed.robot.link_names.index(body.name)
-            yield _HeldBody(body.name, body.shape, link)
+            off = corner_off(case, phase, BodyIndex(i_robot, i))
+            yield _HeldBody(body.name, body.shape, link, off)
     for i, obstacle in enumerate(phase.case.obstacles):
         holder = holding_link(phase, i)
         if holder is not None and holder[0] == i_robot:
             shape = obstacle.body.shape
             if isinstance(shape, PointCloud):
                 shape = shape.box_about()
-            yield _HeldBody(obstacle.name, shape, forest.obstacle_links[i])
+            off = corner_off(case, phase, BodyIndex(OBSTACLE, i))
+            yield _HeldBody(obstacle.name, shape, forest.obstacle_links[i], off)
 
 
 def _pieces_of_phase(
@@ -124,6 +131,7 @@ def _pieces_of_phase(
         parts = _parts(body.shape, body.name in cut_links)
         for first, last in _stretches(rates, bend, within):
             leaves = max((bend.at_most(rates.at(i)) for i in range(first, last)), default=0.0)
+            leaves += body.off + case.path_error
             chosen = poses[first : last + 1, body.link]
             for part in parts:
                 points = np.einsum("nij,kj->nki", chosen[:, :3, :3], part) + chosen[:, None, :3, 3]

@@ -60,12 +60,12 @@ def shared_workspace(
     _require_different_places(robots)
     carried = [(a, b) for a in robots for b in robots if a.stands_on(b)]
     pairs = _independent_pairs(robots, carried)
-    swept = [swept_pieces(one.timeline, one.i_robot, within) for one in robots]
+    swept = [swept_pieces(cases[one.i_case], one.timeline, one.i_robot, within) for one in robots]
     meeting, links = _meeting(robots, swept, pairs)
     if cut_concave and links:  # only what meets as hulls
         meet = [{piece.link for piece in pieces} for pieces in meeting]
         swept = [
-            swept_pieces(one.timeline, one.i_robot, within, cut)
+            swept_pieces(cases[one.i_case], one.timeline, one.i_robot, within, cut)
             for one, cut in zip(robots, meet, strict=True)
         ]
         meeting, links = _meeting(robots, swept, pairs)
