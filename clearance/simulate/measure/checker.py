@@ -51,7 +51,7 @@ class Clearance:
         link, obstacle: names of the pair that attains it; links carry their robot's name where there are several.
         point_link, point_obstacle: (3,) witness points [m] in the world frame.
         undecided: names of the pairs of which it is open whether one body is inside the other, since a surface has
-            holes; the distance is that of their surfaces alone.
+            holes, if `inside` is accepted; the distance is that of their surfaces alone.
     """
 
     distance: float
@@ -146,7 +146,8 @@ class Checker:
 
         Raises:
             BadShape, NotFinite, BadInput: not one number within `tolerance.REACH` for each joint.
-            SuspectInput: a joint far beyond its limits, or in another unit as it seems, unless that is accepted.
+            SuspectInput: a joint far beyond its limits, or in another unit as it seems; a body that may be inside
+                one whose surface has holes; unless that is accepted.
 
         Warns:
             UserWarning: a joint is slightly beyond its limits; once for each checker.
@@ -160,6 +161,8 @@ class Checker:
             for alike in self._alike[1:]:
                 found = min(found, alike.at_position(), key=_BY_CLEARANCE)
             undecided = tuple([self.pairs[i] for i, _ in self._doubtful.at(self._position)])
+        if undecided:
+            self._asked.require_decided(undecided)
         (link, obstacle), (a, b) = self.pairs[found.place], found.points
         return Clearance(found.clearance, link, obstacle, a, b, undecided, not found.apart)
 
@@ -177,6 +180,8 @@ class Checker:
             in_doubt = self._doubtful.at(positions)
         undecided = np.zeros(len(positions), dtype=bool)
         undecided[[row for _, row in in_doubt]] = True
+        if in_doubt:
+            self._asked.require_decided([self.pairs[i] for i, _ in in_doubt])
         return ClearanceOfMany(
             found.clearances, found.places, found.points, undecided, ~found.apart
         )
@@ -309,6 +314,21 @@ class AskedPositions:
         for one in notices:
             if one.severity is Severity.SUSPECT and one.kind not in self._accept:
                 raise SuspectInput(one.text, valid=f"correct it, or accept=[{one.kind!r}]")
+
+    def require_decided(self, undecided: Sequence[tuple[str, str]]) -> None:
+        """Checks that no pair may be one inside the other, or that this is accepted.
+
+        Raises:
+            SuspectInput: the first that may be.
+        """
+        if "inside" not in self._accept:
+            link, obstacle = undecided[0]
+            raise SuspectInput(
+                f"link {link} may be inside obstacle {obstacle}, or round it: the surface has holes, cracks or "
+                "two sides, and the distance is that of the surfaces alone",
+                where="configuration",
+                valid="close the mesh, or accept=['inside'], and read `undecided`",
+            )
 
     def judge(self, given: np.ndarray) -> None:
         """Warns, once, of configurations (n, k) beyond the limits of joints.

@@ -154,11 +154,16 @@ def test_what_cannot_be_told_is_said():
     way = np.zeros((21, 6))
     way[:, :3] = np.linspace(3.0, 1.0, 21)[:, None] * whole.face(0).mean(axis=0)
     case = flying("inside", cl.box((0.05, 0.05, 0.05)), [(outer, np.eye(4))], way)
-    checker = cl.Checker(case)
+    checker = cl.Checker(case, accept=["inside"])
     found = checker.distances(way)
     assert found.undecided.any() and not found.undecided[0]
     for row, undecided in zip(way, found.undecided, strict=True):
         assert checker.distance(row).undecided == (tuple(checker.pairs) if undecided else ())
+    strict, i = cl.Checker(case), int(np.argmax(found.undecided))
+    assert strict.distance(way[0]).distance == found.distances[0]
+    for ask in (lambda: strict.distance(way[i]), lambda: strict.distances(way)):
+        with pytest.raises(SuspectInput, match="may be inside obstacle"):
+            ask()
 
 
 @pytest.mark.parametrize(

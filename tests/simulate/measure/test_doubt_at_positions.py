@@ -101,7 +101,7 @@ def in_doubt(case: Case, pair: Pair, positions: np.ndarray) -> np.ndarray:
 def test_boxes_leave_out_no_pair_in_doubt(kind: str) -> None:
     case = CASES[kind]()
     rng = np.random.default_rng(list(CASES).index(kind))
-    checker, (pairs, _) = cl.Checker(case), measured_pairs(case)
+    checker, (pairs, _) = cl.Checker(case, accept=["inside"]), measured_pairs(case)
     scales = rng.choice([0.01, 0.1, 1.0], (N, 1))
     asked = scales * rng.uniform(-1.0, 1.0, (N, len(checker.joint_names)))
     truth = np.stack([in_doubt(case, pair, asked) for pair in pairs])
@@ -116,7 +116,7 @@ def test_an_obstacle_that_moves_is_in_doubt_where_its_table_begins() -> None:
     case = flown(TINY, (LID_OFF, at(0.3)), (TWO_SIDED, at(-0.5)))
     asked = np.random.default_rng(8).uniform(-0.9, 0.9, (N, 6))
     with pytest.warns(UserWarning, match="give time="):
-        moving = cl.Checker(with_an_obstacle_that_moves(case))
-    standing = cl.Checker(case)
+        moving = cl.Checker(with_an_obstacle_that_moves(case), accept=["inside"])
+    standing = cl.Checker(case, accept=["inside"])
     found = [checker.distances(asked).undecided for checker in (moving, standing)]
     assert found[0].any() and np.array_equal(*found)
