@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -26,9 +27,10 @@ def path_error_of(case: Case, motions: Sequence[Motion]) -> float:
     """
     if not any(_error(motion) for motion in motions):
         return 0.0
-    n_holds = 1 + 2 * len(case.carries)
-    mounts = [placed.mount for placed in case.robots] + [one.mount for one in case.obstacles]
-    if case.carries or any(mount is not None for mount in mounts):
+    given = [placed.mount for placed in case.robots] + [one.mount for one in case.obstacles]
+    mounts = [mount for mount in given if mount is not None]
+    n_holds = 1 + 2 * _most_carries(case, {mount.on for mount in mounts})
+    if case.carries or mounts:
         longest = [2.0 * ROOT_3 * farthest_reach(case, motions) * n_holds] * len(motions)
     else:
         longest = [length_of_robot(motion) for motion in motions]
@@ -36,6 +38,14 @@ def path_error_of(case: Case, motions: Sequence[Motion]) -> float:
     return float(
         moved * n_holds * (1.0 + 1e-3)
     )  # the path itself is within a thousandth of these lengths
+
+
+def _most_carries(case: Case, bearing: set[str]) -> int:
+    """How often a part is carried; where parts bear or carry others (`bearing`: names), all count for each."""
+    times = Counter(one.part for one in case.carries)
+    if times.keys() & (bearing | {one.by for one in case.carries}):
+        return times.total()
+    return max(times.values(), default=0)
 
 
 def _error(motion: Motion) -> float:

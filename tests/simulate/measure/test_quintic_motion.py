@@ -3,6 +3,7 @@ hand and against dense samples of the exact motion, for what a robot carries too
 """
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from clearance.world.pairs import selected_pairs
 from clearance.world.path_error import path_error_of
 from clearance.world.plausibility import notices_of
 from clearance.world.quintic import quintics_of
+from clearance.world.timing import Window
 from tests.cart import URDF
 
 CART = """name: cart
@@ -158,6 +160,27 @@ def test_a_part_is_no_farther_from_where_it_is_told_than_the_path_error(tmp_path
     assert far <= line.path_error
     assert line.path_error == path_error_of(found, line.motions)
     assert line.path_error < 2e-6
+
+
+def test_the_path_error_is_that_of_the_part_that_is_carried_most(tmp_path):
+    times, *columns = random_path(0)
+    found = case(tmp_path, CARRYING, ARM, message("ab", times, *columns))
+    motions = cl.check(found).record.timeline.motions
+    (carry,) = found.carries
+
+    def error(*parts):
+        windows = (Window(0.1 * i, 0.1 * i + 0.05) for i in range(len(parts)))
+        carries = [
+            replace(carry, part=part, window=one) for part, one in zip(parts, windows, strict=False)
+        ]
+        return path_error_of(replace(found, carries=tuple(carries)), motions)
+
+    once = error("part")
+    assert error("part", "post") == once < error("part", "post", "part") == error("part", "part")
+    on_part = (replace(carry, part="post", by="part", window=Window(0.5, 0.6)),)
+    assert path_error_of(replace(found, carries=(carry, *on_part)), motions) == error(
+        "part", "part"
+    )
 
 
 def pose_in(phase, step, name):
