@@ -58,7 +58,7 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
         if len(motions) > 1 and is_yaml:
             content = f"# {motion.placed.robot.name}\n".encode() + content
         parts.append(content)
-        notes += (*changes, *_bridged(motion))
+        notes += (*changes, *_bridged(motion), *_nominal(motion))
     between = b"---\n" if is_yaml else b""
     return WrittenTrajectory(between.join(parts), tuple(dict.fromkeys(notes)))
 
@@ -69,4 +69,16 @@ def _bridged(motion: Motion) -> list[str]:
     holes = () if asked is None else asked.holes
     return [
         f"{hole.text}: a straight line in this file" for hole in holes if hole.means == NOT_MEASURED
+    ]
+
+
+def _nominal(motion: Motion) -> list[str]:
+    """A note on corner zones: the file holds one path through each, and the verdict counts all of them."""
+    asked = motion.placed.trajectory
+    n = 0 if asked is None else len(asked.corners)
+    if n == 0:
+        return []
+    zones = "1 corner zone" if n == 1 else f"{n} corner zones"
+    return [
+        f"one path through {zones} of the program; the others, which the verdict counts, are not in this file"
     ]

@@ -9,7 +9,10 @@ import pytest
 import clearance as cl
 from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.report.motion_file import motion_content
+from clearance.world.case import PlacedRobot
 from clearance.world.cubic import positions_along
+from clearance.world.motion import kinematic_motion
 from tests.programs.arms import arm, posture, turned
 
 START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
@@ -55,6 +58,9 @@ def test_zones_may_use_up_the_line_between_them():
     assert [corner.radius for corner in corners] == pytest.approx([0.01] * 3)
     assert corners[1].start == corners[0].end and corners[2].start == corners[1].end
     assert all("cut from 100 mm" in note for note in found.notes) and len(found.notes) == 3
+    measured = kinematic_motion(PlacedRobot(arm("heron6").robot, found.trajectory))
+    (note,) = motion_content((measured,), "out.csv").notes
+    assert note.startswith("one path through 3 corner zones of the program")
     at = tool(found, found.trajectory.positions)
     assert np.abs(at[-1] - moves[-1].pose).max() < 1e-9
     steps = np.linalg.norm(np.diff(at[:, :3, 3], axis=0), axis=1)
