@@ -27,7 +27,7 @@ from clearance.cli import ExitCode
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import shown
 from clearance.progress import doing
-from clearance.record.wording import count, depth_mm, mm
+from clearance.record.wording import count, depth_mm, near_mm
 from clearance.simulate.measure.parts import usable_cores
 from clearance.world.waiver import Waiver
 
@@ -211,7 +211,8 @@ class _Worst:
         one = self._least
         if one is None or one.row["clearance"] is None:
             return ""
-        return f"worst {one.row['status']} {_length(one.row)}, {shown(self._name(one.number))}"
+        near = _length(one.row).removeprefix(one.row["status"])  # which may be "contact"
+        return f"worst {one.row['status']} {near}".rstrip() + f", {shown(self._name(one.number))}"
 
 
 class PipeWatch:
@@ -287,4 +288,6 @@ def _standing(one: ItemResult) -> tuple[int, float]:
 def _length(row: dict[str, Any]) -> str:
     """The clearance of a case, or how deep its contact is, as far as that is known."""
     depth = row["penetration"]
-    return f"{mm(row['clearance'])} mm" if depth is None else f"{depth_mm(depth)} mm deep"
+    if depth is not None:
+        return f"{depth_mm(depth)} mm deep"
+    return near_mm(row["clearance"], row["measured"], " mm")

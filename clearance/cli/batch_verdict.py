@@ -11,7 +11,7 @@ from clearance.batch.output import PAGE
 from clearance.batch.status import BatchStatus
 from clearance.batch.store import Store
 from clearance.errors import shown
-from clearance.record.wording import count, depth_mm, mm
+from clearance.record.wording import count, depth_mm, near_mm
 from clearance.world.notice import listed
 
 
@@ -79,7 +79,7 @@ def _print_facts(answer: BatchAnswer) -> None:
         click.echo(f"  basis       {count(n, 'case')} {BASES[basis]}")
     least = answer.least
     if least is not None:
-        near = f"{mm(least['clearance'])} mm"
+        near = near_mm(least["clearance"], least["measured"], " mm")
         if least["penetration"] is not None:
             near = f"contact, at most {depth_mm(least['penetration'])} mm deep"
         near += f", {least['body_a']} - {least['body_b']}"

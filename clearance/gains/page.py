@@ -154,7 +154,7 @@ def _worst(name: str, run: Run, proven: float | None) -> Row:
     fail = run.record.rule(worst.rule).limits.fail
     cells: list[Content | Cell] = [
         name,
-        number(mm(worst.clearance)),
+        number("contact" if worst.touches else mm(worst.clearance)),
         number(limit_mm(fail)),
         Cell(f"{worst.link} and {worst.obstacle}", "wide"),
         Cell(moment_text(run.record, worst), "wide"),

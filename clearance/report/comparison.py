@@ -41,7 +41,7 @@ from clearance.report.comparison_text import (
     comparison_text,
     doubt_lines,
 )
-from clearance.report.curves import ClearanceCurve, chart_of, curve_in
+from clearance.report.curves import AT_SAMPLES, ClearanceCurve, chart_of, curve_in
 from clearance.report.rendering import plain_page
 from clearance.report.terminal import terminal, terminal_table
 from clearance.report.topic import TerminalTable
@@ -81,7 +81,8 @@ def comparison_page(
         [Bullets([*map(capital, lines)], "beside")],
     )
     content: list[object] = [
-        Chart([(k.lower(), f"{k}: {n}") for k, n in zip("AB", names, strict=True)])
+        Chart([(k.lower(), f"{k}: {n}") for k, n in zip("AB", names, strict=True)]),
+        faint(AT_SAMPLES),
     ]
     fail = max((row.finding.fail for row in comparison.rows), default=0.0)
     chart = chart_of(curves, fail) if len(curves) == 2 else None

@@ -128,6 +128,9 @@ class ClearanceCurve:
         return ClearanceCurve(self.name, self.times[least], self.clearances[least])
 
 
+AT_SAMPLES = "Straight lines join the samples: between these, the curves prove nothing."
+
+
 def chart_of(
     curves: Sequence[ClearanceCurve], limit: float, called: str = "fail"
 ) -> dict[str, Any]:

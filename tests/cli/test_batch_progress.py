@@ -9,7 +9,7 @@ NAMES = ["a", "b", "c", "d"]
 
 
 def result(number, status, exit_code, clearance, penetration=None):
-    told = {"status": status, "exit_code": exit_code, "clearance": clearance}
+    told = {"status": status, "measured": status, "exit_code": exit_code, "clearance": clearance}
     return ItemResult(number, "key", "[]", told | {"penetration": penetration, "reasons": []})
 
 

@@ -67,6 +67,12 @@
 
   const shown = (number, digits) => (number === null ? "" : number.toFixed(digits));
 
+  // The clearance; of a contact how deep it is at most, if that is known.
+  function least(i) {
+    const least = data.clearance[i], touches = data.statuses[data.status[i]] === "contact";
+    return least < 0 ? `${(-least).toFixed(3)} deep` : touches ? "contact" : shown(least, 3);
+  }
+
   function curve(i) {
     const canvas = document.createElement("canvas"), scale = window.devicePixelRatio || 1;
     canvas.width = 260 * scale;
@@ -104,7 +110,7 @@
     badge.textContent = data.waived[i] ? `${status}, waived` : status;
     tag.append(badge);
     made.append(
-      cell(data.names[i]), tag, cell(shown(data.clearance[i], 3), "number"), cell(shown(data.bound[i], 3), "number"),
+      cell(data.names[i]), tag, cell(least(i), "number"), cell(shown(data.bound[i], 3), "number"),
       cell(shown(data.time[i], 3), "number"), cell(columns.a[i]), cell(columns.b[i]), cell(columns.rule[i]), curve(i),
     );
     made.addEventListener("click", () => choose(i));

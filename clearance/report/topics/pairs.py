@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 from clearance.findings.self_clearance import self_clearance_of
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status, status_of
-from clearance.record.wording import mm, near_mm, step_text
+from clearance.record.wording import near_mm, step_text
 from clearance.report.blocks import At, Paragraph, Row, Section, Table, capital, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment, time_of
@@ -198,7 +198,8 @@ def _used(groups: Sequence[Group], names: Iterable[str]) -> list[Group]:
 def _cell(found: list[tuple[int, dict[str, Any]]], fail: Mapping[str, float]) -> PairCell:
     place, pair = min(found, key=lambda row: _standing(row[1], fail))
     title = "\n".join(_title(one) for _, one in found)
-    return PairCell(mm(pair["clearance"]), _shade(pair), at_moment(pair), place, title)
+    near = near_mm(pair["clearance"], pair["status"])
+    return PairCell(near, _shade(pair), at_moment(pair), place, title)
 
 
 def _standing(pair: dict[str, Any], fail: Mapping[str, float]) -> tuple[int, float]:

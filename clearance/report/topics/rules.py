@@ -18,6 +18,7 @@ from clearance.record.wording import (
     limits_text,
     mm,
     moment_text,
+    near_mm,
     other_time,
 )
 from clearance.report.blocks import Cell, Content, Inline, Row, Section, Table, faint, number
@@ -126,7 +127,7 @@ def _row(rule: dict[str, Any], worst_of_all: str) -> Row:
     at = f"{time_of(worst)}{other_time(worst['obstacle'], worst['time_b'])}"
     found: list[Content | Cell] = [
         Inline(rule["status"], f"tag {rule['status']}"),
-        number(mm(worst["clearance"])),
+        number(near_mm(worst["clearance"], rule["status"])),
         number("" if rule["lower_bound"] is None else mm(rule["lower_bound"])),
         f"{worst['link']} - {worst['obstacle']}",
         moment_link(worst, at),
