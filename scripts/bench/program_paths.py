@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from program_arms import LONG, ArmFile, OwnArm, Poses, turned
@@ -16,6 +16,7 @@ from program_arms import LONG, ArmFile, OwnArm, Poses, turned
 import clearance as cl
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import Move, PathMove, Program
+from clearance.world.robot import Joint, JointKind
 from clearance.world.trajectory import Trajectory
 
 TOOL = np.eye(4)
@@ -101,13 +102,49 @@ class OwnLeg:
         return Poses(turn.reshape(*shape, 3, 3), origin.reshape(*shape, 3))
 
 
+class Plate(NamedTuple):
+    """A plate that turns while the tool works on it: rotation and origin of its joint [m], its axis (3,), where it
+    begins and how far it goes with the leg [rad]."""
+
+    turn: np.ndarray
+    origin: np.ndarray
+    axis: np.ndarray
+    first: float
+    by: float
+
+    @classmethod
+    def drawn(cls, draw: np.random.Generator) -> Plate:
+        """One near an arm."""
+        axis = draw.uniform(-0.4, 0.4, 3).astype(LONG) + np.array([0, 0, 1], dtype=LONG)
+        turn, origin = turned(draw.uniform(-0.3, 0.3, (1, 3)))[0], draw.uniform(-0.3, 0.3, 3)
+        axis = axis / np.sqrt((axis**2).sum())
+        return cls(turn, origin.astype(LONG), axis, *draw.uniform(-0.5, 0.5, 2))
+
+    def joint(self, root: str) -> Joint:
+        """Its joint, which holds nothing back."""
+        at, axis = matrix((self.turn, self.origin)), self.axis.astype(float)
+        return Joint("plate", JointKind.CONTINUOUS, root, "plate", at, axis, velocity=FAST)
+
+    def seen(self, pose: Pose) -> Pose:
+        """A pose seen from it where it begins."""
+        turn = self.turn @ turned(self.axis[None] * self.first)[0]
+        return turn.T @ pose[0], turn.T @ (pose[1] - self.origin)
+
+    def carried(self, poses: Poses, shares: np.ndarray) -> Poses:
+        """Poses (m, n) on it at shares of the leg, seen from the root."""
+        angles = (self.first + self.by * shares).reshape(-1, 1)
+        turn = self.turn @ turned(self.axis * angles).reshape(*shares.shape, 3, 3)
+        return Poses(turn @ poses.turn, self.origin + (turn @ poses.origin[..., None])[..., 0])
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A random motion of an arm, and what its path is by its own definition."""
+    """A random motion of an arm, and what its path is by its own definition, on a plate if there is one."""
 
     own: OwnArm
     trajectory: Trajectory
     legs: tuple[OwnLeg, ...]
+    plate: Plate | None = None
 
     @property
     def starts(self) -> np.ndarray:
@@ -122,8 +159,35 @@ class Motion:
         origin = np.empty((*times.shape, 3), dtype=LONG)
         for i in np.unique(which):
             leg, rows = self.legs[i], which == i
-            turn[rows], origin[rows] = leg.poses(leg.shares(times[rows] - self.starts[i]))
+            shares = leg.shares(times[rows] - self.starts[i])
+            poses = leg.poses(shares)
+            turn[rows], origin[rows] = (
+                poses if self.plate is None else self.plate.carried(poses, shares)
+            )
         return Poses(turn, origin)
+
+
+def random_motions_on_plates(file: ArmFile, n: int) -> Iterator[Motion]:
+    """Random lines and arcs on plates that turn meanwhile, in turns, that the arm can follow."""
+    draw, found = np.random.default_rng(1), 0
+    robot, own = cl.load_urdf(file.path), OwnArm.read(file.path, file.link, TOOL)
+    links, joints = (*robot.link_names, "plate"), robot.joints
+    while found < n:
+        start = np.array(file.posture)[: len(own.joints)] + draw.uniform(-0.2, 0.2, len(own.joints))
+        turn, origin = own.poses(start[None].astype(LONG))
+        plate = Plate.drawn(draw)
+        legs, (move,) = drawn(KINDS[found % 2], plate.seen((turn[0], origin[0])), draw)
+        move = replace(move, seen_from="plate", hold={"plate": plate.first + plate.by})
+        at = {joint.name: float(at) for joint, at in zip(own.joints, start, strict=True)}
+        beside = replace(robot, link_names=links, joints=(*joints, plate.joint(links[0])))
+        program = Program(file.link, TOOL, (move,), {**at, "plate": plate.first})
+        try:
+            made = motion_of(beside, program).trajectory
+        except cl.ClearanceError:
+            continue
+        found += 1
+        columns = [made.joint_names.index(joint.name) for joint in own.joints]
+        yield Motion(own, made.of_columns(columns), legs, plate)
 
 
 def random_motions(file: ArmFile, n: int, seed: int = 0) -> Iterator[tuple[str, Motion]]:

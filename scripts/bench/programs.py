@@ -4,8 +4,9 @@
         [--only PART ...] [--csv FILE]
 
 Parts: `enclosure` (no joint is farther from its cubic than proven, by inverse kinematics of their own in long
-doubles), `peers` (poses at every step), `zones` (random admissible paths), `table` (the same motion as samples of
-1 ms), `speed` (certified to 0.1 mm among obstacles; CPU time, the least of three, case loaded from its files).
+doubles), `turning` (the same on a plate that turns meanwhile), `peers` (poses at every step), `zones` (random
+admissible paths), `table` (the same motion as samples of 1 ms), `speed` (certified to 0.1 mm among obstacles; CPU
+time, the least of three, case loaded from its files).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import yaml
 from harness import Row, least_time
 from program_arms import LONG, ArmFile, OwnArm, arm_files
 from program_corners import zones
-from program_paths import TOOL, Motion, random_motions
+from program_paths import TOOL, Motion, random_motions, random_motions_on_plates
 
 import clearance as cl
 from clearance.world.cubic import positions_along
@@ -52,16 +53,27 @@ def main(words: list[str] | None = None) -> list[Row]:
 def enclosure(asked) -> Iterator[Row]:
     """Of each arm: samples between samples at which a joint is farther off than proven, and how tight that is."""
     for name, file in arm_files(asked.arms).items():
-        ratios, n_samples, outside = [], 0, 0
-        for _, motion in random_motions(file, asked.motions):
-            proven = motion.trajectory.path_error
-            off = deviations(motion, asked.finer)
-            ratios.append(proven / off.max())
-            n_samples, outside = n_samples + off.size, outside + int((off > proven).sum())
-        yield {
-            "arm": name, "axes": len(motion.own.joints), "motions": len(ratios), "samples": n_samples,
-            "outside": outside, "ratio_median": float(np.median(ratios)), "ratio_max": max(ratios),
-        }  # fmt: skip
+        yield enclosed(name, (motion for _, motion in random_motions(file, asked.motions)), asked)
+
+
+def turning(asked) -> Iterator[Row]:
+    """The same for lines and arcs on a plate that turns meanwhile."""
+    for name, file in arm_files(asked.arms).items():
+        yield enclosed(name, random_motions_on_plates(file, asked.motions), asked)
+
+
+def enclosed(name: str, motions: Iterator[Motion], asked) -> Row:
+    """The figures of one arm."""
+    ratios, n_samples, outside = [], 0, 0
+    for motion in motions:
+        proven = motion.trajectory.path_error
+        off = deviations(motion, asked.finer)
+        ratios.append(proven / off.max())
+        n_samples, outside = n_samples + off.size, outside + int((off > proven).sum())
+    return {
+        "arm": name, "axes": len(motion.own.joints), "motions": len(ratios), "samples": n_samples,
+        "outside": outside, "ratio_median": float(np.median(ratios)), "ratio_max": max(ratios),
+    }  # fmt: skip
 
 
 def deviations(motion: Motion, finer: int) -> np.ndarray:
@@ -208,7 +220,14 @@ def boxes_about(start: np.ndarray, draw: np.random.Generator) -> Iterator[dict]:
             n += 1
 
 
-PARTS = {"enclosure": enclosure, "peers": peers, "zones": zones, "table": table, "speed": speed}
+PARTS = {
+    "enclosure": enclosure,
+    "turning": turning,
+    "peers": peers,
+    "zones": zones,
+    "table": table,
+    "speed": speed,
+}
 
 
 if __name__ == "__main__":
