@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.geometry.quaternions import quaternions_of
 from tests.programs.arms import turned
 from tests.programs.test_programs_in_cases import (
     BASE,
@@ -119,6 +120,53 @@ def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path)
     seen = turned((0.0, 0.0, -turn)) @ at - [0.1, 0.0, 0.3]
     assert np.abs(seen - xyz).max() < 1e-8
     assert table.trajectory.path_error == made.path_error > 0.0
+
+
+def rapid(turn: np.ndarray, via: list[float], to: list[float]) -> str:
+    """A line and an arc on a work object that a mechanical unit moves, 0.1 m out and 20 mm above its frame."""
+    q = np.roll(quaternions_of(turn[None])[0], 1).tolist()
+    axes = np.degrees(list(START.values())).tolist()
+    at = lambda xyz, angle: (  # noqa: E731
+        f"[{[1e3 * xyz[0] - 100.0, 1e3 * xyz[1], 1e3 * xyz[2] - 20.0]},{q},[0,0,0,0],"
+        f"[{np.degrees(angle)},9E9,9E9,9E9,9E9,9E9]]"
+    )
+    return f"""MODULE Weld
+  PERS tooldata tip:=[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
+  PERS wobjdata jig:=[FALSE,FALSE,"stn_1",[[7,8,9],[1,0,0,0]],[[100,0,20],[1,0,0,0]]];
+  PROC main()
+    MoveAbsJ [{axes},[{np.degrees(0.5)},9E9,9E9,9E9,9E9,9E9]],v100,fine,tip;
+    MoveL {at(via, 0.6)},v100,fine,tip\\WObj:=jig;
+    MoveC {at(on_plate((0.03, 0.06, 0.0)), 0.6)},{at(to, 0.7)},v100,fine,tip\\WObj:=jig;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_a_work_object_that_a_mechanical_unit_moves_is_a_frame_on_it(tmp_path):
+    turn = turned((0.0, 0.0, -0.5)) @ tool_at(START)[:3, :3]
+    via, to = on_plate((0.0, 0.05, 0.0)), on_plate((0.06, 0.05, 0.0))
+    quat = quaternions_of(turn[None])[0].tolist()
+    place = lambda xyz: {"frame": "jig", "xyz": xyz, "quat_xyzw": quat}  # noqa: E731
+    more = {"speed": 0.1, "turn_speed": float(np.radians(500.0))}
+    bulge = {"frame": "jig", "xyz": on_plate((0.03, 0.06, 0.0))}
+    moves = [
+        {"lin": {"to": place(via), "hold": {"turntable/turn": 0.6}, **more}},
+        {"circ": {"via": bulge, "to": place(to), "hold": {"turntable/turn": 0.7}, **more}},
+    ]
+    content = driving(tmp_path, moves)
+    ours = cl.load_case(saved(tmp_path, content)).robots
+    (tmp_path / "weld.mod").write_text(rapid(turn, via, to))
+    program = {"file": "weld.mod", "link": "tool_tip", "base": {"on": "base"}, "axes_as": "plain"}
+    content["robots"][0]["trajectory"] = {"program": program}
+    with pytest.raises(cl.ClearanceError, match="line 6: mechanical unit 'stn_1' moves the work"):
+        cl.load_case(saved(tmp_path, content))
+    program["units"] = {"STN_1": {"on": "turntable/plate"}}
+    with pytest.raises(cl.ClearanceError, match="line 6: external axis E1 moves, and no joint"):
+        cl.load_case(saved(tmp_path, content))
+    program["axes"] = {"turntable/turn": {"axis": "E1"}}
+    for one, same in zip(cl.load_case(saved(tmp_path, content)).robots, ours, strict=True):
+        assert np.abs(one.trajectory.times - same.trajectory.times).max() < 1e-9
+        assert np.abs(one.trajectory.positions - same.trajectory.positions).max() < 1e-8
 
 
 REFUSED = {

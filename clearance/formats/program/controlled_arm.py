@@ -75,7 +75,13 @@ class ControlledArm:
     @cached_property
     def axes(self) -> AxisMap:
         """How joints follow axes."""
-        joints = self.chain.masters
+        own, asked = self.chain.masters, self.asked.axes
+        beside = (
+            joint
+            for joint in self.robot.moving_joints
+            if joint not in own and joint.name in asked and isinstance(asked[joint.name].axis, str)
+        )
+        joints = (*own, *beside)
         with at("axes"):
             return AxisMap.of(
                 joints, self.asked.axes, self.convention.third if self.convention else 0.0
@@ -134,7 +140,7 @@ class ControlledArm:
         """
         held = {name: [value, value] for name, value in self.axes.held(to).items()}
         found = self.axes.ranges_of(to) | held
-        if self.wrist is None or to.is_behind is None:
+        if self.wrist is None or to.is_behind is None or to.unit:
             return found
         assert self.root_from_base is not None
         flange = self.root_from_base @ to.pose @ inverse(tool)
@@ -161,6 +167,10 @@ class ControlledArm:
             return self.asked.base.model_dump(exclude_unset=True)
         return {"on": schema.BASE, **pose_written(self.root_from_base)}
 
+    def units(self) -> dict[str, Any]:
+        """The frames of mechanical units, as those of a program."""
+        return {name: one.model_dump(exclude_unset=True) for name, one in self.asked.units.items()}
+
     @cached_property
     def root_from_base(self) -> np.ndarray | None:
         """(4, 4) the controller's base, seen from the robot's root [m]; None where only the cell says it."""
@@ -185,15 +195,13 @@ class ControlledArm:
         row = np.array([[joints[joint.name] for joint in self.chain.masters]])
         return np.asarray(self.chain.frames(row)[0, -1] @ tool)
 
-    def base_from_flange(self, one: ControllerMove | None) -> np.ndarray | None:
-        """(4, 4) where the flange is at the end of a move, seen from the controller's base [m]; None if it is not
-        known.
-        """
+    def base_from_flange(self, one: ControllerMove | None, unit: str = "") -> np.ndarray | None:
+        """(4, 4) the flange at a move's end, seen from the base or a mechanical unit [m]; None if unknown."""
         if one is None or one.orientation == "constant":
             return None
         if isinstance(one.to, PoseTarget):
-            return np.asarray(one.to.pose @ inverse(one.tool))
-        if self.root_from_base is None:
+            return None if one.to.unit != unit else np.asarray(one.to.pose @ inverse(one.tool))
+        if self.root_from_base is None or unit:
             return None
         flange = self.tool_at(self.axes.joints_of(one.to), np.eye(4))
         return np.asarray(inverse(self.root_from_base) @ flange)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -27,6 +27,7 @@ class AxisTarget:
     axes: tuple[float, ...]
     external: Mapping[str, float] = field(default_factory=dict)
     name: str = ""
+    unit: ClassVar[str] = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,7 @@ class PoseTarget:
 
     Attributes:
         pose: (4, 4) `base_from_tool`: work frame times target [m]. external, name: as of an `AxisTarget`.
+        unit: the mechanical unit whose frame is the pose's base; the controller's base if empty.
         ranges: from where to where axes are in the configuration that is asked for [rad], by number from 1.
         near: axes from which the nearest configuration is meant [rad]; None for those before the move.
         is_behind, is_back: the wrist is behind axis 1, and behind the line from axis 2 to 3; None if nobody
@@ -50,6 +52,7 @@ class PoseTarget:
     is_back: bool | None = None
     unchecked: str = ""
     name: str = ""
+    unit: str = ""
 
 
 Target = AxisTarget | PoseTarget

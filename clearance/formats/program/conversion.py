@@ -89,7 +89,7 @@ def converted(
     tool = {"link": made.arm.link, **pose_written(made.first_tool)}
     program = {
         "tool": tool,
-        "frames": {CONTROLLER: made.arm.base()},
+        "frames": {CONTROLLER: made.arm.base(), **made.arm.units()},
         "start": own,
         "step": asked.step,
     }
@@ -204,7 +204,7 @@ class _Conversion:
 
     def _stays(self, before: ControllerMove | None, one: ControllerMove) -> bool:
         """True where a move ends where the one before it does: a line with its point, another with the tool."""
-        ends = self.arm.base_from_flange(before), self.arm.base_from_flange(one)
+        ends = [self.arm.base_from_flange(end, one.to.unit) for end in (before, one)]
         if ends[0] is None or ends[1] is None:
             return False
         off = np.abs((ends[1] - ends[0]) @ one.tool)
@@ -257,7 +257,7 @@ class _Conversion:
         self, place: str, to: PoseTarget, joints: Mapping[str, float], tool: np.ndarray
     ) -> None:
         """Keeps how far a pose is from where the axes beside it have the tool; too far, they are a seed alone."""
-        if self.arm.root_from_base is None:
+        if self.arm.root_from_base is None or to.unit:
             return
         off = inverse(self.arm.tool_at(joints, tool)) @ self.arm.root_from_base @ to.pose
         way, turn = (
@@ -298,8 +298,9 @@ class _Conversion:
         """
         if one.orientation != "path":
             return one.orientation
-        ends = self.arm.base_from_flange(self._before), self.arm.base_from_flange(one)
-        via = None if one.via is None else self.arm.base_from_flange(replace(one, to=one.via))
+        last = one if one.via is None else replace(one, to=one.via)
+        ends = [self.arm.base_from_flange(end, one.to.unit) for end in (self._before, one)]
+        via = self.arm.base_from_flange(last, one.to.unit)
         if ends[0] is None or ends[1] is None or via is None:
             raise BadProgram("where the tool is before the arc is not known", valid="a line before")
         start, middle, end = (pose @ one.tool for pose in (ends[0], via, ends[1]))
@@ -309,7 +310,7 @@ class _Conversion:
         """A pose of the tool; where axes are given, theirs."""
         name = {"name": to.name} if to.name else {}
         if isinstance(to, PoseTarget):
-            return {"frame": CONTROLLER, **pose_written(to.pose), **name}
+            return {"frame": to.unit or CONTROLLER, **pose_written(to.pose), **name}
         pose = self.arm.tool_at(self.arm.axes.joints_of(to), one.tool)
         return {"frame": schema.BASE, **pose_written(pose), **name}
 
@@ -339,6 +340,9 @@ class _Conversion:
             unchecked["whether the wrist is before axis 1 and the upper arm"] = None
         if unchecked:
             yield f"configurations are not checked for {listed([*unchecked])}"
+        idle = {*self.arm.asked.units} - {one.unit for one in ends}
+        if idle:
+            yield f"no move is on the mechanical units {listed(sorted(idle))}"
         if self.compared[0] >= 0.0:
             way, turn = self.compared[0] * 1e3, np.degrees(self.compared[1])
             yield f"poses with axes beside them agree with the robot within {way:.2g} mm and {turn:.2g} degrees"

@@ -51,7 +51,7 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
                 name.lower(): work_object_record(one.matrix()) for name, one in given.frames.items()
             },
         }
-        language = Rapid(modules, known_data)
+        language = Rapid(modules, known_data, {name.lower(): name for name in given.units})
         skip = frozenset(rules.folded(one) for one in given.skip)
         run = Execution(language, modules.routines, skip)
         language.declare(run)

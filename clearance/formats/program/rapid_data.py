@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -167,19 +167,32 @@ def flange_from_tool(value: list[Any]) -> np.ndarray:
     return pose_of(frame)
 
 
-def base_from_work(value: list[Any]) -> np.ndarray:
-    """(4, 4) `base_from_work` [m]: user frame times object frame.
+class Work(NamedTuple):
+    """A work object: its pose (4, 4) [m] on a mechanical unit, or on the controller's base if that is empty."""
+
+    unit: str
+    pose: np.ndarray
+
+
+def work_of(value: list[Any], units: Mapping[str, str]) -> Work:
+    """A work object: user frame times object frame; a unit that moves it has the user frame itself.
+
+    Args:
+        units: those of which the case says the frame, by their names in small letters.
 
     Raises:
-        BadProgram: one that the robot holds, or that moves.
+        BadProgram: one that the robot holds, or that moves with an unknown unit.
     """
     holds, is_fixed, unit, user, frame = record(value, 5, is_flagged=True)
-    if holds or not is_fixed or unit:
-        what = "the robot holds" if holds else f"mechanical unit {unit!r} moves"
-        raise BadProgram(
-            f"{what} the work object", valid="a work object that stands, with ufprog TRUE"
-        )
-    return np.asarray(pose_of(user) @ pose_of(frame))
+    if holds:
+        valid = "a work object that stands, with ufprog TRUE"
+        raise BadProgram("the robot holds the work object", valid=valid)
+    if is_fixed:
+        return Work("", pose_of(user) @ pose_of(frame))
+    if str(unit).lower() not in units:
+        valid = f"units: {{{unit or 'STN_1'}: {{on: turntable/plate}}}}, where its user frame is"
+        raise BadProgram(f"mechanical unit {unit!r} moves the work object", valid=valid)
+    return Work(units[unit.lower()], pose_of(frame))
 
 
 def _offs(target: list[Any], *way: float) -> list[Any]:

@@ -6,12 +6,10 @@ Source: ABB, Technical reference manual, RAPID instructions, functions and data 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
-
-import numpy as np
 
 from clearance.errors import BadProgram, ClearanceError, at
 from clearance.formats.program.controller_program import (
@@ -38,14 +36,15 @@ from clearance.formats.program.rapid_data import (
     RECORDS,
     STANDARD,
     VALUES,
+    Work,
     array_of,
-    base_from_work,
     configuration_of,
     external_of,
     flange_from_tool,
     pose_of,
     record,
     rel_tool,
+    work_of,
 )
 from clearance.formats.program.rapid_text import Declaration, Modules
 from clearance.formats.program.rapid_words import (
@@ -65,12 +64,14 @@ class Rapid:
     """What RAPID's instructions do.
 
     Attributes:
-        known_data: tools and work objects that the case says. checks: whether joint moves keep to configurations.
+        known_data: tools and work objects that the case says. units: mechanical units of which it says the frame.
+        checks: whether joint moves keep to configurations.
         zones: by the index of a move, the radii of its zone for point and orientation [m].
     """
 
     modules: Modules
     known_data: dict[str, Any]
+    units: Mapping[str, str] = field(default_factory=dict)
     checks: bool = True
     zones: dict[int, tuple[float, float]] = field(default_factory=dict)
     _persistent: bool = False
@@ -257,12 +258,12 @@ class Rapid:
             what: known(run.evaluated(one), line, f"the {what}") for what, one in asked.items()
         }
         with _expecting_data(call):
-            placed = base_from_work(given["work object"])
+            work = work_of(given["work object"], self.units)
             speed, turn_speed = _speed(given["speed"], call, run)
             via = None
             if rule.to == 1:
-                via = self._target(call, given["point on the arc"], call.args[0], placed, run)
-            to = self._target(call, given["target"], call.args[rule.to], placed, run)
+                via = self._target(call, given["point on the arc"], call.args[0], work, run)
+            to = self._target(call, given["target"], call.args[rule.to], work, run)
             point, turn = _zone(given["zone"], call, run)
             if not speed > 0.0:
                 raise BadProgram(f"the speed is {speed:g} m/s", valid="more than 0")
@@ -276,7 +277,7 @@ class Rapid:
         run.add(move)
 
     def _target(
-        self, call: Call, value: Any, one: Expression, placed: np.ndarray, run: Execution
+        self, call: Call, value: Any, one: Expression, work: Work, run: Execution
     ) -> Target:
         name = _shown(one, run)
         if call.name == "MoveAbsJ":
@@ -287,11 +288,11 @@ class Rapid:
                 name,
             )
         trans, rot, flags, external = value
-        pose = placed @ pose_of([trans, rot])
+        pose, more = work.pose @ pose_of([trans, rot]), external_of(external)
+        found = PoseTarget(pose, more, name=name, unit=work.unit)
         if MOVES[call.name].kind != "ptp" or not self.checks:
-            return PoseTarget(pose, external_of(external), name=name)
-        more = external_of(external)
-        return PoseTarget(pose, more, name=name, **configuration_of(flags, bool(more)))
+            return found
+        return replace(found, **configuration_of(flags, bool(more)))
 
 
 def _require_plain(call: Call, rule: MoveRule) -> None:
