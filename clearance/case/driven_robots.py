@@ -121,7 +121,13 @@ class ProgramCell:
         others = {}
         for name in driven:
             part = replace(
-                _of(made, name), frames=(), moves=(), unproven=(), assumed=(), has_way_in=False
+                _of(made, name),
+                frames=(),
+                moves=(),
+                unproven=(),
+                assumed=(),
+                left_out=(),
+                has_way_in=False,
             )
             others[name] = part if name in free else replace(part, path_error=0.0, corners=())
         return replace(_of(made, ""), drives=tuple(driven)), others

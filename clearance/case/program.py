@@ -64,6 +64,7 @@ def program_motion(
         frames=tuple(sorted(frames.used)),
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
+        left_out=read.left_out,
     )
     moved = (f"it moves robot {name!r} too" for name in driven)
     notes = tuple(f"{shown}: {note}" for note in (*read.notes, *moved, *found.notes))

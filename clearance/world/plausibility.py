@@ -197,7 +197,7 @@ def notices_on_clocks(case: Case) -> list[Notice]:
     """
     if case.clock.slack == math.inf:
         return []
-    tables, found = sorted(_tables(case)), []
+    tables, found = sorted(_tables(case)), list(_waits_left_out(case))
     for i, later in enumerate(tables[1:], 1):
         earlier = max(tables[:i], key=lambda table: table.end)
         meant = earlier.timing.says_after or later.timing.says_start
@@ -208,6 +208,23 @@ def notices_on_clocks(case: Case) -> list[Notice]:
             )
             found.append(Notice(Severity.SUSPECT, "clocks", text))
     return [*found, *_recordings_begin_unlike(case)]
+
+
+def _waits_left_out(case: Case) -> Iterator[Notice]:
+    """Notices on programs whose times lack what the case leaves out, beside others that move."""
+    moving = [table.name for table in _tables(case)]
+    for placed in case.robots if case.clock.slack == 0.0 else ():
+        asked = placed.trajectory
+        if asked is None or not asked.left_out:
+            continue
+        own = [f"robot {name!r}" for name in (placed.robot.name, *asked.drives)]
+        others = [name for name in moving if name not in own]
+        if others:
+            text = (
+                f"CHECK CLOCKS: {own[0]} takes no time for what is left out ({listed(asked.left_out)}), and "
+                f"{listed(others)} moves too; clock: {{slack: seconds}} says by how much their times may be off"
+            )
+            yield Notice(Severity.SUSPECT, "clocks", text)
 
 
 def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:

@@ -78,6 +78,8 @@ def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
     ]
     own = cl.load_case(case(tmp_path, moves, [far()], start={**START, "joint_1": -0.4}))
     one, two = (each.robots[0].trajectory for each in (found, own))
+    waits = controller_case(tmp_path, "b.script", script() + "grip()\n", axes=BEND, skip=["grip"])
+    assert cl.load_case(waits).robots[0].trajectory.left_out == ("grip (line 7)",)
     assert np.abs(one.times - two.times).max() < 1e-9
     assert np.abs(one.positions - two.positions).max() < 1e-9
     assert [move.name for move in one.moves] == ["PTP 3", "PTP 4 → P1", "LIN 5", "CIRC 6"]

@@ -120,6 +120,20 @@ def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
     assert not reported(replace(case, obstacles=tuple(obstacles)))
 
 
+def test_a_program_that_leaves_out_waits_is_suspect_beside_others_that_move(tmp_path):
+    case = cell(tmp_path, 0.0)
+    (left, *others), left_out = case.robots, ("WaitDI (line 23)",)
+    waits = replace(left, trajectory=replace(left.given_trajectory, left_out=left_out))
+    case = replace(case, robots=(waits, *others))
+    (told,) = reported(case)
+    assert (
+        "robot 'left' takes no time for what is left out (WaitDI (line 23)), and obstacle 'door' moves"
+        in told
+    )
+    assert not reported(replace(case, clock=Clock(1.0)))
+    assert not reported(replace(case, obstacles=tuple(one for one in case.obstacles if one.stands)))
+
+
 def two_recordings(folder, apart, *changes):
     """Both arms by recordings of which the right one's first stamp is some seconds after the left one's."""
     files = "joints: {shoulder: 0.2}", "trajectory: path.csv"

@@ -108,7 +108,7 @@ class ControllerProgram:
         moves: in the order in which they are made: loops and calls are resolved. notes: a line each on what was
             assumed or passed over. base: why a robot's root link may not be the controller's base; empty where it
             is. doubts: a line each on what the controller may move otherwise, for the headline. maker: the preset
-            of `axes_as` that its language has.
+            of `axes_as` that its language has. left_out: instructions that the case leaves out, and where.
     """
 
     moves: tuple[ControllerMove | ControllerWait, ...]
@@ -116,6 +116,7 @@ class ControllerProgram:
     base: str = ""
     doubts: tuple[str, ...] = ()
     maker: str = "plain"
+    left_out: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

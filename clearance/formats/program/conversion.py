@@ -56,6 +56,7 @@ class ConvertedProgram:
             assumed.
         assumed: what a verdict rests on, where nothing in the files confirms it, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
+        left_out: instructions that the case leaves out, and where.
     """
 
     program: schema.Program
@@ -64,6 +65,7 @@ class ConvertedProgram:
     notes: tuple[str, ...] = ()
     starts_anywhere: bool = False
     assumed: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def converted(
@@ -101,7 +103,7 @@ def converted(
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, unproven = (*notes, *unproven), ()
     rests_on = (*unproven, *dict.fromkeys(made.waits), *read.doubts)
-    return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on)
+    return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on, read.left_out)
 
 
 @dataclass(eq=False)

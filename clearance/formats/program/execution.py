@@ -29,7 +29,7 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.kept import Kept
 from clearance.formats.program.language import Language
-from clearance.formats.program.remarks import Remarks
+from clearance.formats.program.remarks import LEFT_OUT, Remarks
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -151,7 +151,7 @@ class Execution(Remarks):
             case Unreadable():
                 if not self.effects.leaves_out(one):
                     raise unreadable_word(one)
-                self.note("left out as asked", f"{one.word} ({one.line})")
+                self.note(LEFT_OUT, f"{one.word} ({one.line})")
         return None
 
     def evaluated(self, one: Expression) -> Any:
@@ -232,7 +232,7 @@ class Execution(Remarks):
 
     def _leave_out(self, call: Call) -> None:
         """Keeps that a call is left out, and makes variables unknown that it may have changed."""
-        self.note("left out as asked", f"{call.name} ({call.line})")
+        self.note(LEFT_OUT, f"{call.name} ({call.line})")
         self._forget(self.effects.changed_in([(Do(call.line, call),)]))
 
     def enter(self, routine: Routine) -> None:
@@ -350,7 +350,7 @@ class Execution(Remarks):
         culprit = next(self.effects.deciding(one.body), None)
         if culprit is not None or one.word not in self.skip:
             raise undecided(one, culprit, value)
-        self.note("left out as asked", f"{one.word} ({one.line})")
+        self.note(LEFT_OUT, f"{one.word} ({one.line})")
         self._forget(self.effects.changed_in([one.body]))
         return False
 

@@ -71,7 +71,9 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
         run.run(main.body)
         notes = (*run.notes, *language.notes())
-        return ControllerProgram(tuple(run.moves), notes, base=BASE, maker="fanuc")
+        return ControllerProgram(
+            tuple(run.moves), notes, base=BASE, maker="fanuc", left_out=run.left_out
+        )
 
 
 @dataclass(eq=False)

@@ -82,7 +82,9 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         notes = (*run.notes, *language.notes())
         bodies = [routine.body for routine in files.routines.values()]
         doubts = (*run.doubts, *language.root.doubts(asked.asked), *not_followed(bodies))
-        return ControllerProgram(tuple(run.moves), notes, doubts=doubts, maker="kuka")
+        return ControllerProgram(
+            tuple(run.moves), notes, doubts=doubts, maker="kuka", left_out=run.left_out
+        )
 
 
 def _entry(names: Sequence[str], asked: str | None) -> str:

@@ -59,7 +59,9 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
         notes = (*run.notes, *language.assumed, *_on_cycles(moves))
-        return ControllerProgram(tuple(moves), notes, doubts=(*run.doubts,), maker="abb")
+        return ControllerProgram(
+            tuple(moves), notes, doubts=(*run.doubts,), maker="abb", left_out=run.left_out
+        )
 
 
 def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 from clearance.world.notice import listed
 
+LEFT_OUT = "left out as asked"
+
 
 @dataclass(eq=False)
 class Remarks:
@@ -17,6 +19,11 @@ class Remarks:
 
     doubts: dict[str, None] = field(init=False, default_factory=dict)
     _passed: dict[str, dict[str, None]] = field(init=False, default_factory=dict)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What is left out as the case asks, and where."""
+        return tuple(self._passed.get(LEFT_OUT, ()))
 
     @property
     def notes(self) -> list[str]:

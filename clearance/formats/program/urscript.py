@@ -97,14 +97,14 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
             script.routines |= beside.routines
             data_beside += beside.body
         tool = asked.asked.tools.get(TCP)
-        language = _UrScript(None if tool is None else tool.matrix())
+        language = _UrScript(tool and tool.matrix())
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
         entry = _entry(script, asked.asked.entry)
         run.run(_outside(data_beside, run.routines))
         run.run(script.body if entry is None else _outside(script.body, run.routines))
         if entry is not None:
             run.run(script.routines[entry].body)
-        return ControllerProgram(tuple(run.moves), tuple(run.notes), maker="ur")
+        return ControllerProgram((*run.moves,), (*run.notes,), maker="ur", left_out=run.left_out)
 
 
 def _outside(body: Iterable[Statement], routines: Mapping[str, Routine]) -> list[Statement]:

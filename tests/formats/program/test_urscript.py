@@ -183,7 +183,7 @@ def test_the_function_that_is_asked_for_runs_once():
 def test_what_moves_nothing_is_left_out_by_name():
     text = "grip(20)\nwhile not get_digital_in(1):\nsync()\nend\n" + Q
     found = read("a.script", text, skip=["grip", "while"])
-    assert len(found.moves) == 1
+    assert len(found.moves) == 1 and found.left_out == ("grip (line 1)", "while (line 2)")
     assert any(
         re.search(r"left out as asked: grip \(line 1\), while \(line 2\)", one)
         for one in found.notes
