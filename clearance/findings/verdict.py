@@ -79,7 +79,8 @@ class Verdict:
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
-        broken: rules of the case that are broken, beside its limits of clearance.
+        broken: rules of the case that are broken, beside its limits of clearance. beside: these and the profiles
+            that are not kept.
         worst, worst_sample: the most critical moment, and step: of what is not waived where that is not clear,
             else of all. Whoever tells one moment of a run tells this one.
         nearest: the moment of least clearance of all, in one line, where that is not the most critical one.
@@ -106,6 +107,7 @@ class Verdict:
     disputed_by: str | None = None
     not_checked: tuple[str, ...] = ()
     broken: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
     nearest: str | None = None
     clocks: str = ""
     waived: tuple[str, ...] = ()
@@ -241,9 +243,12 @@ def verdict_of(
     faults = () if judgement is None else judgement.faults
     waiver_faults = tuple(coded_of(fault, UNUSED_WAIVER) for fault in faults)
     reasons += waiver_faults
-    profiles = (coded_of(profile_text(one), PROFILE) for one in record.profiles if not one.passed)
+    profiles = [coded_of(profile_text(one), PROFILE) for one in record.profiles if not one.passed]
     broken = [f"{one.kind}: {one.line}" for one in notices if one.severity is Severity.VIOLATED]
-    reasons += [*profiles, *broken, *(f"suspect {one.kind}: {one.line}" for one in suspects)]
+    beside = [*profiles, *broken]
+    passes = record.status_of(worst) in _PASSING
+    reasons = [*beside, *reasons] if passes else [*reasons, *beside]
+    reasons += (f"suspect {one.kind}: {one.line}" for one in suspects)
     if disputing is not None:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(coded_of(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
@@ -264,6 +269,7 @@ def verdict_of(
         self_clearance=self_clearance_lines(record),
         unproven_motion=not_proven,
         broken=tuple(broken),
+        beside=tuple(beside),
         nearest=_nearest(record, worst),
         clocks=_when(record.case),
         waived=() if judgement is None else waived_lines(judgement),

@@ -65,6 +65,8 @@ def _headline(model: ReportModel) -> Text:
     name, worst = record.case.name, verdict.worst
     if worst.touches:
         after = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"
+    elif verdict.beside and record.status_of(worst) in _STYLES:
+        after = f": {verdict.beside[0]}; {least_text(worst)} ({name})"
     elif limits.rules or verdict.nearest:
         after = f": {moment_line(record, worst)} ({name})"
     else:

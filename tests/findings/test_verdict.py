@@ -173,3 +173,12 @@ def test_facets_are_told_where_they_matter(shown):
     bound = [line for line in printed(one) if line.startswith("  facets")]
     assert bool(bound) == (one.worst.clearance < 0.01) == shown
     assert not shown or "0.1 mm" in bound[0]
+
+
+@pytest.mark.parametrize("name", ["profile", "rule"])
+def test_what_decides_beside_clearances_stands_in_the_headline(name):
+    one = CASES[name][0]
+    verdict, (headline, *_) = verdict_of(one), printed(one)
+    assert verdict.reasons[0] == verdict.beside[0]
+    assert headline.startswith("VIOLATED")
+    assert f": {verdict.beside[0]}; least clearance " in headline
