@@ -63,7 +63,7 @@ OF_THE_MODEL = [
     (with_obstacle("mesh: {file: a.stl, scale: 0}"), BadDimension, "scene.obstacles[0].mesh.scale: 0 is"),
     (with_obstacle("mesh: {file: a.stl, scale: [1, 2]}"), BadDimension, "mesh.scale: [1, 2]"),
     (CASE + "allow: [[base]]\n", BadShape, "allow[0]: ['base'] is given; 2 values are needed"),
-    (CASE + "allow: [base, post]\n", BadInput, "allow[0]: 'base' is given"),
+    (CASE + "allow: [base, post]\n", BadInput, "allow[0]: 'base' is given; rows of two patterns: [["),
     (CASE + "contact_response: 1\n", BadInput, "contact_response: 1 is given"),
     (CASE + "clock: comon\n", BadInput, "clock: 'comon' is given; did you mean 'common'?"),
     (CASE + "clock: {slack: -1}\n", BadInput, "clock.slack: -1 is given"),

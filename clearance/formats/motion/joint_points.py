@@ -344,6 +344,7 @@ def with_start(
             f"{start.place} has joint {names[i]!r} {off[i]:.3g} off the first point, at {first:g} s; "
             "the point is used"
         )
+        return replace(trajectory, has_way_in=trajectory.n_steps > 1), tuple(notes)
     return trajectory, tuple(notes)
 
 

@@ -34,6 +34,10 @@ class AllowedPair(PairRow):
     @model_validator(mode="before")
     @classmethod
     def _patterns_alone(cls, data: Any) -> Any:
+        if isinstance(data, str):
+            raise BadShape(
+                f"{data!r:.60} is given", valid="rows of two patterns: [[link, obstacle]]"
+            )
         if not isinstance(data, list):
             return data
         if len(data) != 2:
