@@ -112,11 +112,11 @@ class RobotReader:
         if given.srdf is None or not given.xacro or not given.srdf.endswith(XACRO):
             return
         path = resolved(given.srdf, self._folder)
-        if not self._files.is_held(path):
-            from clearance.formats.robot.urdf.xacro_file import hold_expanded
+        if not self._files.is_in_memory(path):
+            from clearance.formats.robot.urdf.xacro_file import expand_xacro
 
             with at(f"{field}.srdf"):
-                self.notes += hold_expanded(path, request.package_dirs, self._files)
+                self.notes += expand_xacro(path, request.package_dirs, self._files)
 
     def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
         if request not in self._read:

@@ -138,7 +138,7 @@ def with_attached_parts(case: Case, content: SceneContent) -> tuple[Case, list[s
     A part that the case says something of is left to it.
     """
     own = {carry.part for carry in case.carries}
-    attached = [one for one in content.held if one.part not in own]
+    attached = [one for one in content.attached if one.part not in own]
     if not attached:
         return case, []
     names = body_names(case)

@@ -91,4 +91,4 @@ def _print(out_file: Path, made: ConvertedFiles) -> None:
     for note in made.notes:
         click.echo(f"note: {shown(note)}")
     others = [str(out_file.parent / name) for name in made.files if name != out_file.name]
-    click.echo(f"written {out_file}: {made.told}" + (f"; {', '.join(others)}" if others else ""))
+    click.echo(f"written {out_file}: {made.amount}" + (f"; {', '.join(others)}" if others else ""))

@@ -66,7 +66,7 @@ class Format:
         sniff: whether the start of a file shows this format; without it, a suffix does.
         keys: of messages, which only this kind has; the first in a file says what it is.
         extra: of `clearance.extras`, which reading needs.
-        left_to: another kind, whose reader says best what is wrong with such a file.
+        read_by: another kind, whose reader says best what is wrong with such a file.
         what: such a file, in messages. hint: what to do with one where something else is wanted; `{name}` is its
             name.
         along: suffixes of files of the same stem that are read along, where they are there.
@@ -80,7 +80,7 @@ class Format:
     sniff: Callable[[FileStart], bool] | None = None
     keys: tuple[str, ...] = ()
     extra: str = ""
-    left_to: Kind | None = None
+    read_by: Kind | None = None
     what: str = ""
     hint: str = ""
     along: tuple[str, ...] = ()
@@ -197,10 +197,10 @@ FORMATS = (
            sniff=sniff.is_moveit_scene, what="a MoveIt scene",
            hint="call it .scene and name it in a case file: scene: {name}, beside robot and trajectory"),
     Format("CSV poses", Kind.POSES, (".csv", ANY), "motion.pose_table_file:read_csv_poses",
-           "motion.pose_writer:csv_text", sniff.is_pose_table, left_to=Kind.TRAJECTORY, what="a table of poses",
+           "motion.pose_writer:csv_text", sniff.is_pose_table, read_by=Kind.TRAJECTORY, what="a table of poses",
            hint="name it in a case file: moves: {name}, beside an obstacle's shape"),
     Format("CSV", Kind.TRAJECTORY, (".csv", ANY), "motion.trajectory_csv:read_csv",
-           "motion.trajectory_writer:csv_text", sniff.is_table, left_to=Kind.POSES, what="a table", hint=_MOTION),
+           "motion.trajectory_writer:csv_text", sniff.is_table, read_by=Kind.POSES, what="a table", hint=_MOTION),
     _message("JSON", (".json",)),
     _message("YAML", (".yaml", ".yml")),
     Format("ROS bag", Kind.TRAJECTORY, BAGS, "motion.rosbag_file:read_bag", extra="ros", what="a ROS bag",
@@ -299,7 +299,7 @@ def refuse_foreign(data: bytes, shown: str, kind: Kind) -> None:
     """
     known = formats_in(data, shown)
     fits = any(
-        one.left_to is kind or (one.kind is kind and one.takes(suffix_of(shown))) for one in known
+        one.read_by is kind or (one.kind is kind and one.takes(suffix_of(shown))) for one in known
     )
     if known and not fits:
         raise foreign(known[0], shown, WANTED[kind])

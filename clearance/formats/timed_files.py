@@ -88,8 +88,8 @@ def trajectory_of(
     with at(field), at(files.shown(path)):
         require_samples_to_loop(trajectory.n_steps, given.timing)
         given.timing.run_times(trajectory.times)
-    told = (f"{files.shown(path)}: {note}" for note in notes)
-    found = ReadTrajectory(trajectory, (*found.notes, *told))
+    named = (f"{files.shown(path)}: {note}" for note in notes)
+    found = ReadTrajectory(trajectory, (*found.notes, *named))
     wrap = given.wrap or (SHORTEST if recorded or given.gaps else trajectory.wrap)
     return found if wrap is None else _with_wrap(found, wrap, robot, files.shown(path))
 
@@ -98,9 +98,9 @@ def _with_wrap(found: ReadTrajectory, wrap: str, robot: Robot, shown: str) -> Re
     """The trajectory whose steps of more than half a turn go one way or the other, and a note on those."""
     asked = replace(found.trajectory, wrap=wrap)
     steps = long_steps(robot, asked)
-    told = listed([f"{one.joint!r} in {counted(one.n_steps, 'step')}" for one in steps], 8)
+    joints = listed([f"{one.joint!r} in {counted(one.n_steps, 'step')}" for one in steps], 8)
     way = "the shortest way" if wrap == SHORTEST else "as written"
-    note = f"{shown}: steps of more than half a turn go {way} (wrap: {wrap}): joint {told}"
+    note = f"{shown}: steps of more than half a turn go {way} (wrap: {wrap}): joint {joints}"
     return ReadTrajectory(meant(robot, asked), (*found.notes, note) if steps else found.notes)
 
 

@@ -273,7 +273,7 @@ def _require_same(gain: Gain, files: Mapping[str, bytes], folder: Path) -> None:
     """Nothing, if the files are read as the case that was measured; a fault of this program otherwise."""
     back = InputFiles(folder)
     for name, content in files.items():
-        back.hold(folder / name, content)
+        back.put(folder / name, content)
     found = answer(Question(read_case(folder / CASE, back)))
     if _figures(found) != _figures(gain.after):
         raise AssertionError("the changed case as it is written is not the one that was measured")

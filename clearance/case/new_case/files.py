@@ -254,7 +254,7 @@ def _read_back(contents: Mapping[str, bytes], folder: Path) -> Case:
     """What the files say, though they are not there yet."""
     files = InputFiles(folder)
     for name, content in contents.items():
-        files.hold(folder / name, content)
+        files.put(folder / name, content)
     return read_case(folder / CASE, files)
 
 

@@ -67,13 +67,13 @@ def cloud_from_bytes(
             suffix, valid = Path(name).suffix.lower(), ", ".join(suffixes_read(Kind.CLOUD))
             raise BadSyntax(f"unknown format of points {suffix!r}", valid=valid)
         found: Points = function_at(known.read)(data)
-        kept, notes = _returned(found.places)
-        if len(kept) > MOST_POINTS:
-            raise BadShape(f"the file has {len(kept):,} points", valid=f"{MOST_POINTS:,} at most")
+        places, notes = _returned(found.places)
+        if len(places) > MOST_POINTS:
+            raise BadShape(f"the file has {len(places):,} points", valid=f"{MOST_POINTS:,} at most")
         if in_millimetres and not found.in_metres:
-            kept = kept / 1000.0
-        shape = PointCloud(_scaled(kept, scale), radius)
-        notes += [*_on_copies(len(kept), shape), *_on_gaps(shape)]
+            places = places / 1000.0
+        shape = PointCloud(_scaled(places, scale), radius)
+        notes += [*_on_copies(len(places), shape), *_on_gaps(shape)]
         return LoadedCloud(shape, (*found.notes, *notes))
 
 

@@ -2,7 +2,7 @@
 
 Cells are parted by commas, semicolons (then decimals may have commas) or blanks, as the first row shows. A row
 that is longer or shorter than the first is refused; no count is stated, so that a file cut off between two rows
-cannot be told from a shorter one. Not for: how a table is parsed (`csv_table`).
+cannot be distinguished from a shorter one. Not for: how a table is parsed (`csv_table`).
 """
 
 from __future__ import annotations

@@ -47,11 +47,12 @@ class ConvertedFiles(NamedTuple):
 
     Attributes:
         files: contents by name, the target's and those that are to lie beside it.
-        told: how much it is. notes, warnings: a line each; warnings bear on what a check will find.
+        amount: of samples or poses, in words.
+        notes, warnings: a line each; warnings bear on what a check will find.
     """
 
     files: Mapping[str, bytes]
-    told: str
+    amount: str
     notes: tuple[str, ...]
     warnings: tuple[str, ...] = ()
 
@@ -95,8 +96,10 @@ def _trajectory(asked: Conversion) -> ConvertedFiles:
         content, changes = trajectory_writer.written(trajectory, asked.target.name)
     n_joints = counted(len(trajectory.joint_names), "joint")
     samples = trajectory_writer.samples_in(trajectory, asked.target.name)
-    told = f"{counted(len(samples.times), 'sample')} of {n_joints}"
-    return ConvertedFiles({asked.target.name: content}, told, (*notes, *_of_target(asked, changes)))
+    amount = f"{counted(len(samples.times), 'sample')} of {n_joints}"
+    return ConvertedFiles(
+        {asked.target.name: content}, amount, (*notes, *_of_target(asked, changes))
+    )
 
 
 def _refuse_holes(trajectory: Trajectory) -> None:
@@ -119,9 +122,9 @@ def _poses(asked: Conversion) -> ConvertedFiles:
     with at(asked.source.name):
         content, changes = pose_writer.written_poses(samples, asked.target.name)
     of_source = (f"{asked.source.name}: {note}" for note in notes)
-    told = counted(len(samples.times), "pose")
+    amount = counted(len(samples.times), "pose")
     return ConvertedFiles(
-        {asked.target.name: content}, told, (*of_source, *_of_target(asked, changes))
+        {asked.target.name: content}, amount, (*of_source, *_of_target(asked, changes))
     )
 
 

@@ -52,16 +52,16 @@ def converted_scene(asked: SceneRequest, target: Path) -> ConvertedScene:
     if not rows:
         raise BadShape("there is no obstacle in it", where=asked.shown, valid="a scene with some")
     _refuse_suspect(content, asked.shown)
-    left = [*_on_comments(asked), *_left_out(content)]
+    losses = [*_on_comments(asked), *_losses_of(content)]
     content = replace(content, notices=(*content.notices, *_on_padding(content, asked.shown)))
-    remarks = [line for one in left for line in one.remarks]
+    remarks = [line for one in losses for line in one.remarks]
     made = written_scene(content, asked, target.parent, "clearance convert", remarks)
     files = {target.name: made.content, **made.meshes}
     _read_back(files, target, asked)
     return ConvertedScene(
         files,
         len(rows),
-        (*content.notes, *(f"{asked.shown}: {one.note}" for one in left)),
+        (*content.notes, *(f"{asked.shown}: {one.note}" for one in losses)),
         tuple(notice.line for notice in content.notices),
     )
 
@@ -79,7 +79,7 @@ def _on_comments(asked: SceneRequest) -> Iterator[_Loss]:
         yield _Loss("left out: its comments")
 
 
-def _left_out(content: SceneContent) -> list[_Loss]:
+def _losses_of(content: SceneContent) -> list[_Loss]:
     """What makes clearances no larger where it is left out: more is measured then."""
     found = []
     pairs = [list(pair) for pair in content.allow if _is_of_obstacle(pair, content)]
@@ -88,13 +88,13 @@ def _left_out(content: SceneContent) -> list[_Loss]:
     n_links = len(content.allow) - len(pairs)
     if n_links:
         found.append(_Loss(f"left out: {n_links} pairs of links that may touch, which srdf says"))
-    if content.held:
+    if content.attached:
         found.append(_rows("carry", "that links carry what rides on them", list(_carries(content))))
     return found
 
 
 def _carries(content: SceneContent) -> Iterator[dict[str, Any]]:
-    for one in content.held:
+    for one in content.attached:
         touch = {"touch": list(one.touch)} if one.touch else {}
         yield {"part": one.part, "by": one.link, "from": 0.0, **touch}
 
@@ -140,7 +140,7 @@ def _read_back(files: Mapping[str, bytes], target: Path, asked: SceneRequest) ->
     """
     back = InputFiles(target.parent)
     for name, content in files.items():
-        back.hold(target.parent / name, content)
+        back.put(target.parent / name, content)
     scene = validated(Scene, read_scene(SceneRequest(target, back)).scene, target.name)
     with at(asked.shown):
         make_obstacles(scene.obstacles, target.parent, MeshStore(back))

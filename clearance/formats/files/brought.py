@@ -125,10 +125,10 @@ def brought_path(given: str) -> Path | None:
     raise _missing(provider.name, f"robot {rest!r}", rest, known)
 
 
-def _missing(provider: str, told: str, given: str, known: Iterable[str]) -> MissingFile:
+def _missing(provider: str, what: str, given: str, known: Iterable[str]) -> MissingFile:
     """What a package does not bring, with the nearest name of what it does."""
     valid = f"{nearest_name(given, known)} (`clearance robots {provider}` lists its robots)"
-    return MissingFile(f"{provider} brings no {told}", valid=valid)
+    return MissingFile(f"{provider} brings no {what}", valid=valid)
 
 
 def robot_names(folder: Path) -> dict[str, list[str]]:

@@ -1,4 +1,4 @@
-"""What is told of files that lie elsewhere than where they were named, and what was looked for in several
+"""Notes on files found elsewhere than where they were named, and the names that were searched in several
 places: does a name still lead to the same file?
 
 A file that appears in an earlier place of a search path changes a case none of whose files has changed. Not
@@ -49,8 +49,8 @@ class FoundFiles:
         """A line for each variable of the environment that led to files, and on paths of another machine."""
         notes = notes_on_variables(self._by_variable)
         if self._elsewhere:
-            told = _first(self._elsewhere, "is read from ")
-            notes.append(f"path of another machine, found in the same package here: {told}")
+            first = _first(self._elsewhere, "is read from ")
+            notes.append(f"path of another machine, found in the same package here: {first}")
         return notes
 
     def notices(self) -> list[Notice]:

@@ -42,7 +42,7 @@ class InputFiles:
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
         self._lookups: dict[str, Source] = {}
-        self._held: set[Path] = set()
+        self._in_memory: set[Path] = set()
 
     @cached_property
     def _brought(self) -> dict[str, str]:
@@ -67,14 +67,14 @@ class InputFiles:
             self._note(path, hashlib.sha256(data).hexdigest(), len(data))
         return self._contents[path]
 
-    def hold(self, path: Path, data: bytes) -> None:
+    def put(self, path: Path, data: bytes) -> None:
         """Keeps what is written out in another file as the content of a file of its own, which is not on disk."""
         self._contents[Path(os.path.abspath(path))] = data
-        self._held.add(Path(os.path.abspath(path)))
+        self._in_memory.add(Path(os.path.abspath(path)))
 
-    def is_held(self, path: Path) -> bool:
+    def is_in_memory(self, path: Path) -> bool:
         """Whether a file is not on disk."""
-        return Path(os.path.abspath(path)) in self._held
+        return Path(os.path.abspath(path)) in self._in_memory
 
     def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
         """Opens a file, again and again, and how many bytes it has; its checksum is remembered, its content only
@@ -84,7 +84,7 @@ class InputFiles:
             MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
-        if path in self._held:
+        if path in self._in_memory:
             data = self._contents[path]
             return lambda: BytesIO(data), len(data)
         content = b""

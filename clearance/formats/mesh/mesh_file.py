@@ -107,15 +107,15 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
 
 
 def _solid(triangles: Triangles) -> LoadedMesh:
-    kept, n_copies = without_copies(triangles)
+    single, n_copies = without_copies(triangles)
     off = triangles.off
-    given = Polyhedron.from_triangles(kept.vertices, kept.corners, excess=off, shortfall=off)
+    given = Polyhedron.from_triangles(single.vertices, single.corners, excess=off, shortfall=off)
     shape = given.outward()
     notes = [
         *_notes_on_facets(off),
         *triangles.notes,
         *_notes_on_copies(n_copies),
-        *_notes_on_flat(n_without_area(kept), shape),
+        *_notes_on_flat(n_without_area(single), shape),
         *_notes_on_turned(given),
         *_notes_on_sides(shape.component_two_sided),
         *_notes_on_open(shape.component_closed),
@@ -174,13 +174,13 @@ def _notes_on_open(closed: np.ndarray) -> list[str]:
 def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:
     if not n_flat:
         return []
-    n_kept = int(np.count_nonzero(~shape.normals.any(axis=1)))
+    n_faces = int(np.count_nonzero(~shape.normals.any(axis=1)))
     what = f"{_counted(n_flat, 'triangle', 'triangles')} {'has' if n_flat == 1 else 'have'} no area"
-    if not n_kept:
+    if not n_faces:
         covered = "is covered by its" if n_flat == 1 else "are covered by their"
         return [f"{what} and {covered} neighbours"]
-    kept = "1 is kept as a face" if n_kept == 1 else f"{n_kept} are kept as faces"
-    return [f"{what}; {kept}, because nothing else covers {'it' if n_kept == 1 else 'them'}"]
+    faces = "1 is kept as a face" if n_faces == 1 else f"{n_faces} are kept as faces"
+    return [f"{what}; {faces}, because nothing else covers {'it' if n_faces == 1 else 'them'}"]
 
 
 def _counted(n: int, one: str, many: str) -> str:

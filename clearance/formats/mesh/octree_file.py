@@ -142,11 +142,11 @@ def _binary_cells(body: bytes) -> tuple[list[Cell], int, int]:
         place += 2
         inner = []
         for i in range(8):
-            told = bits >> 2 * i & 3
-            n_nodes += told > 0
-            if told == _OCCUPIED:
+            state = bits >> 2 * i & 3
+            n_nodes += state > 0
+            if state == _OCCUPIED:
                 occupied.append(_child(cell, i))
-            elif told == _INNER:
+            elif state == _INNER:
                 inner.append(_child(cell, i))
         _require_bounded(occupied, inner)
         waiting += reversed(inner)
@@ -210,8 +210,8 @@ def _outside(tree: Octree) -> Triangles:
             )
     squares = np.concatenate(rows)
     _, kind, count = np.unique(squares[:, :5], axis=0, return_inverse=True, return_counts=True)
-    kept = squares[count[kind.reshape(-1)] == 1]
-    return _triangles(kept, tree.resolution)
+    outer = squares[count[kind.reshape(-1)] == 1]
+    return _triangles(outer, tree.resolution)
 
 
 def _triangles(squares: np.ndarray, resolution: float) -> Triangles:

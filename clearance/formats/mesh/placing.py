@@ -75,15 +75,15 @@ def joined(pieces: Iterable[tuple[Hashable, Triangles]]) -> Triangles:
         EmptyMesh: there is no triangle. BadSyntax: copies of too many triangles.
     """
     copies = CopyCount(MOST_COPIED_TRIANGLES, "triangles")
-    kept = []
+    of_triangles = []
     for key, piece in pieces:
         copies.count(key, len(piece.corners))
         if len(piece.corners):
-            kept.append(piece)
-    if not kept:
+            of_triangles.append(piece)
+    if not of_triangles:
         raise EmptyMesh("the mesh has no faces", valid="a scene that places at least one polygon")
-    starts = np.cumsum([0, *(len(piece.vertices) for piece in kept)])
+    starts = np.cumsum([0, *(len(piece.vertices) for piece in of_triangles)])
     return Triangles(
-        np.concatenate([piece.vertices for piece in kept]),
-        np.concatenate([p.corners + start for p, start in zip(kept, starts, strict=False)]),
+        np.concatenate([piece.vertices for piece in of_triangles]),
+        np.concatenate([p.corners + start for p, start in zip(of_triangles, starts, strict=False)]),
     )

@@ -103,7 +103,7 @@ class _MessageValues(PlainValues):
         return factor
 
 
-def told(value: object) -> str:
+def described(value: object) -> str:
     """What a value is, short; what aliases repeat without end is not gone through."""
     if isinstance(value, Fields):
         return f"a mapping of {', '.join(map(repr, value)) or 'nothing':.60}"

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from typing import Any
 
 from clearance.errors import BadInput, BadSyntax, UnknownKey, nearest_name
-from clearance.formats.message.documents import Fields, told, yaml_documents
+from clearance.formats.message.documents import Fields, described, yaml_documents
 
 _WORDS = {"true": True, "false": False}
 
@@ -24,7 +24,7 @@ def parameters(data: bytes) -> Fields:
     """
     documents = yaml_documents(data, _FACTORS)
     if len(documents) != 1 or not isinstance(documents[0], Fields):
-        what = told(documents[0]) if len(documents) == 1 else f"{len(documents)} documents"
+        what = described(documents[0]) if len(documents) == 1 else f"{len(documents)} documents"
         raise BadSyntax(f"{what} is given", valid="one mapping")
     return documents[0]
 
@@ -37,7 +37,7 @@ def number(given: Fields, key: str) -> float:
     """
     value = given[key]
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise BadInput(f"{told(value)} is given", where=key, valid="a finite number")
+        raise BadInput(f"{described(value)} is given", where=key, valid="a finite number")
     return float(value)
 
 
@@ -50,7 +50,7 @@ def truth(given: Fields, key: str) -> bool:
     value = given.get(key, "false")
     word = value.lower() if isinstance(value, str) else ""
     if word not in _WORDS:
-        raise BadInput(f"{told(value)} is given", where=key, valid="true or false")
+        raise BadInput(f"{described(value)} is given", where=key, valid="true or false")
     return _WORDS[word]
 
 
@@ -61,7 +61,7 @@ def mapping(value: Any) -> Fields:
         BadInput: something else.
     """
     if not isinstance(value, Fields):
-        raise BadInput(f"{told(value)} is given", valid="a mapping")
+        raise BadInput(f"{described(value)} is given", valid="a mapping")
     return value
 
 

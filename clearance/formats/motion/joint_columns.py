@@ -67,10 +67,10 @@ def without_followers(robot: Robot, found: Trajectory) -> tuple[Trajectory, list
     if not following:
         return found, []
     names = [one.joint.name for one in following]
-    kept = [i for i, name in enumerate(found.joint_names) if name not in names]
-    told = listed([repr(name) for name in names], 8)
-    return found.of_columns(kept), [
-        f"columns of mimic joints agree with the joints that they follow: {told}"
+    columns = [i for i, name in enumerate(found.joint_names) if name not in names]
+    joints = listed([repr(name) for name in names], 8)
+    return found.of_columns(columns), [
+        f"columns of mimic joints agree with the joints that they follow: {joints}"
     ]
 
 
@@ -104,23 +104,23 @@ def remedy(robot: Robot, columns: Sequence[Column]) -> str:
     own = [one for one in columns if one.name.removesuffix(VELOCITY) in joints]
     times = [one.header for one in columns if one.name == TIME]
     found = {one.name: one.header for one in own}
-    left = [joint for joint in joints if joint not in found]
-    renamed = _misspelt(left, columns, own) if own else {}
+    unfound = [joint for joint in joints if joint not in found]
+    renamed = _misspelt(unfound, columns, own) if own else {}
     if own and times and not renamed:
-        told = flow([*times, *(one.header for one in own)])
-        return f"columns: {told} reads these columns only (--columns)"
+        mapping = flow([*times, *(one.header for one in own)])
+        return f"columns: {mapping} reads these columns only (--columns)"
     found = found | renamed or _joints_alike(joints, columns)
-    told = flow({TIME: times[0] if times else _time_alike(columns)} | found)
-    return f"columns: {told} maps each joint to its column (--columns)"
+    mapping = flow({TIME: times[0] if times else _time_alike(columns)} | found)
+    return f"columns: {mapping} maps each joint to its column (--columns)"
 
 
 def _misspelt(
     joints: Sequence[str], columns: Sequence[Column], own: Sequence[Column]
 ) -> dict[str, str]:
     """The column for each joint that has none but is spelt nearly like one, with the same numbers."""
-    left, found = [one.header for one in columns if one not in own], {}
+    headers, found = [one.header for one in columns if one not in own], {}
     for joint in joints:
-        near = get_close_matches(joint, left, 1, ALIKE)
+        near = get_close_matches(joint, headers, 1, ALIKE)
         if near and re.findall(r"\d+", near[0]) == re.findall(r"\d+", joint):
             found[joint] = near[0]
     return found
@@ -144,8 +144,8 @@ def _joints_alike(joints: Sequence[str], columns: Sequence[Column]) -> dict[str,
             groups.setdefault(numbered[1], []).append(one.header)
     alike = [names for names in groups.values() if len(names) == len(joints) > 1]
     alike.sort(key=lambda names: "actual_q_" not in names[0])  # as robots of UR log where they are
-    taken = alike[0] if alike else [f"column of {joint}" for joint in joints]
-    return dict(zip(joints, taken, strict=True))
+    columns_of = alike[0] if alike else [f"column of {joint}" for joint in joints]
+    return dict(zip(joints, columns_of, strict=True))
 
 
 def _column_alike(joint: str, columns: Sequence[Column]) -> str | None:
@@ -214,9 +214,9 @@ def by_angles(
         columns |= zip((stem + angle for angle in ANGLES), np.unwrap(angles, axis=0).T, strict=True)
         n_rounded += n_own
     if turned:
-        told = listed([repr(stem) for stem in turned])
+        stems = listed([repr(stem) for stem in turned])
         notes.append(
-            f"quaternions of {told} are read as yaw, pitch and roll, each interpolated on its own"
+            f"quaternions of {stems} are read as yaw, pitch and roll, each interpolated on its own"
         )
     found = [columns[name] for name in joints_by_angles(names, turned)]
     return np.column_stack(found), [*notes, *note_on_rounded(n_rounded)]

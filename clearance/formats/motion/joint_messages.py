@@ -13,7 +13,7 @@ from clearance.errors import BadInput, BadMotion, BadShape, MissingKey, nearest_
 from clearance.formats.message.documents import (
     DEPTH,
     Fields,
-    told,
+    described,
 )
 
 _HOLDERS = (
@@ -79,10 +79,10 @@ def messages_in(documents: Sequence[Any], most: int) -> list[JointMessage]:
     for i, document in enumerate(documents):
         has_line = isinstance(document, Fields) and document.line
         before = f"document {i + 1}" if len(documents) > 1 and not has_line else ""
-        for n_looked, message in enumerate(_within(document, before)):
+        for n_visited, message in enumerate(_within(document, before)):
             if message is not None:
                 found.append(message)
-            if n_looked > most:
+            if n_visited > most:
                 raise BadShape("aliases repeat more than the file holds")
     if not found:
         raise _nothing_found(documents)
@@ -141,12 +141,12 @@ def _n_points(message: Fields) -> int:
 
 
 def _listed(messages: Sequence[JointMessage]) -> str:
-    told = [f"{i + 1}: {_told(message)}" for i, message in enumerate(messages[:_SHOWN])]
+    rows = [f"{i + 1}: {_described(message)}" for i, message in enumerate(messages[:_SHOWN])]
     more = len(messages) - _SHOWN
-    return "; ".join([*told, f"and {more} more"] if more > 0 else told)
+    return "; ".join([*rows, f"and {more} more"] if more > 0 else rows)
 
 
-def _told(message: JointMessage) -> str:
+def _described(message: JointMessage) -> str:
     names = message.trajectory.get("joint_names")
     n_joints = len(names) if isinstance(names, list) else 0
     line = message.trajectory.line
@@ -160,7 +160,7 @@ def _nothing_found(documents: Sequence[Any]) -> BadInput:
         return BadShape("the file is empty", valid="a JointTrajectory message is needed")
     first = documents[0]
     if not isinstance(first, Fields):
-        return MissingKey(f"{told(first)} is not a message", valid=_NEEDED)
+        return MissingKey(f"{described(first)} is not a message", valid=_NEEDED)
     if "joint_names" in first or "points" in first:
         lacks = "points" if "joint_names" in first else "joint_names"
         others = [key for key in first if key not in ("joint_names", "points")]

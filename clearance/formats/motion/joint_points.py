@@ -30,8 +30,8 @@ from clearance.errors import (
 from clearance.formats.message.documents import (
     MOST_JSON,
     Fields,
+    described,
     json_documents,
-    told,
     yaml_documents,
 )
 from clearance.formats.message.times import NANO, nanoseconds_in
@@ -103,7 +103,9 @@ def trajectory_of_message(
     listed = given["points"]
     where = _place(given, message.place, "points")
     if not isinstance(listed, list):
-        raise BadSyntax(f"{told(listed)} is given", where=where, valid="a list of points is needed")
+        raise BadSyntax(
+            f"{described(listed)} is given", where=where, valid="a list of points is needed"
+        )
     if len(listed) * (len(names) + 1) > most:
         raise BadShape("aliases repeat more than the file holds", where=where)
     points = []
@@ -129,11 +131,11 @@ def _place(nearest: Any, *keys: str) -> str:
 
 def _names(given: Any, joints_needed: bool) -> tuple[str, ...]:
     if not isinstance(given, list):
-        raise BadSyntax(f"{told(given)} is given", valid="a list of joint names is needed")
+        raise BadSyntax(f"{described(given)} is given", valid="a list of joint names is needed")
     for i, name in enumerate(given):
         if not isinstance(name, str) or not name:
             raise BadSyntax(
-                f"{told(name)} is given", where=f"[{i}]", valid="a name, in quotes if need be"
+                f"{described(name)} is given", where=f"[{i}]", valid="a name, in quotes if need be"
             )
         checked_name(name)
     if joints_needed and not given:
@@ -144,7 +146,7 @@ def _names(given: Any, joints_needed: bool) -> tuple[str, ...]:
 def _point(given: Any, n_joints: int) -> _Point:
     if not isinstance(given, Fields):
         raise BadSyntax(
-            f"{told(given)} is given", valid=_WHOLE if given == "..." else "a point is needed"
+            f"{described(given)} is given", valid=_WHOLE if given == "..." else "a point is needed"
         )
     for key in given:
         if key not in _KEYS:
@@ -161,11 +163,13 @@ def _point(given: Any, n_joints: int) -> _Point:
 
 def _numbers(given: Any, key: str, n_joints: int) -> list[float]:
     if not isinstance(given, list):
-        raise BadSyntax(f"{told(given)} is given", where=key, valid="a list of numbers is needed")
+        raise BadSyntax(
+            f"{described(given)} is given", where=key, valid="a list of numbers is needed"
+        )
     for i, value in enumerate(given):
         if type(value) not in (int, float):
             raise BadSyntax(
-                f"{told(value)} is given",
+                f"{described(value)} is given",
                 where=f"{key}[{i}]",
                 valid=_WHOLE if value == "..." else "a number is needed",
             )
@@ -188,7 +192,7 @@ def _seconds(given: Any) -> float:
     if nanoseconds is not None:
         return nanoseconds / NANO
     raise BadTime(
-        f"{told(given)} is given",
+        f"{described(given)} is given",
         valid="seconds, {sec, nanosec} or {secs, nsecs}, whole and fewer than 1e9 nanoseconds",
     )
 
@@ -308,7 +312,7 @@ def _by_name(joints: Fields, key: str) -> dict[str, float]:
         return {}
     fits = isinstance(names, list) and isinstance(values, list) and len(names) == len(values)
     if not fits or not all(type(one) in (int, float) and math.isfinite(one) for one in values):
-        raise BadShape(f"{key} is {told(values)}", valid="a finite number for each name")
+        raise BadShape(f"{key} is {described(values)}", valid="a finite number for each name")
     return {str(name): float(value) for name, value in zip(names, values, strict=True)}
 
 
@@ -372,9 +376,9 @@ def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:
         path = f"{place}.{key}".lstrip(".")
         if key == "header" and isinstance(value, Fields):
             if value.get("frame_id"):
-                yield f"{path}.frame_id {told(value['frame_id'])}"
+                yield f"{path}.frame_id {described(value['frame_id'])}"
         elif key not in read and key not in _OF_MESSAGE and _says(value):
-            yield f"{path} {told(value)}" if isinstance(value, str) else path
+            yield f"{path} {described(value)}" if isinstance(value, str) else path
 
 
 def _says(value: Any) -> bool:
@@ -391,9 +395,9 @@ def _says(value: Any) -> bool:
                 continue
             if isinstance(one, Fields) and isinstance(one.get("name"), list):
                 return True
-            waiting += one if isinstance(one, list) else _told_in(one)
+            waiting += one if isinstance(one, list) else _values_in(one)
     return False
 
 
-def _told_in(fields: Fields) -> Iterator[Any]:
+def _values_in(fields: Fields) -> Iterator[Any]:
     return (one for key, one in fields.items() if key not in _NAMES and key not in _OF_MESSAGE)

@@ -63,7 +63,7 @@ def trajectory_of_states(
 
     Args:
         turns: names the joints that the robot can move; empty if the robot is not known.
-        gaps: what joints do where they are not told of for long, one of `GAPS`; with "hold", after their last
+        gaps: what joints do where they have no message for long, one of `GAPS`; with "hold", after their last
             message too.
         wrapping: joints of which whole turns may have been taken off; any where it is not known.
 
@@ -72,19 +72,21 @@ def trajectory_of_states(
             message.
     """
     joints = _joints(states)
-    kept = [name for name in joints if name in turns or not turns]
-    if not kept:
+    settable = [name for name in joints if name in turns or not turns]
+    if not settable:
         raise BadMotion(
             f"none of the joints {listed([*joints], 8)} can be moved",
             valid=f"the robot moves {listed([*turns], 8)}",
         )
-    for name in kept:
+    for name in settable:
         if not joints[name].times:
             raise NotFinite(
                 f"no message has a finite position of joint {name!r}", valid="one at least"
             )
-    start, end = _known_span({name: joints[name] for name in kept}, ends_hold=gaps == HOLD)
-    tracks = tracks_of({name: joints[name].samples for name in kept}, NANO)
+    start, end = _known_span(
+        {name: joints[name] for name in settable}, stays_after_end=gaps == HOLD
+    )
+    tracks = tracks_of({name: joints[name].samples for name in settable}, NANO)
     holes = holes_of(tracks, gaps, (start, end), NANO)
     holes += tuple(unknown_ends(tracks, (start, end), NANO))
     if gaps == HOLD:
@@ -96,10 +98,10 @@ def trajectory_of_states(
         for name, track in tracks.items()
     ]
     trajectory = Trajectory(
-        (times - start) / NANO, tuple(kept), np.column_stack(positions), holes=holes, wrap=SHORTEST,
+        (times - start) / NANO, tuple(settable), np.column_stack(positions), holes=holes, wrap=SHORTEST,
         began=start / NANO,
     )  # fmt: skip
-    return ReadTrajectory(trajectory, tuple(_notes(states, joints, kept, (start, end))))
+    return ReadTrajectory(trajectory, tuple(_notes(states, joints, settable, (start, end))))
 
 
 def _positions_at(track: Track, times: np.ndarray, wraps: bool) -> np.ndarray:
@@ -117,7 +119,7 @@ def _positions_at(track: Track, times: np.ndarray, wraps: bool) -> np.ndarray:
 
 
 def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
-    """By name, in the order in which they are first told of."""
+    """By name, in the order of their first messages."""
     joints: dict[str, _Joint] = {}
     for i, state in enumerate(states):
         where = f"message {i + 1}"
@@ -142,21 +144,23 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
     return joints
 
 
-def _known_span(joints: Mapping[str, _Joint], *, ends_hold: bool) -> tuple[int, int]:
+def _known_span(joints: Mapping[str, _Joint], *, stays_after_end: bool) -> tuple[int, int]:
     """From when until when [ns] all joints are known.
 
     Args:
-        ends_hold: True where a joint is known after its last message; then it may be told of long before others.
+        stays_after_end: True where a joint is known after its last message, which may then be long before others.
 
     Raises:
         BadInput: that is never, or too little of the recording.
     """
     last_to_begin = max(joints, key=lambda name: joints[name].times[0])
-    first_to_end = (max if ends_hold else min)(joints, key=lambda name: joints[name].times[-1])
+    first_to_end = (max if stays_after_end else min)(
+        joints, key=lambda name: joints[name].times[-1]
+    )
     start, end = joints[last_to_begin].times[0], joints[first_to_end].times[-1]
     times = [time for joint in joints.values() for time in (joint.times[0], joint.times[-1])]
     whole = max(times) - min(times)
-    most = whole if ends_hold else MOST_LEFT_OUT * whole
+    most = whole if stays_after_end else MOST_LEFT_OUT * whole
     if end < start or whole - (end - start) > most:
         raise BadMotion(
             f"joint {last_to_begin!r} is known from {(start - min(times)) / NANO:g} s on, {first_to_end!r} until "
@@ -169,7 +173,7 @@ def _known_span(joints: Mapping[str, _Joint], *, ends_hold: bool) -> tuple[int, 
 def _notes(
     states: Sequence[JointState],
     joints: Mapping[str, _Joint],
-    kept: Sequence[str],
+    settable: Sequence[str],
     span: tuple[int, int],
 ) -> list[str]:
     notes = ["recorded joint states: joints move linearly between them, from the first at 0 s"]
@@ -180,19 +184,19 @@ def _notes(
         )
     unknown = [
         f"{name!r} in message {listed([*map(str, joints[name].unknown)])}"
-        for name in kept
+        for name in settable
         if joints[name].unknown
     ]
     if unknown:
         notes.append(f"positions that are NaN or infinite are left out: {listed(unknown, 8)}")
     if any(state.has_velocities for state in states):
         notes.append("recorded velocities are not followed: they are as measured, noise and all")
-    if len({tuple(joints[name].times) for name in kept}) > 1:
+    if len({tuple(joints[name].times) for name in settable}) > 1:
         notes.append("messages have different joints: each joint has a sample at the times of all")
     n_out = sum(not span[0] <= state.nanoseconds <= span[1] for state in states)
     if n_out:
         notes.append(f"{n_out} messages at the ends are left out, where not all joints are known")
-    left = [name for name in joints if name not in kept]
-    if left:
-        notes.append(f"joints that cannot be set are left out: {listed(left, 8)}")
+    others = [name for name in joints if name not in settable]
+    if others:
+        notes.append(f"joints that cannot be set are left out: {listed(others, 8)}")
     return notes

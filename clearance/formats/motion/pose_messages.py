@@ -15,8 +15,8 @@ from clearance.errors import BadMotion, BadShape, BadTime, MissingKey, at
 from clearance.formats.message.documents import (
     MOST_JSON,
     Fields,
+    described,
     json_documents,
-    told,
     yaml_documents,
 )
 from clearance.formats.message.times import NANO, nanoseconds_in
@@ -80,7 +80,7 @@ def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
 def _poses_in(given: Any) -> Iterator[_StampedPose]:
     """The poses of a message."""
     if not isinstance(given, Fields):
-        raise MissingKey(f"{told(given)} is not a message", valid=_NEEDED)
+        raise MissingKey(f"{described(given)} is not a message", valid=_NEEDED)
     if "poses" in given or "transforms" in given:
         key = "poses" if "poses" in given else "transforms"
         for i, one in enumerate(items(given, key)):
@@ -92,12 +92,12 @@ def _poses_in(given: Any) -> Iterator[_StampedPose]:
 
 def _pose(given: Any) -> _StampedPose:
     if not isinstance(given, Fields) or not {"header"} < set(given):
-        raise MissingKey(f"{told(given)} has no header with a time", valid=_NEEDED)
+        raise MissingKey(f"{described(given)} has no header with a time", valid=_NEEDED)
     header = message(given, "header")
     time = nanoseconds_in(header.get("stamp"))
     if time is None:
         raise BadTime(
-            f"{told(header.get('stamp'))} is given",
+            f"{described(header.get('stamp'))} is given",
             where="header.stamp",
             valid="{sec, nanosec} or {secs, nsecs}",
         )

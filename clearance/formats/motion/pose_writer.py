@@ -107,7 +107,7 @@ def _header(nanoseconds: int, frame: str) -> Message:
 
 
 def _lost_in_tables(samples: PoseSamples) -> list[str]:
-    """The notes on what a table has no place for; of frames the reader told."""
+    """The notes on what a table has no place for; the reader noted frames."""
     of = [f"the poses are those of frame {samples.child!r}, which a table cannot say"]
     seconds, rest = divmod(samples.stamp, NANO)
     since = [f"the first was stamped {seconds}.{rest:09d} s, which a table cannot say"]

@@ -88,7 +88,7 @@ def _median(lengths: np.ndarray) -> float:
 
 
 def unknown_ends(tracks: Mapping[str, Track], span: tuple[float, float], unit: float) -> list[Hole]:
-    """Where some joints are told of and others not yet, or no more, longer than by chance: nothing is measured.
+    """Where messages name some joints, and others not yet or no more, longer than by chance: nothing is measured.
 
     Args:
         span: in which all are. unit: as in `holes_of`.

@@ -72,8 +72,8 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
     refuse_standing_time(times[:, 0], table)
     notes = [*_notes(table, choice), *notes_on_names(header, columns), *note_on_units(columns)]
     if turned:
-        moving[0], told = by_angles(moving[0], joints, turned, table)
-        joints, notes = joints_by_angles(joints, turned), [*notes, *told]
+        moving[0], on_angles = by_angles(moving[0], joints, turned, table)
+        joints, notes = joints_by_angles(joints, turned), [*notes, *on_angles]
     velocities = moving[1] if len(moving) > 1 else None
     trajectory = Trajectory(times[:, 0], joints, moving[0], velocities)
     return ReadTrajectory(trajectory, tuple(notes))

@@ -110,9 +110,9 @@ def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded
     except ClearanceError as error:
         raise BadMotion(f"the trajectory cannot be written as {shown!r}: {error}") from None
     asked = samples_in(trajectory, shown)
-    told, read = _columns(asked), _columns(back.written)
+    given, read = _columns(asked), _columns(back.written)
     same = back.joint_names == trajectory.joint_names and all(
-        _same(told[key], read[key]) for key in told
+        _same(given[key], read[key]) for key in given
     )
     if not (same and (is_rounded or np.array_equal(back.written.times, asked.times))):
         raise BadMotion(

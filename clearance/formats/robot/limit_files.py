@@ -16,7 +16,7 @@ from typing import NamedTuple, TypeVar
 
 from clearance.errors import BadDimension, BadRobot, MissingKey, UnknownJoint, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.message.documents import Fields, told
+from clearance.formats.message.documents import Fields, described
 from clearance.formats.message.parameter_values import (
     mapping,
     number,
@@ -121,8 +121,8 @@ def _notes_on_limits(
         "velocity": [name for name, one in known.items() if one.motion.velocity < math.inf],
         "acceleration": [name for name, one in known.items() if one.motion.acceleration < math.inf],
     }
-    taken = [f"{kind} of {_joints(names, robot)}" for kind, names in kinds.items() if names]
-    yield f"limits taken: {'; '.join(taken) or 'none'}"
+    by_kind = [f"{kind} of {_joints(names, robot)}" for kind, names in kinds.items() if names]
+    yield f"limits taken: {'; '.join(by_kind) or 'none'}"
     wider = [name for name, one in known.items() if _is_wider(one, by_name[name])]
     if wider:
         yield f"wider than the robot file's, which stay: position of {listed(wider, 8)}"
@@ -181,10 +181,10 @@ def _notes_on_tolerances(
     ]
     free = [name for name, one in known.items() if one.trajectory == math.inf]
     loose = _joints(free, robot)
-    told = f"controllers {listed([one.name for one in controllers], 4)} let joints leave the path: "
-    told += f"{listed(bounded, 8)} at most" if bounded else ""
-    told += ("; " if bounded and free else "") + (f"{loose} as far as they go" if free else "")
-    yield f"{told}; no clearance is lessened by that"
+    text = f"controllers {listed([one.name for one in controllers], 4)} let joints leave the path: "
+    text += f"{listed(bounded, 8)} at most" if bounded else ""
+    text += ("; " if bounded and free else "") + (f"{loose} as far as they go" if free else "")
+    yield f"{text}; no clearance is lessened by that"
     joints = [name for one in controllers for name in one.tolerances if name not in known]
     if joints:
         yield f"joints that the robot cannot move are left out: {listed(joints, 8)}"
@@ -320,7 +320,7 @@ def _tolerances(body: Fields) -> dict[str, PathTolerance]:
     """Of each joint that the controller names."""
     joints = body.get("joints", [])
     if not isinstance(joints, list) or not all(isinstance(joint, str) for joint in joints):
-        raise BadRobot(f"{told(joints)} is given", where="joints", valid="a list of names")
+        raise BadRobot(f"{described(joints)} is given", where="joints", valid="a list of names")
     found = {checked_name(joint): PathTolerance() for joint in joints}
     with at("constraints"):
         for name, given in mapping(body.get("constraints", Fields())).items():

@@ -222,12 +222,12 @@ def positions_in_states(known: NamedStates, names: Sequence[str], robot: Robot) 
         positions: dict[str, float] = {}
         for state in asked:
             _take(positions, state, robot)
-    taken = [state.full_name for state in asked]
-    left = [name for state in asked for name in state.positions if name not in positions]
+    states_text = [state.full_name for state in asked]
+    unsettable = [name for state in asked for name in state.positions if name not in positions]
     notes = [
-        f"{shown}: of state {listed(taken)}, joints that cannot be set are left out: {listed(left, 8)}"
+        f"{shown}: of state {listed(states_text)}, joints that cannot be set are left out: {listed(unsettable, 8)}"
     ]
-    return StatePositions(positions, tuple(notes if left else ()))
+    return StatePositions(positions, tuple(notes if unsettable else ()))
 
 
 def read_states(path: Path, files: InputFiles) -> list[GroupState]:

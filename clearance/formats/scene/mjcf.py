@@ -35,14 +35,14 @@ def read_mjcf_scene(asked: SceneRequest) -> SceneContent:
         document = mjcf_document(asked.path, asked.files)
         model, shapes = compiled(document, asked.package_dirs, MeshStore(asked.files))
         poses = _body_poses(model)
-        kept = [geom for geom in model.geoms if geom.collides]
-        if not kept:
+        colliding = [geom for geom in model.geoms if geom.collides]
+        if not colliding:
             raise BadScene("none of its geoms collides", valid="geoms with contype or conaffinity")
         obstacles = [
             {"name": _name(model, geom), **_row(geom, poses[geom.body], shapes, asked)}
-            for geom in kept
+            for geom in colliding
         ]
-    notes = [f"{asked.shown}: {note}" for note in _notes(model, kept)]
+    notes = [f"{asked.shown}: {note}" for note in _notes(model, colliding)]
     return SceneContent({"obstacles": obstacles}, (*notes, *shapes.notes()), _notices(model))
 
 
@@ -79,7 +79,7 @@ def _mesh(name: str, shapes: MjcfShapes, asked: SceneRequest) -> dict[str, Any]:
         return {"file": file, "scale": mesh.scale.tolist(), "collada_up_axis": "ros"}
     vertices, triangles = triangles_of(shapes.mesh(name)[0])
     file = f"{asked.path.name}.{_as_file_name(name)}.off"
-    asked.files.hold(asked.path.parent / file, off_text(vertices.tolist(), triangles.tolist()))
+    asked.files.put(asked.path.parent / file, off_text(vertices.tolist(), triangles.tolist()))
     return {"file": file}
 
 
@@ -88,14 +88,14 @@ def _as_file_name(name: str) -> str:
     return re.sub(r"[^\w.-]", lambda found: f"%{ord(found[0]):02x}", name)
 
 
-def _notes(model: MjcfModel, kept: list[MjcfGeom]) -> list[str]:
+def _notes(model: MjcfModel, colliding: list[MjcfGeom]) -> list[str]:
     notes = []
-    n_left_out = len(model.geoms) - len(kept)
+    n_left_out = len(model.geoms) - len(colliding)
     if n_left_out:
         notes.append(
             f"{n_left_out} geoms that collide with nothing (contype, conaffinity) are left out"
         )
-    planes = [repr(geom.name) for geom in kept if geom.kind == "plane"]
+    planes = [repr(geom.name) for geom in colliding if geom.kind == "plane"]
     if planes:
         notes.append(note_on_planes(planes))
     return notes

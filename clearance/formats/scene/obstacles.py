@@ -33,16 +33,16 @@ def make_obstacles(
     require_own_names("obstacle", [item.name for item in given])
     obstacles: list[Obstacle] = []
     notes: list[tuple[str, str]] = []
-    told: list[str] = []
+    on_poses: list[str] = []
     for i, item in enumerate(given):
         with at(f"obstacles[{i}]"):
             body, body_notes = _body(item, folder, meshes)
             obstacle, pose_notes = _placed(item, body, folder, meshes.files)
         obstacles.append(obstacle)
         notes += [(body.origin, note) for note in body_notes]
-        told += pose_notes
-    told += note_on_rounded(sum(item.pose.is_rounded for item in given))
-    return tuple(obstacles), [*grouped(notes), *told]
+        on_poses += pose_notes
+    on_poses += note_on_rounded(sum(item.pose.is_rounded for item in given))
+    return tuple(obstacles), [*grouped(notes), *on_poses]
 
 
 def _placed(
@@ -51,8 +51,8 @@ def _placed(
     """The body where it stands, or on what it rides, or as it moves; and notes on files of poses."""
     pose, moves, notes = item.pose.matrix(), None, list[str]()
     if item.moves is not None:
-        moves, told = pose_table_of(item.moves, "moves", folder, files)
-        notes += [f"{item.moves.file}: {note}" for note in told]
+        moves, on_moves = pose_table_of(item.moves, "moves", folder, files)
+        notes += [f"{item.moves.file}: {note}" for note in on_moves]
     if item.on is not None:
         return Obstacle(body, mount=Mount(item.on, pose), moves=moves, padding=item.padding), notes
     return Obstacle(body, pose, moves=moves, padding=item.padding), notes

@@ -49,7 +49,7 @@ def includes_of(given: Mapping[str, str], folder: Path) -> dict[str, str]:
     }
 
 
-class HeldPart(NamedTuple):
+class AttachedPart(NamedTuple):
     """An obstacle that a link holds, and the links and objects that it may touch meanwhile."""
 
     part: str
@@ -65,7 +65,7 @@ class SceneContent:
         scene: what stands under `scene:`, files relative to the folder of the scene's file.
         notes: what was left out or decided, one line each. notices: what bears on the verdict.
         allow: names of bodies that may touch, in any order, of which some may not be there.
-        link_padding: [m] by link. held: obstacles on links that hold them.
+        link_padding: [m] by link. attached: obstacles that links carry.
         frame: what its poses are given in, if its file says so; it is taken for the world.
     """
 
@@ -74,7 +74,7 @@ class SceneContent:
     notices: tuple[Notice, ...] = ()
     allow: tuple[tuple[str, str], ...] = ()
     link_padding: dict[str, float] = field(default_factory=dict)
-    held: tuple[HeldPart, ...] = ()
+    attached: tuple[AttachedPart, ...] = ()
     frame: str = ""
 
 

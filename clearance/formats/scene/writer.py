@@ -38,7 +38,7 @@ def written_scene(
     """
     paths = _Paths(asked, folder)
     lines = [*_head(content, asked.shown, made_by, remarks), *_obstacles(content, paths)]
-    return WrittenScene("\n".join([*lines, ""]).encode(), paths.held)
+    return WrittenScene("\n".join([*lines, ""]).encode(), paths.contents)
 
 
 def rows_of(content: SceneContent) -> list[dict[str, Any]]:
@@ -68,16 +68,16 @@ class _Paths:
 
     def __init__(self, asked: SceneRequest, folder: Path) -> None:
         self._asked, self._folder = asked, folder
-        self.held: dict[str, bytes] = {}
+        self.contents: dict[str, bytes] = {}
 
     def written(self, given: str) -> str:
         """How a path is written in the folder."""
         if is_brought(given):
             return given
         path, files = self._asked.path.parent / given, self._asked.files
-        if not files.is_held(path):
+        if not files.is_in_memory(path):
             return path_from(self._folder, path)
-        self.held[path.name] = files.read(path)
+        self.contents[path.name] = files.read(path)
         return path.name
 
 

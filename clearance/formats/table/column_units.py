@@ -153,12 +153,12 @@ def in_own_units(values: np.ndarray, columns: Sequence[Column]) -> None:
 
 def note_on_units(columns: Sequence[Column]) -> list[str]:
     """A line that says which columns are in which other unit."""
-    told = []
+    parts = []
     for key, unit in UNITS.items():
         names = [repr(column.name) for column in columns if column.unit == key]
         if unit.word and names:
-            told.append(f"in {unit.word}: {listed(names, 8)}")
-    return [f"read {'; '.join(told)}"] if told else []
+            parts.append(f"in {unit.word}: {listed(names, 8)}")
+    return [f"read {'; '.join(parts)}"] if parts else []
 
 
 def _column(header: str, turns: Mapping[str, bool]) -> Column:
@@ -239,7 +239,7 @@ def notes_on_names(header: Sequence[str], columns: Sequence[Column]) -> list[str
         if one.name == TIME and not re.match(r"time\b|time_", one.header.lower())
     ]
     used = {one.header for one in columns}
-    left = [repr(name) for name in header if name not in used and name != EMPTY]
-    notes += [f"columns not read: {listed(left, 8)}"] if left else []
+    unread = [repr(name) for name in header if name not in used and name != EMPTY]
+    notes += [f"columns not read: {listed(unread, 8)}"] if unread else []
     notes += ["the empty column at the end is left out"] if EMPTY in header else []
     return notes

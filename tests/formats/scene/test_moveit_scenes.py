@@ -182,7 +182,9 @@ def test_wildcards_in_names_of_a_matrix_or_of_touch_links_are_letters(tmp_path, 
     assert allowed == {name}
     held = MESSAGE.replace("touch_links: [upper]", f'touch_links: ["{name}"]')
     assert all(
-        not matches("post", one) for part in content_of(tmp_path, held).held for one in part.touch
+        not matches("post", one)
+        for part in content_of(tmp_path, held).attached
+        for one in part.touch
     )
 
 

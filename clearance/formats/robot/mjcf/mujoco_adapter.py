@@ -203,9 +203,9 @@ class MjcfSpec:
             mesh.scale, mesh.refpos, mesh.refquat = [1, 1, 1], [0, 0, 0], [1, 0, 0, 0]
             vertices, triangles = surfaces.get(mesh.name, (_STAND_IN, _NO_CORNERS))
             mesh.uservert, mesh.userface = vertices.ravel(), triangles.ravel()
-            for beside in _BESIDE_POINTS:
-                if hasattr(mesh, beside):
-                    setattr(mesh, beside, [])
+            for attribute in _BESIDE_POINTS:
+                if hasattr(mesh, attribute):
+                    setattr(mesh, attribute, [])
         with _refused(self._mujoco):
             compiled = spec.compile()
         return _ModelReader(self._mujoco, spec.modelname, compiled).model()

@@ -63,7 +63,7 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         refuse_other_geometry(kinds, request.geometry)
         measured = _measured(model, kinds, request.geometry)
         bodies = [_body(name, measured[name], shapes) for name in link_names if measured.get(name)]
-    told = [*notes, *notes_on_parts(ordered), *_notes(model, kinds, measured)]
+    lines = [*notes, *notes_on_parts(ordered), *_notes(model, kinds, measured)]
     robot = Robot(
         model.name or "robot",
         link_names,
@@ -75,8 +75,8 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         reference=reference_of(model),
     )
     filters = _filters(model, kinds, request.geometry, robot)
-    told = [f"{request.path.name}: {note}" for note in (*told, *filters.notes())]
-    return replace(robot, notes=(*shapes.notes(), *told), own_matrix=filters.matrix)
+    lines = [f"{request.path.name}: {note}" for note in (*lines, *filters.notes())]
+    return replace(robot, notes=(*shapes.notes(), *lines), own_matrix=filters.matrix)
 
 
 def _filters(
@@ -166,8 +166,8 @@ def _notes(
             if n == 1
             else f"{n} geoms of the world itself stand"
         )
-        told = f"{what} with the robot, as its link {WORLD_LINK!r}"
-        notes.append(f"{told}; self_clearance: true measures the other links against it")
+        text = f"{what} with the robot, as its link {WORLD_LINK!r}"
+        notes.append(f"{text}; self_clearance: true measures the other links against it")
     planes = [repr(geom.name) for geom in _planes(model)]
     if planes:
         notes.append(note_on_planes(planes))
@@ -181,8 +181,8 @@ def _notes(
         if geom.kind != "plane"
     )
     if counted:
-        told = ", ".join(f"{n} {what}" for what, n in sorted(counted.items()))
-        notes.append(f"geoms: {told}")
+        text = ", ".join(f"{n} {what}" for what, n in sorted(counted.items()))
+        notes.append(f"geoms: {text}")
     moving = [repr(body.name) for body in model.bodies if body.is_mocap]
     if moving:
         notes.append(f"mocap bodies stay where the file has them: {listed(moving, 6)}")
@@ -236,13 +236,13 @@ class MjcfFilters:
     def notes(self) -> Iterator[str]:
         """A line for each filter that leaves out more than neighbours, and for pairs of `<pair>`."""
         for reason in (EXCLUDE, PARENT, BITS):
-            told = [f"{a} - {b}" for a, b, why in self.rows if why == reason]
-            if told:
-                yield f"self_clearance without srdf leaves out ({reason}): {listed(told, 6)}"
+            pairs = [f"{a} - {b}" for a, b, why in self.rows if why == reason]
+            if pairs:
+                yield f"self_clearance without srdf leaves out ({reason}): {listed(pairs, 6)}"
         if self._asked_for:
             bodies = self.model.bodies
-            told = [f"{bodies[a].name} - {bodies[b].name}" for a, b in sorted(self._asked_for)]
-            yield f"self_clearance without srdf measures, as <pair> says: {listed(told, 6)}"
+            pairs = [f"{bodies[a].name} - {bodies[b].name}" for a, b in sorted(self._asked_for)]
+            yield f"self_clearance without srdf measures, as <pair> says: {listed(pairs, 6)}"
 
     @cached_property
     def _geoms(self) -> dict[int, list[MjcfGeom]]:

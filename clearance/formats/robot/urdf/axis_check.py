@@ -61,12 +61,14 @@ def axis_notices(
             by_joints.append(repr(name))
         elif turn.is_away(turn.other, points) and not turn.is_away(turn.chosen, points):
             against.append(repr(name))
-    told = []
+    notices = []
     if by_picture:
-        told.append(_notice(by_picture, "visual and collision shapes", "apart", "together", reader))
+        notices.append(
+            _notice(by_picture, "visual and collision shapes", "apart", "together", reader)
+        )
     if len(by_joints) > len(against):
-        told.append(_notice(by_joints, "shapes", "away from their joints", "at them", reader))
-    return told
+        notices.append(_notice(by_joints, "shapes", "away from their joints", "at them", reader))
+    return notices
 
 
 class _Turn(NamedTuple):

@@ -24,7 +24,7 @@ from clearance.world.names import checked_name, require_own_names
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
-_KEPT_BELOW = {
+_NEEDED_BELOW = {
     "robot": ("link", "joint"),
     "link": ("collision", "visual"),
     "collision": ("origin", "geometry"),
@@ -188,10 +188,10 @@ def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def _reduce(element: Element) -> None:
-    kept = _KEPT_BELOW.get(element.tag)
+    needed = _NEEDED_BELOW.get(element.tag)
     for child in list(element):
-        if kept is not None and child.tag not in kept:
-            _require_unread(child, kept)
+        if needed is not None and child.tag not in needed:
+            _require_unread(child, needed)
             element.remove(child)
         else:
             _reduce(child)

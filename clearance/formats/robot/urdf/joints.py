@@ -118,8 +118,8 @@ def _on_no_limits(joints: list[Joint]) -> list[str]:
         for joint in joints
         if joint.kind in needed and joint.part_of is None and joint.upper == np.inf
     ]
-    told = f"joints without <limit>, taken as unlimited: {listed(names, 8)}"
-    return [told] if names else []
+    note = f"joints without <limit>, taken as unlimited: {listed(names, 8)}"
+    return [note] if names else []
 
 
 def _velocity(element: Element | None) -> float:

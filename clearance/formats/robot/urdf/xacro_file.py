@@ -145,11 +145,11 @@ def _require_asked(given: Mapping[str, str], asked: list[str], shown: str) -> No
 
 def _note(shown: str, others: list[str], given: Mapping[str, str], used: Mapping[str, str]) -> str:
     also = f" and in {listed(others, 6)}" if others else ""
-    told = f"{shown}: xacro evaluated it, with the Python in it{also}"
+    text = f"{shown}: xacro evaluated it, with the Python in it{also}"
     own = [f"{name}:={value}" for name, value in given.items()]
     defaults = [f"{name}:={value}" for name, value in used.items() if name not in given]
-    told += f"; arguments {listed(own, 12)}" if own else ""
-    return told + (f"; defaults {listed(defaults, 12)}" if defaults else "")
+    text += f"; arguments {listed(own, 12)}" if own else ""
+    return text + (f"; defaults {listed(defaults, 12)}" if defaults else "")
 
 
 def _shown(args: Mapping[str, str], files: InputFiles) -> dict[str, str]:
@@ -160,14 +160,14 @@ def _shown(args: Mapping[str, str], files: InputFiles) -> dict[str, str]:
     }
 
 
-def hold_expanded(path: Path, package_dirs: Sequence[Path], files: InputFiles) -> tuple[str, ...]:
+def expand_xacro(path: Path, package_dirs: Sequence[Path], files: InputFiles) -> tuple[str, ...]:
     """Lets `files` give what xacro makes of a file beside the robot's in place of its content; notes on that.
 
     Raises:
         BadInput: as `expanded`.
     """
     made = expanded(RobotRequest(path, tuple(package_dirs), xacro=True), files)
-    files.hold(path, made.urdf)
+    files.put(path, made.urdf)
     return made.notes
 
 

@@ -68,9 +68,9 @@ class _Packages:
 
 def _main() -> None:
     asked = json.load(sys.stdin)
-    told, sys.stdout = sys.stdout, sys.stderr
+    answers, sys.stdout = sys.stdout, sys.stderr
     sys.path[:] = asked["modules"]
-    json.dump(_answer(asked), told)
+    json.dump(_answer(asked), answers)
 
 
 def _answer(asked: dict[str, Any]) -> dict[str, Any]:
@@ -104,7 +104,7 @@ def evaluated(path: Path, given: dict[str, str]) -> dict[str, Any]:
 def _fault(error: Exception, stack: list[str | None]) -> dict[str, Any]:
     """What went wrong, where: the file that was being read, and the line where the parser knows it."""
     return {
-        "problem": _told(error),
+        "problem": _described(error),
         "valid": getattr(_innermost(error), "valid", ""),
         "file": next((name for name in reversed(stack) if name), None),
         "line": getattr(error, "lineno", None),
@@ -126,7 +126,7 @@ def _missing(error: Exception) -> str | None:
     return None
 
 
-def _told(error: Exception) -> str:
+def _described(error: Exception) -> str:
     """The error and what it wraps, each said once."""
     if isinstance(error, RecursionError):
         return "it is nested too deep, or files or macros call each other without end"
@@ -140,7 +140,7 @@ def _told(error: Exception) -> str:
     own = "" if own == "None" or own.startswith("<class ") else own
     inner = getattr(error, "exc", None)
     wrapped = (
-        _told(inner) if isinstance(inner, Exception) and not isinstance(inner, OSError) else ""
+        _described(inner) if isinstance(inner, Exception) and not isinstance(inner, OSError) else ""
     )
     parts = (own, "" if wrapped in own else wrapped, getattr(error, "suffix", None) or "")
     return " ".join(part for part in parts if part) or type(error).__name__

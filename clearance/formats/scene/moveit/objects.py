@@ -190,7 +190,7 @@ class SceneMeshes:
                 )
         name = f"{self._asked.path.name}.mesh{self._n_inline}.off"
         self._n_inline += 1
-        self._asked.files.hold(self._asked.path.parent / name, off_text(vertices, triangles))
+        self._asked.files.put(self._asked.path.parent / name, off_text(vertices, triangles))
         return {"mesh": {"file": name}}
 
     def octomap(self, given: Message) -> Row | None:
@@ -211,7 +211,7 @@ class SceneMeshes:
         if not len(octree_of(content).sizes):
             return None
         name = f"{self._asked.path.name}.octomap.bt"
-        self._asked.files.hold(self._asked.path.parent / name, content)
+        self._asked.files.put(self._asked.path.parent / name, content)
         return {"mesh": {"file": name}}
 
     def named(self, uri: str, scale: list[float]) -> Row:

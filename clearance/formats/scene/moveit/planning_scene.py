@@ -25,7 +25,7 @@ from clearance.formats.message.values import (
     text,
 )
 from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
-from clearance.formats.scene.request import HeldPart, SceneContent, SceneRequest, pose_row
+from clearance.formats.scene.request import AttachedPart, SceneContent, SceneRequest, pose_row
 from clearance.formats.text.notes import note_on_rounded
 from clearance.world.names import require_own_names
 from clearance.world.rules import pattern_of
@@ -72,7 +72,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
             require_spelt(
                 state, "joint_state", "multi_dof_joint_state", "attached_collision_objects"
             )
-            attached, held = _attached(state, meshes, poses)
+            attached, carried = _attached(state, meshes, poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
         padding = _padding(raw)
     rows = [*obstacles, *attached]
@@ -85,8 +85,8 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         tuple(meshes.found.notices()),
         allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
         link_padding=padding,
-        held=tuple(held),
-        frame=frames.taken,
+        attached=tuple(carried),
+        frame=frames.assumed_frame,
     )
 
 
@@ -121,13 +121,17 @@ class _Frames:
         return np.eye(4)
 
     @property
-    def taken(self) -> str:
+    def assumed_frame(self) -> str:
         """The frame that is taken for the world, if it is named otherwise; one at most, as `of` sees to."""
         return next(iter(self._plain - {"", "world"}), "")
 
     def notes(self) -> list[str]:
         """Which frame is taken for the world."""
-        return [f"frame {self.taken!r} is taken for the world of the case"] if self.taken else []
+        return (
+            [f"frame {self.assumed_frame!r} is taken for the world of the case"]
+            if self.assumed_frame
+            else []
+        )
 
 
 def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
@@ -139,19 +143,19 @@ def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -
 
 def _attached(
     state: Message, meshes: SceneMeshes, poses: Poses
-) -> tuple[list[Row], list[HeldPart]]:
+) -> tuple[list[Row], list[AttachedPart]]:
     """The obstacles that ride on links, and what each may touch."""
     rows: list[Row] = []
-    held: list[HeldPart] = []
+    carried: list[AttachedPart] = []
     for where, given in messages(state, "attached_collision_objects"):
         with at(where):
             require_spelt(given, "link_name", "object", "touch_links", "detach_posture", "weight")
             link = text(given, "link_name")
             touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
-            for row in _held(message(given, "object"), link, meshes, poses):
+            for row in _attached_rows(message(given, "object"), link, meshes, poses):
                 rows.append(row | {"on": link})
-                held.append(HeldPart(row["name"], link, touch))
-    return rows, held
+                carried.append(AttachedPart(row["name"], link, touch))
+    return rows, carried
 
 
 def _touch_links(given: Message) -> list[str]:
@@ -161,18 +165,18 @@ def _touch_links(given: Message) -> list[str]:
     return links
 
 
-def _held(held: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[Row]:
+def _attached_rows(attached: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[Row]:
     """The obstacles of what a link holds, in the link's frame."""
-    frame = text(message(held, "header"), "frame_id", link).lstrip("/")
+    frame = text(message(attached, "header"), "frame_id", link).lstrip("/")
     if frame != link:
         raise BadScene(f"it is given in {frame!r}, not in its link", valid=f"frame_id: {link}")
-    return object_rows(held, np.eye(4), meshes, poses)
+    return object_rows(attached, np.eye(4), meshes, poses)
 
 
 def _parts(raw: Message) -> dict[str, list[str]]:
     """The names of the obstacles of each object of several shapes."""
     objects = [one for _, one in messages(message(raw, "world"), "collision_objects")]
-    objects += [one for _, one in _objects_held(message(raw, "robot_state"))]
+    objects += [one for _, one in _attached_objects(message(raw, "robot_state"))]
     n_shapes = {
         text(one, "id"): len(items(one, "primitives")) + len(items(one, "meshes"))
         for one in objects
@@ -241,13 +245,13 @@ def _lost(raw: Message, state: Message) -> Iterator[str]:
     world = message(raw, "world")
     n_named = sum(
         len(items(one, "subframe_names"))
-        for _, one in (*messages(world, "collision_objects"), *_objects_held(state))
+        for _, one in (*messages(world, "collision_objects"), *_attached_objects(state))
     )
     if n_named:
         yield f"{n_named} subframes of objects are passed over: nothing here is given in them"
 
 
-def _objects_held(state: Message) -> Iterator[tuple[str, Message]]:
+def _attached_objects(state: Message) -> Iterator[tuple[str, Message]]:
     for where, given in messages(state, "attached_collision_objects"):
         yield where, message(given, "object")
 

@@ -102,17 +102,19 @@ class IncludeReader:
                     f"includes names {uri!r}, which the scene does not include",
                     valid=nearest_name(uri, self._uris()),
                 )
-        left = [repr(uri) for uri in self._said if self._asked.includes[uri] == SKIP]
-        taken = [
+        skipped = [repr(uri) for uri in self._said if self._asked.includes[uri] == SKIP]
+        replaced = [
             f"{Path(self._asked.includes[uri]).name} for {uri!r}"
             for uri in self._said
             if self._asked.includes[uri] != SKIP
         ]
-        told = [f"included models left out, as the case says: {listed(left, 6)}"] * bool(left)
-        told += [f"models used in place of others, as the case says: {listed(taken, 6)}"] * bool(
-            taken
+        lines = [f"included models left out, as the case says: {listed(skipped, 6)}"] * bool(
+            skipped
         )
-        return [Notice(Severity.WARNING, "scene", text) for text in told]
+        lines += [
+            f"models used in place of others, as the case says: {listed(replaced, 6)}"
+        ] * bool(replaced)
+        return [Notice(Severity.WARNING, "scene", text) for text in lines]
 
     def _uris(self) -> set[str]:
         includes = (one for root in self.documents for one in root.iter("include"))

@@ -97,14 +97,14 @@ class _Files:
 
 def _make_unique(obstacles: list[dict[str, Any]]) -> list[str]:
     """Gives obstacles of one name names of their own, and a note on them."""
-    taken = Counter(row["name"] for row in obstacles)
+    n_of = Counter(row["name"] for row in obstacles)
     seen: set[str] = set()
     renamed = []
     for row in obstacles:
         name, n = row["name"], 1
         while row["name"] in seen:
             n += 1
-            row["name"] = f"{name}_{n}" if f"{name}_{n}" not in taken else row["name"]
+            row["name"] = f"{name}_{n}" if f"{name}_{n}" not in n_of else row["name"]
         if row["name"] != name:
             renamed.append(repr(row["name"]))
         seen.add(row["name"])
