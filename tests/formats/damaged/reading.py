@@ -101,13 +101,14 @@ def trajectory(data: bytes, folder: Path, name: str) -> object:
 
 def program(data: bytes, folder: Path, name: str) -> object:
     """A program as a case would have it: its moves, then the joints that follow."""
+    from clearance.case.driven_robots import Surroundings
     from clearance.case.program import program_motion
     from clearance.formats.files.input_files import InputFiles
     from clearance.formats.schema.timed import TrajectoryFile
 
     (folder / name).write_bytes(data)
     asked = TrajectoryFile.model_validate({"program": name})
-    return program_motion(asked, {}, programmed(), folder, InputFiles(folder), {})
+    return program_motion(asked, {}, programmed(), folder, InputFiles(folder), Surroundings())
 
 
 def controller(data: bytes, folder: Path, name: str) -> object:
