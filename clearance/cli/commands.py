@@ -37,8 +37,8 @@ def clearance() -> None:
     "--results",
     is_flag=False,
     flag_value="summary",
-    type=click.Choice(["summary", "findings"]),
-    help="Print that of summary.json, or of findings.json, in place of case files.",
+    type=click.Choice(["summary", "findings", "gain"]),
+    help="Print that of summary.json, findings.json or gain.json, in place of case files.",
 )
 def schema(results: str | None) -> None:
     """Prints the JSON Schema of case or result files.
@@ -51,10 +51,16 @@ def schema(results: str | None) -> None:
     import json
 
     from clearance.formats.schema.json_schema import case_schema
+    from clearance.gains.figures import figures_schema
     from clearance.report.results_schema import findings_schema, summary_schema
 
-    made = {None: case_schema, "summary": summary_schema, "findings": findings_schema}[results]
-    click.echo(json.dumps(made(), indent=2))
+    made = {
+        None: case_schema,
+        "summary": summary_schema,
+        "findings": findings_schema,
+        "gain": figures_schema,
+    }
+    click.echo(json.dumps(made[results](), indent=2))
 
 
 for command in (

@@ -3,21 +3,124 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import Any
+from typing import Any, Literal
+
+from pydantic import Field, TypeAdapter
 
 from clearance.gains.answer import Gain
 from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
+from clearance.gains.tool_path_error import ToolPathError
+from clearance.gains.turn import Turn
 from clearance.record.moment import Moment
+from clearance.report.results_rows import Keys, Span
+from clearance.report.results_schema import closed_schema
 from clearance.run import Run
 
-FORMAT = 1
+FORMAT = 2
 """Of `gain.json`: `scripts/docs/results.md` has the keys."""
+
+SCHEMA = f"urn:clearance:gain:{FORMAT}"
+"""The name of the JSON Schema, which `clearance schema --results gain` prints."""
+
+
+class PartRow(Keys):
+    """A `ChangePart`."""
+
+    name: str
+    amount: float
+    unit: Literal["rad", "m", "s", "share"]
+    time: float | None
+    start: float | None
+    end: float | None
+
+
+class ToolRow(Keys):
+    """How far a tool is moved [m] and turned [rad] at a moment [s], and how far it may be."""
+
+    link: str
+    time: float
+    far: float
+    turn: float
+    most_far: float
+    most_turn: float
+
+
+class MomentRow(Keys):
+    """The most critical moment of a run [m, s]."""
+
+    link: str
+    obstacle: str
+    time: float
+    step: int
+    between: bool
+    clearance: float
+    rule: str
+    touches: bool
+
+
+class RunRow(Keys):
+    """The case before or after the change; `fail` and `proven` [m]."""
+
+    verdict: str
+    verdict_text: str
+    passed: bool
+    fail: float
+    worst: MomentRow
+    proven: float | None
+
+
+class ObstructionRow(Keys):
+    """An `Obstruction`, and the same as a sentence."""
+
+    body_a: str
+    body_b: str
+    time: float
+    clearance: float
+    wanted: float
+    why: str
+    text: str
+
+
+class Figures(Keys):
+    """`gain.json`, in metres, seconds and radians; null: none."""
+
+    named: Literal[SCHEMA] = Field(alias="$schema")  # type: ignore[valid-type]
+    format: Literal[FORMAT]  # type: ignore[valid-type]
+    name: str
+    kind: Literal["waypoints", "obstacle", "base", "timing"]
+    who: str
+    kept: bool
+    margin: float
+    keep: list[Span]
+    keep_ends: bool
+    tool: list[ToolRow]
+    tool_path: ToolPathError | None
+    joints: list[PartRow]
+    within: list[Span] | None
+    turn: Turn | None
+    slow_down: bool
+    size: float
+    unit: Literal["rad", "m", "s", "share"]
+    lower_bound: float | None
+    parts: list[PartRow]
+    before: RunRow
+    after: RunRow
+    blocked: ObstructionRow | None
+    binding: list[str]
+    n_measured: int
+    notes: list[str]
+
+
+def figures_schema() -> dict[str, Any]:
+    """The JSON Schema of `gain.json`."""
+    return closed_schema(SCHEMA, TypeAdapter(Figures).json_schema())
 
 
 def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
     """All figures, in metres, radians and seconds."""
     request, blocked = gain.request, gain.blocked
     return {
+        "$schema": SCHEMA,
         "format": FORMAT,
         "name": gain.case.name,
         "kind": request.kind,

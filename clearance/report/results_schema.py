@@ -136,15 +136,15 @@ _WRITTEN_TOO: dict[str, dict[str, Any]] = {
 
 def summary_schema() -> dict[str, Any]:
     """The JSON Schema of `summary.json`."""
-    return _closed(summary.SCHEMA, TypeAdapter(Summary).json_schema())
+    return closed_schema(summary.SCHEMA, TypeAdapter(Summary).json_schema())
 
 
 def findings_schema() -> dict[str, Any]:
     """The JSON Schema of `findings.json`."""
-    return _closed(findings_file.SCHEMA, TypeAdapter(findings_file.FindingList).json_schema())
+    return closed_schema(findings_file.SCHEMA, TypeAdapter(findings_file.FindingList).json_schema())
 
 
-def _closed(name: str, made: dict[str, Any]) -> dict[str, Any]:
+def closed_schema(name: str, made: dict[str, Any]) -> dict[str, Any]:
     """A schema under its name, in which no object has keys beside those that are written."""
     for part in (made, *made.get("$defs", {}).values()):
         if "properties" not in part:

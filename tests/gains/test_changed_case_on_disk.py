@@ -1,18 +1,24 @@
 """A changed case as files: what is read back is what was claimed, and nothing else is touched."""
 
+import contextlib
+import io
 import json
 from dataclasses import replace
 
 import pytest
 
 import clearance as cl
+from clearance.cli import run as run_command
 from clearance.errors import BadInput, Unwritable
+from clearance.gains.figures import figures_of
 from clearance.gains.folder import save_gain
 from clearance.gains.turn import Turn
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.trajectory import Hole
 from tests.gains.making_gain import CROSSING, MOVING, SLOT, write_cell
 from tests.simulate.measure.test_quintic_motion import there_and_back
+
+jsonschema = pytest.importorskip("jsonschema")
 
 
 def with_scene_file(folder):
@@ -142,6 +148,25 @@ def test_the_figures_are_those_of_the_gain(saved):
     told = json.loads((out / "gain.json").read_text())
     assert told["kept"] and told["size"] == found.size and told["before"]["verdict"] != "clear"
     assert told["after"]["passed"] and told["lower_bound"] == found.lower_bound
+    assert objections(told) == [] and told["$schema"] == "urn:clearance:gain:2"
+
+
+def objections(told: dict) -> list[str]:
+    """Of the schema that the command prints, to figures as they are read back."""
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        assert run_command(["schema", "--results", "gain"]) == 0
+    printed = jsonschema.Draft202012Validator(json.loads(out.getvalue()))
+    return [one.message for one in printed.iter_errors(told)]
+
+
+def test_figures_of_what_is_blocked_keep_to_the_schema_and_no_others_do(tmp_path):
+    asked = {"obstacle": "left", "within": (0.0, 1e-6, 0.0)}
+    found = cl.gain(write_cell(tmp_path, SLOT), "obstacle", **asked)
+    told = json.loads(json.dumps(figures_of(found, ["a note"])))
+    assert not told["kept"] and told["blocked"] and objections(told) == []
+    for key in told:
+        assert objections({one: told[one] for one in told if one != key}), key
+    assert objections(told | {"key": 1}) and objections(told | {"size": "0.1"})
 
 
 def test_the_page_stands_beside_both_reports(saved):
