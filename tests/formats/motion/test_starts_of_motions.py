@@ -181,6 +181,7 @@ def test_what_the_start_says_of_other_joints_and_another_place_is_told():
         in told
     )
     assert "has joint 'shoulder' 0.2 off the first point, at 0 s; the point is used" in told
+    assert trajectory.has_way_in  # which the headline says is not measured
     _, notes = read(displayed(plan(point(1.0, 0.1, 0.0), names=("shoulder", "lift")), start))
     assert any("trajectory_start is not used: it has no position of lift" in note for note in notes)
 
