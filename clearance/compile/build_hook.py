@@ -54,7 +54,6 @@ class KernelBuild(BuildHookInterface):
         }
 
     def _build(self, levels: list[str]) -> None:
-        paths = [self.root, *filter(None, [os.environ.get("PYTHONPATH")])]
         ours = ("NUMBA_", "CLEARANCE_KERNELS")
         environment = {
             name: value for name, value in os.environ.items() if not name.startswith(ours)
@@ -62,7 +61,7 @@ class KernelBuild(BuildHookInterface):
         done = subprocess.run(
             [sys.executable, "-P", "-c", _BUILD.format(root=str(self.root)), *levels],
             cwd=Path(self.root, BUILT).parent,
-            env={**environment, "PYTHONPATH": os.pathsep.join(paths)},
+            env=environment,
             stdout=sys.stderr,
             check=False,
         )

@@ -80,6 +80,20 @@ class SmallPackage:
 pytestmark = [pytest.mark.cold, pytest.mark.slow]
 
 
+def test_a_clone_that_is_installed_is_built_again(tmp_path, monkeypatch):
+    """As pip builds it: at its start each process takes the folder of the editable installation out of its path."""
+    hook = pytest.importorskip("clearance.compile.build_hook")
+    made = SmallPackage(tmp_path / "clone")
+    (tmp_path / "pip").mkdir()
+    (tmp_path / "pip" / "sitecustomize.py").write_text(
+        f"import sys\nsys.path = [one for one in sys.path if one != {str(made.root)!r}]\n"
+    )
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path / "pip"))
+    hook.KernelBuild(str(made.root), {}, None, None, "", "wheel").initialize("editable", {})
+    monkeypatch.delenv("PYTHONPATH")
+    assert made.ask(without=("numba", "llvmlite")) == ("12.0 False", "")
+
+
 @pytest.fixture(scope="module")
 def built(tmp_path_factory) -> SmallPackage:
     """A small package whose library two processes have found missing at the same time."""
