@@ -16,15 +16,6 @@ from tests.formats.making_case import changed, load_small
 from tests.formats.making_cell import load_cell
 
 
-def test_robots_of_one_file_share_their_bodies(tmp_path):
-    left, right = load_cell(tmp_path).robots
-    assert (left.robot.name, right.robot.name) == ("left", "right")
-    assert left.robot.bodies is right.robot.bodies
-    assert left.given_trajectory.times.tolist() == [0, 0.5, 1] and right.trajectory is None
-    assert right.fixed_positions == {"shoulder": 0.2}
-    assert right.world_from_base[:3, 3].tolist() == [6, 0, 0]
-
-
 def test_a_robot_may_stand_on_a_link_of_another(tmp_path):
     case = load_cell(tmp_path, "base: {xyz: [6", "base: {on: left/tip, xyz: [6")
     right = case.robots[1]

@@ -9,7 +9,6 @@ from clearance.case.case_file import load_case
 from clearance.errors import (
     BadDimension,
     BadInput,
-    BadSyntax,
     ClearanceError,
     DuplicateName,
     MissingFile,
@@ -18,7 +17,7 @@ from clearance.errors import (
 )
 from clearance.world.pairs import measured_pairs
 from tests.formats.making import ARM, CASE, cube_stl, signed_volume, write_case
-from tests.formats.making_case import TWO_JOINTS, changed, load_small, with_obstacle
+from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_cell import load_cell
 
 
@@ -98,22 +97,6 @@ def test_faults_in_a_scene_file_name_that_file(tmp_path):
         assert str(caught.value).startswith("case.yaml: scene: room.yaml")
 
 
-@pytest.mark.parametrize(
-    ("shape", "lower", "upper"),
-    [
-        ("mesh: {file: upper.stl}", [-0.5] * 3, [0.5] * 3),
-        ("mesh: {file: upper.stl, scale: -4}", [-2] * 3, [2] * 3),
-        ("mesh: {file: upper.stl, scale: [2, -4, 1.0]}", [-1, -2, -0.5], [1, 2, 0.5]),
-    ],
-)
-def test_every_shape_becomes_a_solid_that_holds_it(tmp_path, shape, lower, upper):
-    body = load_small(tmp_path, with_obstacle(shape)).obstacles[0].body
-    assert (body.shape.bounds[0] <= lower).all() and (body.shape.bounds[1] >= upper).all()
-    assert body.shape.bounds == pytest.approx(np.array([lower, upper]), abs=1.1e-4)
-    assert body.shape.closed and body.shape.oriented
-    assert signed_volume(body.shape) > 0
-
-
 def test_poses_take_quaternions_or_roll_pitch_yaw(tmp_path):
     half = float(np.sqrt(0.5))
     base = f"arm.urdf, base: {{xyz: [1, 2, 3], quat_xyzw: [0, 0, {half!r}, {half!r}]}}"
@@ -177,25 +160,6 @@ def test_a_joint_that_spins_between_two_samples_is_refused(tmp_path, turns):
     assert "between 1 s and 2.5 s" in told and "\n" not in told
 
 
-def test_meshes_named_twice_are_made_once(tmp_path):
-    text = CASE.replace(
-        "trajectory:",
-        "  - {name: one, mesh: {file: upper.stl}}\n  - {name: two, mesh: {file: upper.stl}}\n"
-        "  - {name: big, mesh: {file: upper.stl, scale: 2}}\ntrajectory:",
-    )
-    _, one, two, big = load_small(tmp_path, text).obstacles
-    assert one.body.shape is two.body.shape
-    assert one.body.shape is not big.body.shape
-
-
-def test_a_case_that_is_not_there(tmp_path):
-    with pytest.raises(MissingFile, match=r"^there is no file 'case\.yaml'"):
-        load_case(tmp_path / "case.yaml")
-    (tmp_path / "case.yaml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(BadSyntax, match="not UTF-8"):
-        load_case(tmp_path / "case.yaml")
-
-
 def test_messages_and_sources_never_hold_a_path_of_this_machine(tmp_path):
     write_case(tmp_path)
     far = ARM.replace("upper.stl", str(tmp_path / "upper.stl"))
@@ -206,17 +170,3 @@ def test_messages_and_sources_never_hold_a_path_of_this_machine(tmp_path):
     with pytest.raises(ClearanceError) as caught:
         load_small(tmp_path, changed("arm.urdf", str(tmp_path / "no.urdf")))
     assert str(tmp_path) not in str(caught.value)
-
-
-def test_author_and_revision_arrive_for_the_report(tmp_path):
-    assert load_small(tmp_path).sign_off is None
-    signed = load_small(
-        tmp_path, changed("limits:", "report: {author: J. Doe, revision: B}\nlimits:")
-    )
-    assert (signed.sign_off.author, signed.sign_off.revision) == ("J. Doe", "B")
-    assert (
-        load_small(tmp_path, changed("limits:", "report: {revision: B}\nlimits:")).sign_off.author
-        == ""
-    )
-    with pytest.raises(UnknownKey, match="authors"):
-        load_small(tmp_path, changed("limits:", "report: {authors: J. Doe}\nlimits:"))

@@ -32,14 +32,6 @@ def test_a_cell_with_a_trajectory_is_the_case_with_it(folder):
     assert one.joint_names == other.joint_names and (one.positions == other.positions).all()
 
 
-def test_the_cell_is_read_once(folder):
-    cell = load_cell(folder / "cell.yaml")
-    first = with_trajectory_file(cell, asked(), "one")
-    second = with_trajectory_file(cell, asked(), "other")
-    assert first.robots[0].robot is second.robots[0].robot
-    assert first.obstacles is second.obstacles
-
-
 def test_what_is_wrong_with_one_trajectory_is_told_with_its_file(folder):
     cell = load_cell(folder / "cell.yaml")
     with pytest.raises(MissingFile, match=r"cell\.yaml: trajectory\.file: .*gone\.csv"):

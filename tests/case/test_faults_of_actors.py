@@ -3,7 +3,6 @@
 import pytest
 
 from clearance.case.case_file import load_case
-from clearance.cli import run
 from clearance.errors import (
     BadDimension,
     BadInput,
@@ -86,12 +85,6 @@ def test_each_fault_is_one_line_with_its_place(tmp_path, changes, fault, says):
     assert says in str(caught.value)
     assert str(caught.value).startswith("case.yaml: ")
     assert "\n" not in str(caught.value)
-
-
-def test_the_command_line_ends_with_2_and_one_line(tmp_path, capsys):
-    assert run(["check", str(write_cell(tmp_path, *FAULTS[0][0], **FILES))]) == 2
-    told = capsys.readouterr().err.strip().splitlines()
-    assert len(told) == 1 and told[0].startswith("error: case.yaml: ")
 
 
 def test_what_a_scene_file_rides_on_is_looked_for(tmp_path):

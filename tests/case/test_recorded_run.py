@@ -200,18 +200,6 @@ def test_the_run_is_measured_as_driven_beside_what_was_asked(tmp_path):
     assert [one["joint"] for one in told["runs"][0]["joints"]] == ["shoulder", "lift"]
 
 
-@pytest.mark.parametrize(
-    "given, told",
-    [
-        ({"motion": "recorded"}, "recorded: nothing is given; motion 'recorded' needs the file"),
-        ({"recorded": "run.csv"}, "recorded says nothing without motion='recorded'"),
-    ],
-)
-def test_a_recording_and_the_motion_go_together(tmp_path, given, told):
-    with pytest.raises(BadInput, match=told):
-        cl.check(case(tmp_path), **given)
-
-
 def test_on_the_command_line(tmp_path, capsys):
     case(tmp_path)
     file, own = str(tmp_path / "case.yaml"), str(tmp_path / "run.csv")

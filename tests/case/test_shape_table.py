@@ -1,6 +1,5 @@
 """Every row of the table of shapes: what files make of it, and that the public names and the guide have it."""
 
-import math
 import re
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.geometry.shapes import SHAPES, Measure
 from tests.formats.making import ARM
-from tests.formats.making_case import changed, load_small, with_obstacle
+from tests.formats.making_case import load_small, with_obstacle
 
 EXAMPLE = {
     Measure.LENGTH: 0.25,
@@ -82,20 +81,3 @@ def test_the_public_names_and_the_guide_have_every_shape():
         rows = re.findall(rf"^\| `{name}` \| (.*) \| .* \|$", guide, flags=re.MULTILINE)
         assert rows, f"no row of {name}"
         assert all(f"`{key}" in row for key in shape.dimensions for row in rows)
-
-
-@pytest.mark.parametrize("tilt", [0.0, 0.3, 1.0, math.pi / 2])
-@pytest.mark.parametrize("length", [0.0, 0.4])
-def test_a_capsule_is_as_far_as_its_line_less_its_radius(tmp_path, tilt, length):
-    """The robot's base ends at x = 0.1 and z = 0.1; of a line that leans towards it the end is nearest."""
-    radius, x, end = 0.05, 1.5, 0.5 * length
-    shape = f"capsule: {{radius: {radius}, length: {length}}}"
-    pose = f"xyz: [{x}, 0, 0], rpy: [0, {tilt}, 0]"
-    text = changed("box: {size: [0.1, 0.1, 1]}", shape, "xyz: [2, 0, 0]", pose)
-    still = ARM.replace('<mesh\n  filename="upper.stl"/>', '<box size="0.1 0.1 0.1"/>')
-    run = cl.check(load_small(tmp_path, text, urdf=still))
-    above = max(end * math.cos(tilt) - 0.1, 0.0) if tilt > 0.0 else 0.0
-    true = math.hypot(x - end * math.sin(tilt) - 0.1, above) - radius
-    excess = run.record.case.obstacles[0].body.shape.excess
-    assert 0.0 < excess <= 1e-4
-    assert true - excess - 1e-12 <= run.worst_sample["clearance"] <= true + 1e-12

@@ -53,24 +53,6 @@ def test_a_joint_a_little_beyond_its_limits_is_a_warning(tmp_path):
     assert "joint 'lift' leaves its limits 0.02 to 0.1 m by up to 0.02 m all the time" in text
 
 
-@pytest.mark.parametrize("beyond", [8.0, -2.6])
-def test_a_joint_far_beyond_its_limits_is_suspect(tmp_path, beyond):
-    text = only_suspect(tmp_path, kind="limits", trajectory=f"time,shoulder\n0,0\n1,{beyond}\n")
-    assert "joint 'shoulder' leaves its limits -1 to 1 rad" in text
-
-
-def test_joint_limits_can_be_made_a_violation(tmp_path):
-    case = changed("warn: 0.02", "warn: 0.02, joints: fail")
-    assert found(tmp_path, case) == []
-    ((severity, kind, text),) = found(tmp_path, case, trajectory="time,shoulder\n0,0\n2,1.25\n")
-    assert (severity, kind) == (Severity.VIOLATED, "joint limits")
-    assert "by up to 0.25 rad in 1 of 2 steps" in text
-    kinds = [one[:2] for one in found(tmp_path, case, trajectory="time,shoulder\n0,0\n9,9\n")]
-    assert kinds == [(Severity.SUSPECT, "limits"), (Severity.VIOLATED, "joint limits")]
-    with pytest.raises(BadInput, match=r"limits\.joints: 'ignore' is given"):
-        load_small(tmp_path, changed("warn: 0.02", "warn: 0.02, joints: ignore"))
-
-
 def test_kinds_of_suspect_input_are_accepted_by_name(tmp_path):
     assert load_small(tmp_path).accept == ()
     case = load_small(tmp_path, CASE + f"accept: [{', '.join(KINDS)}]\n")
@@ -157,13 +139,6 @@ def test_origins_in_other_units_are_suspect(tmp_path, old, new, says):
         text for _, kind, text in found(tmp_path, urdf=ARM.replace(old, new)) if kind == "units"
     ]
     assert sum(says in text for text in told) == 1, told
-
-
-def test_a_link_whose_mesh_is_scaled_into_nothing_is_suspect(tmp_path):
-    text = only_suspect(
-        tmp_path, urdf=ARM.replace('"upper.stl"', '"upper.stl" scale="1e-3 1e-3 1e-3"')
-    )
-    assert "link 'upper' is 0.001 m long where the robot reaches" in text
 
 
 def test_time_in_milliseconds_is_suspect(tmp_path):

@@ -129,12 +129,6 @@ def test_what_a_scene_cannot_hold_is_told_with_what_a_case_says(capsys):
     assert "# - [base, post]" in text and "# - {part: tool, by: tip" in text
 
 
-def test_comments_are_told(capsys):
-    Path("ours.yaml").write_text(f"# measured on Monday\n{OURS}")
-    assert convert("ours.yaml", "made/scene.yaml") == 0
-    assert "note: ours.yaml: left out: its comments" in capsys.readouterr().out
-
-
 def test_warnings_and_the_frame_of_a_file_stay_with_the_scene(capsys):
     seen = link("<visual name='v'/>", name="seen")
     Path("w.sdf").write_text(sdf(world(model(link(collision()), seen))))

@@ -89,23 +89,6 @@ def test_a_folder_that_holds_an_input_is_refused_before_any_search(slot, capsys)
     assert slot.read_bytes() == before and not (slot.parent / "gain.json").exists()
 
 
-def test_the_paths_of_two_robots_are_written_each(tmp_path, capsys):
-    path, out = write_cell(tmp_path, CROSSING), tmp_path / "out"
-    table = path.parent / "along_y.csv"  # 30 mm beside the other all along
-    table.write_text((path.parent / "along_x.csv").read_text().replace(",0.0\n", ",0.13\n"))
-    options = ("--kind", "waypoints", "--robot", "one", "--robot", "other", "--free-ends")
-    code, text, _ = said(capsys, path, *options, "--out", out)
-    assert code == 0 and "joint one/y by up to -10.00 mm" in text
-    assert "joint other/y by up to +10.00 mm" in text
-    written = {one.name for one in out.glob("trajectory_*")}
-    assert written == {
-        f"trajectory_{name}.{kind}" for name in ("one", "other") for kind in ("csv", "yaml")
-    }
-    assert (
-        run(["check", str(out / "case.yaml")]) == 0 and "other/y" in (out / "gain.html").read_text()
-    )
-
-
 @pytest.mark.parametrize(
     "options, told",
     [

@@ -108,50 +108,6 @@ def test_what_it_marks_is_refused(errors, old, new):
     assert_refused(errors, CASE, old, new)
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("name: cell\n", ""),
-        ("path.csv", "{file: path.csv, start: 1, rate: 0.5, after: absent}"),
-        ("base: {xyz: [6, 0, 0]}", "base: {on: left/tip}, padding: {upper: 0.001}, self_clearance: true"),
-        (", trajectory: path.csv", ""),
-        ("moves: door.csv", "on: left/tip, pose: {xyz: [1, 0, 0]}, moves: {file: door.csv}"),
-        ("allow:", "clock: unsynchronised\nallow:"),
-        ("allow:", "clock: {slack: 0.2}\nallow:"),
-        ("scene:", "profiles: []\nscene:"),
-        (", until: 0.75", ""),
-    ],
-)  # fmt: skip
-def test_what_it_takes_of_several_robots_is_taken(errors, old, new):
-    assert_taken(errors, CELL, old, new)
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("allow:", "robot: {urdf: arm.urdf}\nallow:"),
-        ("path.csv", "{file: path.csv, after: stop}"),
-        ("path.csv", "{file: path.csv, rate: 0}"),
-        ("path.csv", "~"),
-        ("base: {xyz: [6, 0, 0]}", "padding: {upper: -0.001}"),
-        ("moves: door.csv", "moves: ~"),
-        ("moves: door.csv", "pose: {xyz: [1, 0, 0]}, moves: door.csv"),
-        ("on: left/base", "on: ~"),
-        ("from: 0.25, ", ""),
-        ("until: 0.75", "until: ~"),
-        ("fail: 0.001, ", ""),
-        ("fail: 0.001", "fail: -1"),
-        ("[workpiece, \"*\"]", "[workpiece]"),
-        ("until: 0.5}", "untill: 0.5}"),
-        ("[left/base, post]", "[left/base]"),
-        ("allow:", "clock: comon\nallow:"),
-        ("allow:", "clock: {slack: -1}\nallow:"),
-    ],
-)  # fmt: skip
-def test_what_it_marks_of_several_robots_is_refused(errors, old, new):
-    assert_refused(errors, CELL, old, new)
-
-
 def test_a_case_in_which_nothing_moves_is_marked_and_refused(errors):
     text = CELL.replace(", trajectory: path.csv", "").replace("moves: door.csv", "on: left/tip")
     assert errors(text)

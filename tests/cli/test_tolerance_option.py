@@ -2,9 +2,7 @@
 
 import pytest
 
-import clearance as cl
 from clearance.cli import run
-from clearance.world.budget import Budget
 from tests.formats.making import CASE, write_case
 
 TOO_MUCH = "base: {xyz: 0.4}\n"
@@ -33,16 +31,3 @@ def test_a_limit_that_is_not_proven_fails_the_run(case_file, tmp_path, capsys):
     assert code == 0 and told.out.startswith(f"ACCEPTED: {OPEN}")
     code, told = checked(capsys, case_file)
     assert code == 0 and told.out.startswith("CLEAR ")
-
-
-def test_the_same_in_python(case_file, tmp_path):
-    own = tmp_path / "t.yaml"
-    own.write_text(TOO_MUCH)
-    block = {"base": {"xyz": 0.4}}
-    runs = [cl.check(case_file, tolerance=given) for given in (own, str(own), block)]
-    assert {one.status for one in runs} == {"not proven"} and not any(one.passed for one in runs)
-    budget = runs[0].record.case.tolerance
-    assert cl.check(case_file, tolerance=budget).status == "not proven"
-    assert isinstance(budget, Budget)
-    accepted = cl.check(case_file, tolerance=block | {"unproven_ok": True})
-    assert accepted.passed and accepted.status == "not proven"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clearance.findings.occurrences import HYSTERESIS, NearCourse, release_level
+from clearance.findings.occurrences import NearCourse, release_level
 from clearance.world.case import Limits
 
 FAIL = 0.005
@@ -55,36 +55,6 @@ FAR, OUT, AT, IN = 0.1, LEVEL + 1e-9, FAIL, FAIL - 1e-9
 )
 def test_stretches_are_counted_where_the_pair_parts_for_good(clearances, between, expected):
     assert spans(course(clearances, between)) == expected
-
-
-def test_where_others_hide_a_pair_its_stretch_goes_on():
-    assert spans(course([IN, FAR, IN])) == [(0, 0), (4, 4)]
-    assert spans(course([IN, FAR, IN], bridges=[1])) == [(0, 4)]
-    assert spans(course([IN, FAR, FAR, IN], bridges=[1])) == [(0, 0), (6, 6)]
-
-
-@given(st.sets(st.integers(0, 40), min_size=1))
-def test_a_step_far_away_at_which_others_may_hide_the_pair_breaks_no_stretch(positions):
-    rows = np.array(sorted(positions), dtype=np.int64)
-    known = np.full(len(rows), IN), np.zeros(len(rows), dtype=bool)
-    alone = NearCourse(rows, *known, np.empty(0, np.int64))
-    assert alone.stretches == NearCourse(rows, *known, np.array([1000])).stretches
-
-
-def test_the_release_level_is_the_warn_limit_or_a_little_above_the_fail_limit():
-    assert release_level(Limits(0.005, 0.02)) == 0.02
-    assert (
-        release_level(Limits(0.005, 0.0052)) == release_level(Limits(0.005)) == 0.005 + HYSTERESIS
-    )
-
-
-def test_the_worst_row_touches_or_is_nearest():
-    found = course([0.004, 0.001, 0.003, 0.001])
-    assert found.worst(slice(0, 4)) == 1 and found.worst(slice(2, 4)) == 3
-    touching = NearCourse(
-        found.positions, found.clearances, np.array([False, False, True, False]), found.bridges
-    )
-    assert touching.worst(slice(0, 4)) == 2
 
 
 IN_FOR = st.integers(0, 5).map(lambda n: [0.001] + [FAIL] * n)

@@ -152,18 +152,6 @@ def test_a_limit_that_is_only_not_proven_says_so_below_the_headline(name, monkey
     assert "Not proven" in repr(header(content_of(run)))
 
 
-def test_the_certified_minimum_has_a_row_of_its_own():
-    run = cl.check(cl.load_case(BOX))
-    lines = printed(run)
-    assert any(line.startswith("  certified   at least 34.97") for line in lines)
-    assert any(line.startswith("  samples     35.07 mm at step 133") for line in lines)
-    summary = run.summary
-    worst, sample = summary["worst"]["clearance"], summary["worst_sample"]["clearance"]
-    assert summary["certified"]["lower_bound"] < worst < sample
-    head = repr(header(content_of(run)))
-    assert "at least 34.97" in head
-
-
 @pytest.mark.parametrize("shown", [True, False])
 def test_facets_are_told_where_they_matter(shown):
     """0.1 mm: nothing beside 31 mm, and much beside contact."""

@@ -11,7 +11,6 @@ from clearance.formats import known_formats
 from clearance.formats.known_formats import (
     ANY,
     FORMATS,
-    Format,
     Kind,
     format_of,
     function_at,
@@ -20,10 +19,7 @@ from clearance.formats.known_formats import (
     suffixes_read,
     written_as,
 )
-from clearance.formats.scene import formats as scene_formats
-from clearance.formats.scene.request import SceneContent
 from clearance.formats.schema.json_schema import case_schema
-from clearance.world.notice import Notice, Severity
 from tests.formats.making import ARM, CASE, cube_stl
 from tests.formats.making_case import load_small
 
@@ -159,27 +155,6 @@ def test_the_schema_names_every_format():
 
 def named(suffix: str) -> str:
     return CASE.partition("scene:")[0] + f"scene: cell.{suffix}\ntrajectory: path.csv\n"
-
-
-def test_a_row_is_a_format(tmp_path, monkeypatch):
-    notice = Notice(Severity.WARNING, "geometry", "half of it is missing")
-    asked = []
-
-    def read(request):
-        asked.append(request)
-        row = {"name": request.files.read(request.path).decode(), "sphere": {"radius": 1.0}}
-        return SceneContent({"obstacles": [row]}, ("three trees left out",), (notice,))
-
-    row = Format("balls", Kind.SCENE, (".balls",), "scene.balls:read")
-    monkeypatch.setattr(known_formats, "FORMATS", (*FORMATS, row))
-    monkeypatch.setattr(scene_formats, "function_at", {"scene.balls:read": read}.get)
-    (tmp_path / "models").mkdir()
-    text = named("BALLS").replace("arm.urdf}", "arm.urdf, package_dirs: [models]}")
-    case = load_small(tmp_path, text, cell__BALLS="a ball")
-    assert [one.name for one in case.obstacles] == ["a ball"]
-    assert case.notes[-1] == "three trees left out" and case.notices == (notice,)
-    assert asked[0].path == tmp_path / "cell.BALLS"
-    assert asked[0].package_dirs == (tmp_path / "models",)
 
 
 def test_a_scene_of_another_suffix_is_yaml(tmp_path):

@@ -10,7 +10,6 @@ from clearance.errors import BadInput
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
 from clearance.gains.obstruction import Obstruction
-from clearance.gains.page import motion_curve
 from clearance.gains.sentences import lines_of
 from clearance.gains.shortfalls import proven
 from clearance.tolerance import CERTIFY_GAP
@@ -20,7 +19,6 @@ from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 from tests.made_cases import at
-from tests.simulate.measure.test_between_steps import PAST, THROUGH, sweeping
 from tests.simulate.measure.test_refine import sliding
 
 FINE = 1e-6
@@ -333,13 +331,3 @@ def test_a_pair_that_nothing_moves_may_be_at_its_limit_but_for_rounding():
     post = Obstacle(Body("post", cl.box((0.1, 0.02, 0.1))), at(0.602))
     found = gain(replace(one, obstacles=(*one.obstacles, post)), "obstacle", obstacle="post")
     assert found.kept and found.change == pytest.approx([0.003, 0.0, 0.0], abs=FINE)
-
-
-def test_the_curves_of_the_page_go_down_to_what_occurs_between_the_steps():
-    found = gain(sweeping(THROUGH, PAST), "base")
-    assert found.kept
-    for run in (found.before, found.after):
-        curve = motion_curve("one", run)
-        assert (np.diff(curve.times) >= 0.0).all()
-        assert curve.clearances.min() == pytest.approx(run.record.worst.clearance, abs=1e-12)
-        assert run.record.clearances.min() > 0.4

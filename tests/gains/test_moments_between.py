@@ -8,9 +8,6 @@ import pytest
 import clearance as cl
 from clearance.gains.obstruction import NOT_MOVED
 from clearance.gains.search import FINE
-from clearance.gains.shortfalls import with_moments
-from clearance.simulate.answers.point_motion import has_joint_between
-from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, gantry, standing
 
@@ -51,21 +48,6 @@ def test_a_path_bends_around_what_it_meets_between_samples(rates, timing):
     assert np.abs(found.change[:, 1]).max() >= 0.04
 
 
-@pytest.mark.parametrize("rates", [False, True])
-def test_moments_are_steps_of_the_same_motion(rates):
-    case = leaping(rates=rates, timing=Timing(0.5, 0.8))
-    moments = np.array([0.2, 1.0, 2.03, 9.0])
-    finer = with_moments(case, moments)
-    assert finer.robots[0].given_trajectory.n_steps == 6
-    times = np.linspace(0.5, 4.2, 100)
-    for one in (case, finer):
-        placed = one.robots[0]
-        own = (times - 0.5) * 0.8
-        at = np.interp(own, placed.given_trajectory.times, placed.given_trajectory.positions[:, 0])
-        assert at == pytest.approx(-0.9 + 0.6 * np.clip(own, 0.0, 3.0), abs=1e-12)
-    assert with_moments(case, np.zeros(0)) is case
-
-
 LIMIT, GAP = 0.04, 0.03
 """[m] What is to be kept above a beam, and what is."""
 
@@ -94,18 +76,3 @@ def test_a_path_across_a_beam_goes_round_it():
 def test_what_is_too_wide_to_go_beside_is_not_said_to_be_impossible():
     found = cl.gain(above_a_beam(4.0, wide=2.0), "waypoints", keep_ends=False)
     assert not found.kept and found.blocked.why != NOT_MOVED
-
-
-def test_a_joint_that_carries_both_bodies_does_not_move_them_apart():
-    robot = gantry()
-    bodies = (cl.Body("cart", cl.box((0.1, 0.1, 0.1))), *robot.bodies)
-    placed = along_x(cl.Robot("both", robot.link_names, robot.joints, bodies))
-    case = cl.Case("both", (placed,), above_a_beam(4.0).obstacles)
-    cart, tool = (BodyIndex(0, i) for i in range(2))
-    beam = BodyIndex(OBSTACLE, 0)
-    assert not has_joint_between(case, Pair(cart, tool), [0]) and has_joint_between(
-        case, Pair(cart, tool), [1]
-    )
-    assert has_joint_between(case, Pair(cart, beam), [0]) and not has_joint_between(
-        case, Pair(cart, beam), [1]
-    )

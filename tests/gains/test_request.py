@@ -1,23 +1,17 @@
 """What may be changed, checked as it is asked: each fault of a value in one line, with its option."""
 
 import math
-from dataclasses import replace
 
-import numpy as np
 import pytest
-from scipy.sparse import csr_array
 
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, UnknownKey
-from clearance.gains.programme import Inequalities, within_reach
 from clearance.gains.request import Request
-from clearance.gains.search import Search
-from clearance.gains.shift import base_shift
 from clearance.gains.tool_poses import ToolKeep
 from clearance.gains.turn import Turn
 from clearance.options import made, options_in
 from clearance.simulate.measure import inside
-from tests.gains.gantries import along_x, gantry, slot, standing
+from tests.gains.gantries import slot
 
 
 def asked(kind, **given):
@@ -108,30 +102,6 @@ def test_what_is_said_of_a_turn_is_part_of_it():
 def test_one_robot_or_several_are_names():
     assert asked("base", robot="left").one_robot == "left" and asked("base").one_robot is None
     assert asked("waypoints", robot=["left", "right"]).robot == ("left", "right")
-
-
-def test_only_pairs_that_a_change_may_move_are_looked_at_once_the_case_as_it_is_was_looked_at_whole():
-    moving, still = along_x(gantry()), along_x(gantry("other"), base=(0.0, 0.25, 0.0))
-    post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.0, -0.13, 0.0))
-    case = cl.Case("two", (moving, still), (post,), cl.Limits(fail=0.04))
-    search = Search(base_shift(case, "other"), 0.0)
-    wide = [
-        replace(one, beyond=1.0) for one in (search.first_state(), search.state_at(np.zeros(3)))
-    ]
-    pairs = [{tuple(b.name_in(one.case) for b in one.pair) for one in state.near} for state in wide]
-    assert len(pairs[0]) > len(pairs[1]) and pairs[1] < pairs[0]
-    assert all(any(name.startswith("other") for name in pair) for pair in pairs[1])
-
-
-def test_limits_that_no_point_of_a_box_may_break_are_left_out():
-    rng = np.random.default_rng(3)
-    a, b = rng.normal(size=(40, 3)), rng.uniform(-0.5, 3.0, size=40)
-    low, high = -rng.uniform(0.1, 1.0, size=3), rng.uniform(0.1, 1.0, size=3)
-    found = within_reach(Inequalities(csr_array(a), b), low, high)
-    corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1).reshape(-1, 3)
-    broken = (corners @ a.T > b).any(axis=0)
-    assert 0 < broken.sum() < 40
-    assert np.array_equal(found.a.toarray(), a[broken]) and np.array_equal(found.b, b[broken])
 
 
 def test_what_is_proposed_tells_whether_an_open_body_may_hold_another_though_no_search_asks(

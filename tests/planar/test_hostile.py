@@ -11,8 +11,6 @@ from tests.oracle import planar_hausdorff as oracle
 
 pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
 
-PI = oracle.REAL(math.pi)  # as the package is given it: the same float
-
 
 def arc(center, radius, start=0.0, end=2.0 * math.pi):
     parts = oracle.arc_parts(center, radius, start, end, n=max(1, math.ceil((end - start) / 1.6)))

@@ -174,24 +174,6 @@ def test_of_two_runs_that_start_at_once_one_is_refused(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_taken_away_is_gone_at_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A process killed while it takes files away leaves nothing where the next run looks."""
-    seen = []
-    rmtree = shutil.rmtree
-
-    def watched(path: Path, **options: bool) -> None:
-        seen.append(place.exists())
-        rmtree(path, **options)
-
-    place = tmp_path / "kept"
-    with open_resumable_rows(place, print):
-        monkeypatch.setattr(rows_folder.shutil, "rmtree", watched)
-    assert seen == [False]
-    assert list(tmp_path.iterdir()) == []
-
-
 SCENES = Path(__file__).parents[2] / "scenes"
 GIVEN = Case, Motion, Timeline
 """What a record was made of, which other rooms answer for."""
@@ -237,10 +219,6 @@ def run() -> cl.Run:
     return cl.check(SCENES / "box_box" / "case.yaml", limits=Limits(0.04, 0.06))
 
 
-def test_no_function_is_kept_in_a_record(run):
-    assert [*closures(run.record, "record", set())] == []
-
-
 def test_a_record_holds_no_object_of_a_room_that_measures(run):
     rooms = {kind.split(".")[1] for kind in kinds(run.record, set())}
     assert "record" in rooms and not rooms & {"simulate", "run", "budget", "kernels"}
@@ -251,24 +229,6 @@ def test_the_session_holds_what_the_record_does_not(run):
     assert [*closures(run.session.rules, "rules", set())] != []
     rooms = {kind.split(".")[1] for kind in kinds(run.session.rules, set())}
     assert "simulate" in rooms
-
-
-def test_reading_a_record_and_its_verdict_measures_nothing_more(run, monkeypatch):
-    """All that moments, pairs and stretches are measured with is out of order."""
-    from clearance.findings.verdict import verdict_of
-    from clearance.query.pair_query import Query
-
-    def refuse(*given, **options):
-        raise AssertionError("a record is read, nothing is measured")
-
-    monkeypatch.setattr(Query, "distances", refuse)
-    monkeypatch.setattr("clearance.simulate.measure.moment_query.distance", refuse)
-    monkeypatch.setattr("clearance.simulate.measure.measure.sweep", refuse)
-    monkeypatch.setattr("clearance.simulate.measure.certify.certify", refuse)
-    record = run.record
-    assert verdict_of(record).status == "violated"
-    assert record.worst.clearance < 0.04 and record.nearest is record.worst
-    assert record.certificate.worst is not None and record.steps.num_rows == 301
 
 
 def test_a_number_has_the_status_of_a_row() -> None:

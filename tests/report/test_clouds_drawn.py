@@ -33,19 +33,6 @@ def below() -> np.ndarray:
     return pose
 
 
-def test_the_summary_tells_of_balls():
-    summary = cl.check(scanned()).summary
-    (scan,) = [body for body in summary["obstacles"] if body["name"] == "scan"]
-    assert (scan["points"], scan["ball_radius"]) == (3600, 0.02)
-    assert (scan["triangles"], scan["polygons"], scan["closed"], scan["volume"]) == (
-        0,
-        0,
-        False,
-        None,
-    )
-    assert "points" not in summary["obstacles"][0]
-
-
 @pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_points(tmp_path):

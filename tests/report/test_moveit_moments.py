@@ -39,20 +39,6 @@ def test_the_worst_comes_first_and_all_pairs_below_a_limit_follow():
     assert told["n_left_out"] == 0 and told["verdict"] == "contact"
 
 
-def test_a_clear_run_has_its_worst_moment_alone():
-    clear = cl.check(
-        cell(
-            robots=(sliding("left", LEFT),),
-            carries=(),
-            rules=(),
-            obstacles=(box("table", (4, 4, 0.1)),),
-        )
-    )
-    told = read(moments_text(clear))
-    assert len(told["moments"]) == 1 and told["moments"][0]["status"] == "clear"
-    assert told["need"] == "steps"
-
-
 def test_what_is_too_much_is_left_out_and_counted(monkeypatch):
     run = record(limits=LIMITS)
     n = len(read(moments_text(run))["moments"])

@@ -86,13 +86,3 @@ def test_every_answer_says_how_many_pairs_are_measured_and_why_not_the_others():
 )  # fmt: skip
 def test_each_reason_is_counted(robot, options, says):
     assert told(run_of(robot, **options)) == [f"self-clearance: {says}"]
-
-
-def test_of_several_robots_each_is_told_that_asks_for_it():
-    run = run_of(snake(3, name="left"), snake(4, name="right"))
-    assert told(run) == [
-        "self-clearance of left: 1 of 3 pairs measured, 2 neighbours",
-        "self-clearance of right: 3 of 6 pairs measured, 3 neighbours",
-    ]
-    apart = [replace(one, self_clearance=None) for one in run.record.case.robots]
-    assert told(cl.check(replace(run.record.case, robots=tuple(apart)), certify=False)) == []

@@ -14,7 +14,7 @@ from clearance.errors import BadInput, MissingFile
 from clearance.report.summary import json_text
 from clearance.report.topics.provenance import public_path
 from clearance.world.robot import Joint, JointKind
-from tests.made_cases import at, with_copies
+from tests.made_cases import at
 from tests.report.cells import sliding
 from tests.report.made import summary_of, write
 from tests.report.records import record
@@ -65,16 +65,6 @@ def test_no_file_of_a_report_names_the_folder_it_was_made_in(tmp_path):
     for path in (tmp_path / "out").iterdir():
         assert b"/home/someone" not in path.read_bytes()
         assert str(tmp_path).encode() not in path.read_bytes()
-
-
-def test_a_mesh_that_holds_each_face_once_for_each_side_is_told_as_two_sided():
-    made = record()
-    first = made.case.obstacles[0]
-    both = with_copies(first.body.shape, range(first.body.shape.n_faces), turned_round=True)
-    doubled = dataclasses.replace(first, body=dataclasses.replace(first.body, shape=both))
-    case = dataclasses.replace(made.case, obstacles=(doubled, *made.case.obstacles[1:]))
-    told = summary_of(dataclasses.replace(made, case=case))["obstacles"]
-    assert [body["two_sided"] for body in told] == [True] + [False] * (len(told) - 1)
 
 
 CASE = "scenes/box_box/case.yaml"

@@ -11,10 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 import clearance as cl
-from clearance.report.tables import write_csv, write_parquet
+from clearance.report.tables import write_csv
 from clearance.report.topics.worst import sensitivity_blocks, sensitivity_data
 from tests.gains.gantries import along_x, gantry, slot, standing
-from tests.report.records import record
 
 finite = some.floats(allow_nan=False, allow_infinity=False)
 
@@ -33,18 +32,6 @@ def test_names_come_back_from_csv(tmp_path, name):
     write_csv(lambda: [pa.table({"link": [name], "clearance": [0.1]})], tmp_path / "steps.csv")
     with (tmp_path / "steps.csv").open(newline="") as file:
         assert list(csv.DictReader(file)) == [{"link": name, "clearance": "0.1"}]
-
-
-def test_csv_of_plain_names_has_no_quotes_and_a_header(tmp_path):
-    table = pa.table({"step": [0], "link": ["fore"], "clearance": [0.5]})
-    write_csv(lambda: [table], tmp_path / "steps.csv")
-    assert (tmp_path / "steps.csv").read_text() == "step,link,clearance\n0,fore,0.5\n"
-
-
-def test_parquet_is_the_table(tmp_path):
-    steps = record().steps
-    write_parquet([steps], tmp_path / "steps.parquet")
-    assert pyarrow.parquet.read_table(tmp_path / "steps.parquet").equals(steps)
 
 
 def table_of(case):

@@ -11,8 +11,8 @@ from PIL import Image
 
 from clearance.report import picture
 from clearance.report.glb import glb_of
-from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of, seen_edges
-from clearance.report.raster import Screen, drawn_segments, surface
+from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of
+from clearance.report.raster import Screen, surface
 from clearance.report.still import COLOURS, Camera, at_gap, overview, rgb, still_of
 from tests.report.made import replay_of, run_of
 from tests.report.records import record
@@ -60,35 +60,6 @@ def test_every_pixel_shows_what_a_ray_meets_first(seed):
     expected, is_sure = slow_owners(screen, corners)
     assert (owners.reshape(32, 48) == expected)[is_sure].all()
     assert is_sure.mean() > 0.9 and len(set(expected[is_sure].tolist())) > 1
-
-
-def test_segments_are_cut_at_the_edge_of_the_picture():
-    """A line far beyond both sides, one that is behind the camera, and one that ends in the middle."""
-    ends = np.array(
-        [[[4.0, 90, 0], [4, -90, 0]], [[-1, 0, 1], [-2, 0, 2]], [[-4, 0, 0.5], [4, 0, 0.5]]]
-    )
-    for segments, n_columns in ((ends[:1], 40), (ends[1:2], 0), (ends[2:], 2)):
-        found = drawn_segments(Screen(FORWARD, 40, 40), segments, np.zeros((40, 40)), 0.0)
-        assert found.any(axis=0).sum() == n_columns
-
-
-def test_a_segment_is_hidden_by_what_is_before_it():
-    screen = Screen(FORWARD, 40, 40)
-    ends = np.array([[[4.0, -0.5, 0.01], [4.0, 0.5, 0.01]]])
-    open_to_see = drawn_segments(screen, ends, np.zeros((40, 40)), 0.0)
-    assert open_to_see.any() and open_to_see.any(axis=1).sum() == 2
-    assert not drawn_segments(screen, ends, np.full((40, 40), 1 / 3.9), 0.0).any()
-    assert (drawn_segments(screen, ends, np.full((40, 40), 1 / 4.1), 0.0) == open_to_see).all()
-
-
-def test_the_edges_of_a_box_are_twelve_and_of_a_sheet_its_border():
-    corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
-    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    triangles = np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
-    assert len(seen_edges(corners, triangles)) == 12
-    apart = corners[triangles].reshape(-1, 3)
-    assert len(seen_edges(apart, np.arange(36).reshape(-1, 3))) == 12
-    assert len(seen_edges(corners, triangles[:2])) == 4
 
 
 @pytest.mark.parametrize("look", [overview, at_gap])

@@ -12,7 +12,7 @@ import pytest
 
 import clearance as cl
 from clearance.findings.comparison import compared
-from clearance.findings.finding import NOT_PROVEN, TOLERANCES
+from clearance.findings.finding import TOLERANCES
 from clearance.findings.findings_file import findings_text, read_findings
 from clearance.record.budget import ErrorSource
 from clearance.report.annotations import annotation_lines
@@ -82,20 +82,6 @@ def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     )
 
 
-def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
-    (finding,) = [one for one in findings_of(OPEN) if one.kind == TOLERANCES]
-    assert (finding.status, finding.fails, finding.body_a, finding.body_b) == (
-        NOT_PROVEN,
-        True,
-        "gripper",
-        "post",
-    )
-    assert finding.proven == pytest.approx(finding.clearance - 0.0025)
-    assert findings_of(OPEN)[0] is not None and findings_of(OPEN)[0].kind == TOLERANCES
-    assert [one.kind for one in findings_of(KEPT)] == ["clearance"]
-    assert all(one.kind != TOLERANCES for one in findings_of(BROKEN))
-
-
 def test_its_name_does_not_depend_on_numbers_or_bodies():
     open_run = run_of(OPEN)
     (worst,) = open_run.session.least_left(OPEN.budget[0])
@@ -156,13 +142,6 @@ def test_findings_are_kept_and_compared(tmp_path):
         and rows[TOLERANCES].why == "its tolerances are others"
     )
     assert rows["clearance"].change == "unchanged"
-
-
-def test_where_numbers_are_from_is_no_part_of_the_comparison():
-    named = dataclasses.replace(OPEN.case.tolerance, sources=("elsewhere",), unproven_ok=True)
-    other = dataclasses.replace(OPEN, case=dataclasses.replace(OPEN.case, tolerance=named))
-    one, two = (finding_list_of(each).measured.tolerances for each in (OPEN, other))
-    assert one == two != finding_list_of(NEAR).measured.tolerances == ""
 
 
 def test_the_steps_have_columns_of_it(tmp_path):

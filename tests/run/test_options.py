@@ -208,11 +208,6 @@ def test_a_question_is_made_in_one_hop(case):
     assert not paper.certify and replace(paper, contact="none").method == "paper"
 
 
-def test_options_of_a_question_are_given_by_name(case):
-    with pytest.raises(TypeError):
-        Question(case, "limit")
-
-
 @pytest.mark.parametrize("name", ["need", "certify", "certify_gap", "method", "motion"])
 def test_rows_of_another_question_are_not_taken_up(case, name):
     assert Question(case).of_rows != Question(case, **{name: EVERY[name][0]}).of_rows

@@ -88,23 +88,6 @@ def test_valencies_are_those_of_table_1(kind, takes):
     assert c.valency == PAPER[kind, takes]
 
 
-def test_the_example_of_the_documentation():
-    s = Sketch()
-    a, b = s.point(0, 0, name="a"), s.point(9.7, 0.2)
-    line, c = s.line(a, b), s.circle((4, 3), 2.1)
-    s.fix(a), s.distance(a, b, 10.0, name="width"), s.tangent(line, c), s.radius(c, 2.0)
-    result = s.solve()
-    assert result.status == "under" and result.freedom == 1  # the turn about a places the whole
-    assert np.linalg.norm(b.position) == pytest.approx(10.0, abs=1e-12)
-    normal = np.array([-line.direction[1], line.direction[0]])
-    assert normal @ (c.center.position - a.position) == pytest.approx(2.0, abs=1e-12)
-    s.set("width", 12.0)
-    assert s.solve().solved and np.linalg.norm(b.position) == pytest.approx(12.0, abs=1e-11)
-    s.drag(b, (11, 5))
-    assert np.linalg.norm(b.position) == pytest.approx(12.0, abs=1e-11)
-    assert math.atan2(*b.position[::-1]) == pytest.approx(math.atan2(5, 11), abs=1e-4)
-
-
 @pytest.mark.parametrize("inside", [False, True])
 def test_circles_touch_inside_and_outside(inside):
     s = Sketch()

@@ -17,29 +17,6 @@ QUICK = examples(25)
 
 
 @QUICK
-@given(st.integers(3, 30), st.integers(0, 10**6))
-def test_well_constrained(n, seed):
-    s, p, points, _ = truth(n, seed)
-    result = s.solve()
-    assert result.status == "well" and result.freedom == 0
-    assert result.residual <= 1e-12 * n
-    assert shape(p) == pytest.approx(
-        np.linalg.norm(points[:, None] - points[None], axis=2), abs=1e-9
-    )
-
-
-@QUICK
-@given(st.integers(5, 20), st.integers(0, 10**6), st.integers(1, 2))
-def test_under_constrained_by_the_missing_edges(n, seed, missing):
-    s, p, _points, _edges = truth(n, seed, missing=missing)
-    result = s.solve()
-    assert result.status == "under" and result.freedom == missing
-    assert result.residual <= 1e-12 * n
-    before = [q.position for q in p]
-    assert s.solve().solved and all((a == q.position).all() for a, q in zip(before, p, strict=True))
-
-
-@QUICK
 @given(st.integers(6, 20), st.integers(0, 10**6), st.integers(1, 2))
 def test_over_constrained_is_consistent_and_named(n, seed, extra):
     s, _p, _, _edges = truth(n, seed, extra=extra)
@@ -76,7 +53,6 @@ def test_solved_sketches_solve_to_themselves_bit_for_bit(n, seed):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_least_movement_against_an_independent_optimiser(seed):
-    from scipy.optimize import minimize
 
     s, p, _, edges = truth(8, seed, missing=2 + seed % 2, off=0.15)
     drawn = np.array([q.position for q in p]).ravel()
@@ -142,37 +118,6 @@ def test_drag_keeps_the_constraints_and_follows():
     assert p[2].position == pytest.approx([1.6, 0.8], abs=1e-4)
 
 
-def _optimum(drawn, gaps, slopes=None):
-    constraint = {"type": "eq", "fun": gaps} | ({"jac": slopes} if slopes else {})
-    found = minimize(
-        lambda x: float(np.sum((x - drawn) ** 2)), drawn, jac=lambda x: 2.0 * (x - drawn),
-        method="SLSQP", constraints=constraint, options={"maxiter": 100, "ftol": 1e-13},
-    )  # fmt: skip
-    assert np.abs(gaps(found.x)).max() < 1e-8
-    return math.sqrt(found.fun)
-
-
 def _height(p, a, b):
     d = (b - a) / np.linalg.norm(b - a)
     return d[0] * (p - a)[1] - d[1] * (p - a)[0]
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_a_tangent_circle_and_a_chain(seed):
-    random = np.random.default_rng(seed)
-    drawn = np.array([0.0, 0.0, 4.0, 0.2, 2.0, 1.3, 5.0, 2.5, 1.1])
-    drawn = drawn + random.uniform(-0.15, 0.15, drawn.size)
-    s = Sketch()
-    a, b, c, d = (s.point(*drawn[k : k + 2]) for k in (0, 2, 4, 6))
-    line, circle = s.line(a, b), s.circle(c, drawn[8])
-    s.distance(a, b, 4.1), s.tangent(line, circle), s.distance(b, d, 2.4), s.distance(d, c, 3.1)
-
-    def gaps(x):
-        p, q, m, e = x[0:2], x[2:4], x[4:6], x[6:8]
-        spans = [np.linalg.norm(p - q) - 4.1, np.linalg.norm(q - e) - 2.4]
-        return np.array([*spans, np.linalg.norm(e - m) - 3.1, _height(m, p, q) - x[8]])
-
-    result = s.solve()
-    assert result.status == "under" and result.residual <= 1e-12 * 6.0
-    moved = math.hypot(result.movement, circle.radius - drawn[8])
-    assert moved <= 1.001 * _optimum(drawn, gaps)

@@ -55,13 +55,6 @@ def test_positions_and_extremes_are_those_of_the_spline(seed):
         assert np.abs(greatest[i] - sampled.max(axis=0)).max() <= 1e-3 * size
 
 
-def test_a_throw_goes_as_high_as_it_must():
-    least, greatest = extremes_between(
-        np.array([0.0, 2.0]), np.zeros((2, 1)), np.array([[3.0], [-3.0]])
-    )
-    assert (least[0, 0], greatest[0, 0]) == (0.0, 1.5)
-
-
 def test_before_and_after_a_trajectory_the_robot_rests():
     asked = random_trajectory(1)
     ends = positions_along(asked, asked.times[[0, -1]] + [-5.0, 5.0])
@@ -232,16 +225,6 @@ def test_too_many_rounds_are_refused():
         looped(knots_of(np.array([0.0, 1e-9]), np.zeros((2, 1))), 10.0)
 
 
-def test_a_rotation_turns_about_one_axis_at_constant_speed():
-    turned = np.array([[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]])  # half a turn about z
-    knots = knots_of(np.array([0.0, 1.0]), turned, n_rotation=4)
-    share = np.linspace(0.0, 1.0, 7)
-    expected = np.column_stack(
-        [np.zeros((7, 2)), np.sin(np.pi / 2 * share), np.cos(np.pi / 2 * share)]
-    )
-    assert np.allclose(knots.values_at(share), expected, rtol=0.0, atol=1e-15)
-
-
 HALF = np.sqrt(0.5)
 
 
@@ -268,25 +251,6 @@ def test_equal_to_the_arc_of_sines(seed, share):
     sign = -1.0 if p @ q < 0.0 and share == 1.0 else 1.0  # the end is as it was given
     assert np.abs(sign * found - by_sines(p, q, share)).max() < 1e-13
     assert np.linalg.norm(found) == pytest.approx(1.0, abs=1e-14)
-
-
-def test_both_ends_to_the_last_bit():
-    random = np.random.default_rng(1)
-    p, q = units(random, 50), units(random, 50)
-    assert (slerp(p, q, 0.0) == p).all()
-    assert (slerp(p, q, 1.0) == q).all()
-
-
-@pytest.mark.parametrize("turn", [0.0, 1e-300, 1e-12, 1e-9, 1e-5, 1.0, 3.0, np.pi])
-@pytest.mark.parametrize("share", [0.25, 0.5, 0.9])
-def test_a_turn_about_z_by_hand(turn, share):
-    p = np.array([0.0, 0.0, 0.0, 1.0])
-    q = np.array([0.0, 0.0, np.sin(turn / 2), np.cos(turn / 2)])
-    for sign in (1.0, -1.0) if turn < np.pi else (1.0,):
-        x, y, z, w = slerp(p, sign * q, share)
-        assert (x, y) == (0.0, 0.0)
-        assert z == pytest.approx(np.sin(share * turn / 2), rel=1e-15, abs=0.0)
-        assert w == pytest.approx(np.cos(share * turn / 2), rel=1e-15)
 
 
 def test_half_a_turn_goes_the_way_of_the_signs():

@@ -21,7 +21,6 @@ GAPS = "most of its balls of 10 mm touch no other: what is thinner than the gaps
 POINTS = np.array([[0.5, -1.25, 2.0], [1e-3, 0.0, 3.5], [0.1, 0.2, 0.3], [7.0, 8.0, 9.0]]).astype(
     np.float32
 )
-DOUBLES = (("x", "F", 8, 1), ("y", "F", 8, 1), ("z", "F", 8, 1))
 MORE = (("intensity", "F", 4, 1), ("x", "F", 4, 1), ("normal", "F", 4, 3), ("y", "F", 4, 1), ("z", "F", 4, 1),
         ("rgb", "U", 4, 1), ("_", "U", 1, 5))  # fmt: skip
 
@@ -67,13 +66,6 @@ def test_the_points_are_those_of_the_file(name):
     found = cloud_from_bytes(FILES[name], name, 0.01)
     assert as_set(found.shape.vertices) == as_set(POINTS)
     assert (found.shape.ball_radius, found.notes) == (0.01, (*GUESSED.get(name, ()), GAPS))
-
-
-@pytest.mark.parametrize("form", ["ascii", "binary", "binary_compressed"])
-def test_doubles_are_kept_to_the_last_bit(form):
-    points = np.random.default_rng(1).normal(size=(50, 3))
-    found = cloud_from_bytes(pcd(points, form, DOUBLES), "a.pcd", 0.01)
-    assert as_set(found.shape.vertices) == as_set(points)
 
 
 @pytest.mark.parametrize("make", [pcd, ply, table])

@@ -10,7 +10,6 @@ from clearance.errors import MissingFile
 from clearance.formats.files.found_files import MODEL, PACKAGE, leads_to, note_lookup
 from clearance.formats.files.input_files import InputFiles, read_bytes
 from clearance.report.topics.provenance import inputs
-from tests.formats.making import PATH
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "pipe"])
@@ -25,18 +24,6 @@ def test_pipes_and_devices_are_refused_without_waiting(tmp_path, name):
     ):
         with pytest.raises(MissingFile, match="is a pipe or a device; a path to a file on disk"):
             read()
-
-
-def test_files_and_links_to_them_are_read(tmp_path):
-    (tmp_path / "path.csv").write_text(PATH)
-    (tmp_path / "link.csv").symlink_to("path.csv")
-    files = InputFiles(tmp_path)
-    assert files.read(tmp_path / "link.csv") == PATH.encode()
-    opened, n_bytes = files.unread(tmp_path / "link.csv")
-    with opened() as file:
-        assert len(file.read()) == n_bytes
-    with pytest.raises(MissingFile, match="is a folder"):
-        files.read(tmp_path)
 
 
 URDF = """<robot name="cart"><link name="ground"/>

@@ -120,14 +120,6 @@ def test_a_workspace_is_searched_all_the_way_down(tmp_path, given, place):
     assert mesh_paths.package_folder(*asked).path == tmp_path / place
 
 
-def test_the_highest_folder_of_a_name_comes_first(tmp_path):
-    (tmp_path / "case").mkdir()
-    package(tmp_path / "ws" / "src" / "arms")
-    package(tmp_path / "ws" / "a" / "test" / "arms")
-    found = load_urdf(tmp_path / "case", ASKED, [tmp_path / "ws"])
-    assert found.bodies[0].origin == "../ws/src/arms/meshes/part.stl"
-
-
 @pytest.mark.parametrize(
     "before", ["file:///home/jane/ws/src", "/home/jane/ws/src", "file://localhost/opt"]
 )

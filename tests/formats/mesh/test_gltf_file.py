@@ -61,14 +61,6 @@ def test_quantized_positions_are_decoded(kind, normalized, divisor):
     assert rows_of(triangles) == z_up(corners.astype(float) / divisor)
 
 
-def test_signed_normalized_values_are_never_below_minus_one():
-    corners = np.array([[-128, 0, 0], [-127, 0, 127], [0, 127, 0]], dtype="<i1")
-    document, binary = document_of(corners)
-    document["accessors"][0]["normalized"] = True
-    triangles = triangles_from_bytes(glb(document, binary), "m.glb")
-    assert rows_of(triangles) == z_up([[-1, 0, 0], [-1, 0, 1], [0, 1, 0]])
-
-
 def test_interleaved_positions_are_read_with_their_stride():
     table = np.zeros((8, 6), dtype="<f4")
     table[:, 2:5] = CUBE

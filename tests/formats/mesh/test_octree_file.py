@@ -53,15 +53,6 @@ def test_the_outside_is_closed_and_as_far_as_the_cubes(cells):
         )
 
 
-@pytest.mark.parametrize("pruned", [False, True])
-@pytest.mark.parametrize("full", [False, True])
-def test_a_block_of_cells_is_a_box(full, pruned):
-    shape = solid(octree(BLOCK, 0.25, full=full, pruned=pruned), "map.ot" if full else "map.bt")
-    assert shape.bounds.tolist() == [[0.0, 0.0, 0.0], [1.0, 0.5, 0.5]]
-    assert shape.n_faces == 6
-    assert shape.volume == pytest.approx(0.25)
-
-
 def test_cells_of_two_sizes_side_by_side_stay_closed():
     """Squares of different sizes do not cancel; both are there, and nothing is farther for it."""
     shape = solid(octree(BLOCK | {(4, 0, 0): True}, 0.25, pruned=True))

@@ -4,7 +4,6 @@ from io import BytesIO
 
 import pytest
 
-from clearance import check
 from clearance.errors import (
     BadInput,
     BadShape,
@@ -201,12 +200,3 @@ def test_aliases_make_no_more_of_a_file_than_it_holds():
 def as_case(folder, text: str, given: str = "file: path.yaml", suffix: str = "yaml"):
     case = changed("file: path.csv", given)
     return load_small(folder, case, urdf=TWO_JOINTS, **{f"path__{suffix}": text})
-
-
-def test_a_case_takes_it_in_place_of_its_table(tmp_path):
-    rows = "time,shoulder,lift,shoulder/velocity,lift/velocity\n0,0.1,0,0,-0.001\n"
-    rows += "1.1,0.30000000000000004,0.05,0.5,0.25\n"
-    table = check(load_small(tmp_path, urdf=TWO_JOINTS, trajectory=rows))
-    message = check(as_case(tmp_path, ROS2))
-    assert (message.record.clearances == table.record.clearances).all()
-    assert as_case(tmp_path, dumped([SECOND, MESSAGE]), "file: path.json, which: 2", "json")

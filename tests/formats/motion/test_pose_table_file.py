@@ -20,7 +20,6 @@ from clearance.errors import (
 )
 from clearance.formats.motion.pose_file import PoseRequest, read_poses
 from clearance.formats.motion.pose_table_file import parse_pose_table
-from clearance.formats.text.file_start import POSE_COLUMNS
 
 TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 
@@ -39,18 +38,6 @@ def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():
         assert np.array_equal(cut.times, whole.times[:rows])
         assert np.array_equal(cut.positions, whole.positions[:rows])
         assert np.abs(cut.quaternions - whole.quaternions[:rows]).max() < 1e-6
-
-
-@given(st.permutations(POSE_COLUMNS), st.data())
-def test_columns_may_be_in_any_order(order, data):
-    number = st.floats(-1e3, 1e3, allow_subnormal=False)
-    values = (
-        dict.fromkeys(POSE_COLUMNS, 0.0) | {name: data.draw(number) for name in "xyz"} | {"qw": 1.0}
-    )
-    line = ",".join(repr(values[name]) for name in order)
-    table = parse_pose_table(f"{','.join(order)}\n{line}\n".encode(), "door.csv")
-    assert table.positions.tolist() == [[values[name] for name in "xyz"]]
-    assert table.quaternions.tolist() == [[0, 0, 0, 1]] and table.times.tolist() == [0]
 
 
 @given(st.lists(st.floats(-10, 10, allow_subnormal=False), min_size=4, max_size=4))

@@ -33,12 +33,6 @@ def test_bodies_are_links_and_the_world_is_the_root(tmp_path):
     assert loaded.notices == () and loaded.notes == ("toy.xml: geoms: 2 collide",)
 
 
-def test_a_case_names_it_as_a_robot(tmp_path):
-    case = load_small(tmp_path, changed("arm.urdf", "arm.xml"), arm__xml=ARM)
-    assert case.robots[0].robot.name == "toy"
-    assert [source.path for source in case.sources] == ["arm.xml", "case.yaml", "path.csv"]
-
-
 SEEN = mjcf(
     f'<body name="a"><joint/>{BALL}<geom size="0.2" contype="0" conaffinity="0" group="2"/></body>'
     '<body name="b"><geom size="0.3" contype="0" conaffinity="0"/></body>'

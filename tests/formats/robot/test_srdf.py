@@ -60,12 +60,6 @@ def test_what_counts_last_decides(read, rows, reason):
     assert matrix.reason("a", "b") == matrix.reason("b", "a") == reason
 
 
-def test_a_link_that_is_off_by_default_is_so_with_every_other(read):
-    matrix = read(OFF)
-    assert matrix.reason("a", "c") == BY_DEFAULT
-    assert matrix.reason("b", "c") is None
-
-
 def test_rows_of_unknown_links_are_left_out_and_named(read):
     matrix = read(disable("a", "b"), disable("a", "gripper"), OFF.replace('"a"', '"tool"'))
     assert matrix.reason("a", "b") == "Never" and matrix.off_by_default == ()

@@ -261,12 +261,6 @@ def test_links_that_are_seen_but_not_measured_are_a_warning_of_their_own(tmp_pat
     assert "9 links have" in notice.text and "'link5' and 3 more" in notice.text
 
 
-def test_bare_frames_are_a_note_and_no_warning(tmp_path):
-    found = load_urdf(tmp_path, arm(BOX, "", BOX))
-    assert found.notices == ()
-    assert found.notes == ("arm.urdf: 1 link without any shape: link0",)
-
-
 def test_collision_or_visual_measures_all_that_has_a_shape(tmp_path):
     urdf = arm(BOX + VISUAL, VISUAL, "")
     found = load_urdf(tmp_path, urdf, geometry="collision_or_visual")

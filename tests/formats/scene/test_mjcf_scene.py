@@ -11,7 +11,6 @@ from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneRequest
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
-from tests.formats.making_case import load_small
 from tests.formats.making_mjcf import BALL, mjcf, write_mjcf
 
 
@@ -77,12 +76,6 @@ def test_a_mesh_that_the_model_turns_is_turned_and_then_scaled(tmp_path):
         sorted(map(tuple, turned.round(9).tolist())),
         atol=1e-8,
     )
-
-
-def test_a_case_names_it_as_its_scene(tmp_path):
-    text = "robot: {urdf: arm.urdf}\nscene: world.xml\ntrajectory: path.csv\n"
-    case = load_small(tmp_path, text, world__xml=mjcf(f'<body name="b" pos="3 0 0">{BALL}</body>'))
-    assert [obstacle.name for obstacle in case.obstacles] == ["b/geom0"]
 
 
 @pytest.mark.parametrize(
