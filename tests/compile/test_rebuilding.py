@@ -81,7 +81,7 @@ pytestmark = [pytest.mark.cold, pytest.mark.slow]
 
 
 def test_a_clone_that_is_installed_is_built_again(tmp_path, monkeypatch):
-    """As pip builds it: at its start each process takes the folder of the editable installation out of its path."""
+    """As pip builds it: each process takes the folder of the editable installation out of its path first."""
     hook = pytest.importorskip("clearance.compile.build_hook")
     made = SmallPackage(tmp_path / "clone")
     (tmp_path / "pip").mkdir()
