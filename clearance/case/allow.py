@@ -94,21 +94,6 @@ def require_link_patterns(given: Sequence[str], links: Iterable[str]) -> None:
             _refuse_unmatched(pattern, known, "link", UnknownLink)
 
 
-def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]:
-    """The given link names, once all are there.
-
-    Raises:
-        UnknownLink: with the nearest name.
-    """
-    known = frozenset(links)
-    for i, name in enumerate(given):
-        if name not in known:
-            raise UnknownLink(
-                f"unknown link {name!r}", where=f"[{i}]", valid=nearest_name(name, known)
-            )
-    return tuple(given)
-
-
 def _link_first(row: Allowance, names: PatternNames) -> Allowance:
     """The row; turned round where it is of an obstacle and a link, and of no pair as it stands."""
     first, second = row.between

@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from clearance.case.allow import checked_links
 from clearance.case.driven_robots import ProgrammedMotion, Surroundings
 from clearance.case.resting import positions_asked, resting_positions, with_start
 from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
@@ -26,6 +25,7 @@ from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.timed_files import trajectory_of
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
+from clearance.world.names import checked_links
 from clearance.world.robot import Robot
 from clearance.world.rules import matches
 from clearance.world.trajectory import Trajectory

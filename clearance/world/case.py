@@ -31,7 +31,7 @@ from clearance.world.distinct_bodies import (
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
-from clearance.world.names import checked_name, require_own_names
+from clearance.world.names import checked_links, checked_name, require_own_names
 from clearance.world.notice import Notice
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.recording import Recording
@@ -191,6 +191,9 @@ class PlacedRobot:
                 raise Contradiction(
                     "both a base in the world and a mount are given", valid="one of them"
                 )
+        for name, links in (("padding", self.padding), ("exclude_links", self.exclude_links)):
+            with at(name):
+                checked_links([*links], self.robot.link_names)
         for link, padding in self.padding.items():
             with at(f"padding.{link}"):
                 checked_padding(padding)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from clearance.errors import BadInput, DuplicateName, at
+from clearance.errors import BadInput, DuplicateName, UnknownLink, at, nearest_name
 
 _BIDIRECTIONAL = frozenset(
     "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
@@ -59,3 +59,18 @@ def _fault(letter: str) -> str:
     if code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF:
         return "a code that is no character"
     return _FAULTS.get(unicodedata.category(letter), "")
+
+
+def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]:
+    """The given link names, once all are there.
+
+    Raises:
+        UnknownLink: with the nearest name.
+    """
+    known = frozenset(links)
+    for i, name in enumerate(given):
+        if name not in known:
+            raise UnknownLink(
+                f"unknown link {name!r}", where=f"[{i}]", valid=nearest_name(name, known)
+            )
+    return tuple(given)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadDimension, BadInput
+from clearance.errors import BadDimension, BadInput, UnknownLink
 from clearance.world.robot import Joint, JointKind
 
 CUBE = cl.box((1.0, 1.0, 1.0))
@@ -62,3 +62,9 @@ def test_moved_turned_scaled_and_joined_surfaces_keep_it():
 def test_what_counts_no_padding_refuses_it():
     with pytest.raises(BadInput, match="which a profile does not count"):
         cl.swept_profile(case_of(0.125, 0.0))
+
+
+@pytest.mark.parametrize("given", [{"padding": {"tp": 0.01}}, {"exclude_links": ("tp",)}])
+def test_padding_and_exclusion_of_a_link_that_is_not_there_are_refused(given):
+    with pytest.raises(UnknownLink, match="unknown link 'tp'; did you mean 'tip'"):
+        case_of(0.0, 0.0, **given)
