@@ -127,6 +127,7 @@ class ProgramCell:
                 unproven=(),
                 assumed=(),
                 left_out=(),
+                odd=(),
                 has_way_in=False,
             )
             others[name] = part if name in free else replace(part, path_error=0.0, corners=())

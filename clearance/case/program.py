@@ -16,6 +16,7 @@ from clearance.case.standing import IN_WORLD, Place
 from clearance.errors import BadProgram, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
+from clearance.formats.plausibility import odd_in_program
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.conversion import ConvertedProgram, converted
 from clearance.formats.schema import program as schema
@@ -65,6 +66,7 @@ def program_motion(
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
         left_out=read.left_out,
+        odd=tuple(f"{shown}: {one}" for one in odd_in_program(asked.program_file, read.own)),
     )
     moved = (f"it moves robot {name!r} too" for name in driven)
     notes = tuple(f"{shown}: {note}" for note in (*read.notes, *moved, *found.notes))
@@ -114,7 +116,7 @@ def _of_schema(program: schema.Program) -> ConvertedProgram:
         path = move.ptp or move.lin or move.circ
         to = None if path is None or path.to is None else path.to.name
         names.append(f"{key.upper()} {i + 1}" + (f" → {to}" if to else ""))
-    return ConvertedProgram(program, tuple(places), tuple(names))
+    return ConvertedProgram(program, tuple(places), tuple(names), own=program)
 
 
 class _Frames:

@@ -6,11 +6,16 @@ Not for: what the case itself shows (`world.plausibility`), and values that cann
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from pydantic import BaseModel
 
 from clearance.formats.schema.obstacle import Obstacle
+from clearance.formats.schema.pose import Pose
+from clearance.formats.schema.program import JointMove, PathMove
+from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.shapes import SHAPES
 from clearance.world.notice import Notice, Severity, listed
 
@@ -24,6 +29,12 @@ LARGE_BALL = 0.2
 
 LARGE_SCALE = 100.0
 """[-] Mesh files are in metres or finer units, so that scales are 1 or less: 1000 is mistaken for 0.001."""
+
+LARGE_ZONE = 1.0
+"""[m] Corners of programs are rounded within 1 to 200 mm."""
+
+IN_DEGREES = "angles are in radians, is this degrees (90° are 1.5708 rad)?"
+IN_MILLIMETRES = "lengths are in metres, is this millimetres?"
 
 ROUND_ANGLE = 0.02
 """[rad] How near a multiple of pi/4 an angle is that is meant as one, written with few digits: 3.15, 4.7, 6.3."""
@@ -46,8 +57,7 @@ def obstacle_notices(obstacles: Sequence[Obstacle]) -> list[Notice]:
                 f"each point of {obstacle.name!r} has a radius of {obstacle.points.radius:g} m"
             )
         turned += odd_angles(f"obstacle {obstacle.name!r}", obstacle.pose.rpy)
-    hint = "lengths are in metres, is this millimetres?"
-    notices = [units(f"{listed(wide)}; {hint}")] if wide else []
+    notices = [units(f"{listed(wide)}; {IN_MILLIMETRES}")] if wide else []
     return notices + angle_notices(turned)
 
 
@@ -55,6 +65,44 @@ def _radius(obstacle: Obstacle) -> float:
     """[m] of a round shape; 0 for others."""
     shape = SHAPES.get(obstacle.kind)
     return 0.0 if shape is None or shape.radius is None else obstacle.dimensions[shape.radius]
+
+
+def odd_in_program(*given: BaseModel | None) -> list[str]:
+    """A line each on angles and corner radii of a program that look like another unit."""
+    models = [one for model in given if model is not None for one in _within(model, "")]
+    turned = [
+        odd
+        for where, one in models
+        if isinstance(one, Pose)
+        for odd in odd_angles(where or "the pose", one.rpy)
+    ]
+    radii = [
+        (f"{where}.zone", one.zone)
+        for where, one in models
+        if isinstance(one, JointMove | PathMove)
+    ]
+    files = [one for _, one in models if isinstance(one, ProgramFile)]
+    radii += [(f"zones.{word}", radius) for one in files for word, radius in one.zones.items()]
+    wide = [f"{where} is {radius:g} m" for where, radius in radii if radius > LARGE_ZONE]
+    texts = [f"{listed(turned)}; {IN_DEGREES}"] if turned else []
+    return [*texts, *([f"{listed(wide)}; {IN_MILLIMETRES}"] if wide else [])]
+
+
+def _within(model: Any, where: str) -> Iterator[tuple[str, BaseModel]]:
+    """A model and all models in it, each with where it is written."""
+    if isinstance(model, BaseModel):
+        yield where, model
+        parts = [(f"{where}.{name}", getattr(model, name)) for name in type(model).model_fields]
+    elif isinstance(model, Mapping):
+        parts = [(f"{where}.{name}", one) for name, one in model.items()]
+    else:
+        parts = (
+            [(f"{where}[{i}]", one) for i, one in enumerate(model)]
+            if isinstance(model, list)
+            else []
+        )
+    for place, one in parts:
+        yield from _within(one, place.lstrip("."))
 
 
 def odd_angles(what: str, rpy: Sequence[float] | None) -> list[str]:
@@ -65,8 +113,7 @@ def odd_angles(what: str, rpy: Sequence[float] | None) -> list[str]:
 
 def angle_notices(odd: Sequence[str]) -> list[Notice]:
     """One notice on all odd angles."""
-    hint = "angles are in radians, is this degrees (90° are 1.5708 rad)?"
-    return [units(f"{listed(odd)}; {hint}")] if odd else []
+    return [units(f"{listed(odd)}; {IN_DEGREES}")] if odd else []
 
 
 def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]:

@@ -42,7 +42,8 @@ def notices_on_motion(
     Args:
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
     """
-    texts = [*_odd_velocities(placed, before), *_creeping(placed, before)]
+    texts = [*placed.given_trajectory.odd, *_odd_velocities(placed, before)]
+    texts += _creeping(placed, before)
     extents = joint_extents(placed) if extents is None else extents
     return [
         *notices_on_positions(_as_given(placed, extents), before),

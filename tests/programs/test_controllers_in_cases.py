@@ -78,14 +78,36 @@ def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
     ]
     own = cl.load_case(case(tmp_path, moves, [far()], start={**START, "joint_1": -0.4}))
     one, two = (each.robots[0].trajectory for each in (found, own))
-    waits = controller_case(tmp_path, "b.script", script() + "grip()\n", axes=BEND, skip=["grip"])
-    assert cl.load_case(waits).robots[0].trajectory.left_out == ("grip (line 7)",)
     assert np.abs(one.times - two.times).max() < 1e-9
     assert np.abs(one.positions - two.positions).max() < 1e-9
     assert [move.name for move in one.moves] == ["PTP 3", "PTP 4 → P1", "LIN 5", "CIRC 6"]
     told = "\n".join(found.notes)
     assert not [one for one in notices_of(found) if one.kind == "program"]
     assert "with axes beside them agree" in told and "taken for the controller's base" in told
+    waits = controller_case(tmp_path, "b.script", script() + "grip()\n", axes=BEND, skip=["grip"])
+    assert cl.load_case(waits).robots[0].trajectory.left_out == ("grip (line 7)",)
+
+
+def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
+    base = {"on": "base", "rpy": [0, 0, 360]}
+    tools, zones = {"TCP": {"rpy": [0, 0, 90]}}, {"CNT": 50.0}
+    path = controller_case(
+        tmp_path, "a.script", script(), axes=BEND, base=base, tools=tools, zones=zones
+    )
+    odd = [one.text for one in notices_of(cl.load_case(path)) if one.severity == "suspect"]
+    assert odd == [
+        "CHECK UNITS: a.script: base has an angle of 360 rad in its rpy, tools.TCP has an angle of 90 rad in its "
+        "rpy; angles are in radians, is this degrees (90° are 1.5708 rad)?",
+        "CHECK UNITS: a.script: zones.CNT is 50 m; lengths are in metres, is this millimetres?",
+    ]
+    move = {
+        "lin": {"to": {"frame": "base", "xyz": tool_at(START)[:3, 3].tolist(), "rpy": [0, 0, 45]}}
+    }
+    own = cl.load_case(
+        case(tmp_path, [{"ptp": {"joints": {**START, "joint_1": 0.1}}}, move], [far()])
+    )
+    (told,) = [one.text for one in notices_of(own) if one.severity == "suspect"]
+    assert "moves[1].lin.to has an angle of 45 rad" in told
 
 
 def test_points_beside_a_program_are_read_along_and_listed(tmp_path):

@@ -56,7 +56,7 @@ class ConvertedProgram:
             assumed.
         assumed: what a verdict rests on, where nothing in the files confirms it, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
-        left_out: instructions that the case leaves out, and where.
+        left_out: instructions that the case leaves out, and where. own: the program, if it is written in our form.
     """
 
     program: schema.Program
@@ -66,6 +66,7 @@ class ConvertedProgram:
     starts_anywhere: bool = False
     assumed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    own: schema.Program | None = None
 
 
 def converted(

@@ -97,7 +97,7 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
             script.routines |= beside.routines
             data_beside += beside.body
         tool = asked.asked.tools.get(TCP)
-        language = _UrScript(tool and tool.matrix())
+        language = _UrScript(None if tool is None else tool.matrix())
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
         entry = _entry(script, asked.asked.entry)
         run.run(_outside(data_beside, run.routines))
