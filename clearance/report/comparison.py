@@ -72,12 +72,10 @@ def comparison_page(
 ) -> str:
     """The whole page."""
     lines = [comparison_text(comparison), *doubt_lines(comparison)[:MOST_ROWS]]
-    passed = comparison.passed
     header = Header(
         "Clearance comparison",
         comparison.now,
-        "nothing is new or worse" if passed else "new or worse",
-        "clear" if passed else "violated",
+        *_badge(comparison),
         [Bullets([*map(capital, lines)], "beside")],
     )
     content: list[object] = [
@@ -96,6 +94,17 @@ def comparison_page(
         ]
     sections = [Section("Clearance over time", content), Section("Findings", [*_table(comparison)])]
     return plain_page(f"{comparison.now}: compared", header, sections, chart)
+
+
+def _badge(comparison: Comparison) -> tuple[str, str]:
+    """The outcome in a few words, and the status whose colour it has: nothing is green that is worse."""
+    if not comparison.passed:
+        return "new or worse", "violated"
+    watched = (FindingChange.NEW, FindingChange.WORSE, FindingChange.NOT_COMPARABLE)
+    counts = [f"{n} {what}" for what, n in comparison.counts.items() if what in watched]
+    if counts:
+        return f"passed: {', '.join(counts)}", "near"
+    return "nothing is new or worse", "clear"
 
 
 def _table(comparison: Comparison) -> Iterator[Table | Paragraph]:

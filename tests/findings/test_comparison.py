@@ -11,6 +11,7 @@ import clearance as cl
 from clearance.findings.comparison import TOLERANCE, FindingChange, compared
 from clearance.findings.finding import JOINT_LIMITS, UNPROVEN
 from clearance.findings.findings_file import FindingList
+from clearance.report.comparison import comparison_page
 from clearance.report.comparison_text import comparison_cells, gone_text
 from tests.findings.gates import load_gates, write_gates, write_way
 
@@ -58,6 +59,9 @@ def test_what_became_of_each_finding(what, before, tmp_path):
     told = [(str(row.change), row.finding.body_b) for row in comparison.rows]
     assert told == rows
     assert comparison.passed is passed and not comparison.whole
+    page = comparison_page(comparison, [], ("before", "now"))
+    is_watched = any(change in ("new", "worse", "not comparable") for change, _ in rows)
+    assert ("nothing is new or worse" in page) is not is_watched
     assert sum(comparison.counts.values()) == len(comparison.rows)
 
 
