@@ -133,17 +133,20 @@ def _answer(
     printed: PrintedOutput,
 ) -> Run:
     """Measures, writes what is wanted, and prints the verdict."""
-    from clearance.cli.progress import shown_progress
+    from clearance.cli.progress import shown_progress, shown_work
     from clearance.cli.run_rows import resumable_rows_of
+    from clearance.progress import doing
     from clearance.run import Resources, answer
 
     ahead = outputs.trajectory_ahead(question)
     with resumable_rows_of(outputs.out, printed.quiet) as rows:
         with shown_progress(not printed.has_words, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-        comparison = _comparison_of(run, before)
-        notes = outputs.write(run, comparison, ahead)
-    _print(run, outputs.out, printed)
+        with shown_work(not printed.has_words, "writing the report"):
+            comparison = _comparison_of(run, before)
+            notes = outputs.write(run, comparison, ahead)
+    with doing(lambda: "working out the nearest pairs, events and slopes of the worst moment"):
+        _print(run, outputs.out, printed)
     if printed.has_words:
         outputs.print_written(notes)
         if comparison is not None:
