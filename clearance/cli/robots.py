@@ -34,7 +34,7 @@ def robots(words: tuple[str, ...]) -> int:
         click.echo(f"{one.given:{width}}  {one.n_links:4} links  {_collision(one)}")
     missing = [provider for provider in PROVIDERS if provider.folder is None]
     for provider in missing:
-        click.echo(f"not here: {provider.name} ({provider.installs})", err=True)
+        click.echo(f"not here: {provider.name} ({provider.remedy})", err=True)
     if not found and len(missing) < len(PROVIDERS):
         click.echo("no robot has such a name", err=True)
     return ExitCode.CLEAR

@@ -26,11 +26,13 @@ class Provider:
     Attributes:
         name: what stands before the colon. installs: the command that installs it.
         place: the folder of its files on this machine, which need not be there; None where it is not installed.
+        fetches: the command of a package that brings no files until it is asked to.
     """
 
     name: str
     installs: str
     place: Callable[[], Path | None]
+    fetches: str = ""
 
     @property
     def folder(self) -> Path | None:
@@ -38,6 +40,13 @@ class Provider:
         place = current_place()
         found = self.place() if place is None else place.packages / self.name
         return None if found is None or not found.is_dir() else found
+
+    @property
+    def remedy(self) -> str:
+        """What to do where it has no folder."""
+        if not self.fetches or self.place() is None:
+            return self.installs
+        return f"it has fetched no robot yet: {self.fetches}"
 
 
 def _package(name: str) -> Path | None:
@@ -72,6 +81,7 @@ PROVIDERS = (
         lambda: _clones(
             "robot_descriptions", "ROBOT_DESCRIPTIONS_CACHE", "~/.cache/robot_descriptions"
         ),
+        "robot_descriptions pull NAME",
     ),
 )  # fmt: skip
 """By the names of their packages; that of the last one has what its own loader has cloned before."""
@@ -106,29 +116,31 @@ def brought_path(given: str) -> Path | None:
     provider, rest = named
     folder = provider.folder
     if folder is None:
-        raise Unavailable(f"{given!r} needs the package {provider.name}", valid=provider.installs)
+        raise Unavailable(f"{given!r} needs the package {provider.name}", valid=provider.remedy)
     path = folder / rest.lstrip("/")
     if path.is_file():
         return path
     if "/" in rest or Path(rest).suffix:
         if path.exists():
             return path
-        raise _missing(provider.name, f"file {rest!r}", rest, _files(folder, Path(rest).suffix))
+        raise _missing(provider, f"file {rest!r}", rest, _files(folder, Path(rest).suffix))
     known = robot_names(folder)
-    found = known.get(rest, [])
+    found = known.get(rest) or known.get(rest.removesuffix("_description"), [])
     if len(found) == 1:
         return folder / found[0]
     if found:
         raise MissingFile(f"{given!r} may be any of several", valid=f"one of {', '.join(found)}")
     if path.exists():
         return path
-    raise _missing(provider.name, f"robot {rest!r}", rest, known)
+    raise _missing(provider, f"robot {rest!r}", rest, known)
 
 
-def _missing(provider: str, what: str, given: str, known: Iterable[str]) -> MissingFile:
+def _missing(provider: Provider, what: str, given: str, known: Iterable[str]) -> MissingFile:
     """What a package does not bring, with the nearest name of what it does."""
-    valid = f"{nearest_name(given, known)} (`clearance robots {provider}` lists its robots)"
-    return MissingFile(f"{provider} brings no {what}", valid=valid)
+    lists = f"`clearance robots {provider.name}` lists its robots"
+    fetches = f", `{provider.fetches}` fetches another" if provider.fetches else ""
+    valid = f"{nearest_name(given, known)} ({lists}{fetches})"
+    return MissingFile(f"{provider.name} brings no {what}", valid=valid)
 
 
 def robot_names(folder: Path) -> dict[str, list[str]]:

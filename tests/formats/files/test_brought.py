@@ -108,5 +108,11 @@ def test_the_robots_of_packages_are_listed(robots, capsys):
 def test_clones_of_a_package_are_found_where_it_keeps_them(robots, tmp_path, monkeypatch):
     (tmp_path / "site" / "robot_descriptions").mkdir()
     (tmp_path / "site" / "robot_descriptions" / "__init__.py").touch()
+    monkeypatch.setenv("ROBOT_DESCRIPTIONS_CACHE", str(tmp_path / "none"))
+    with pytest.raises(Unavailable, match="fetched no robot yet: robot_descriptions pull NAME"):
+        brought_path("robot_descriptions:ur5")
     monkeypatch.setenv("ROBOT_DESCRIPTIONS_CACHE", str(robots))
-    assert brought_path("robot_descriptions:ur5") == robots / "ur" / "ur5_robot.urdf"
+    for name in ("ur5", "ur5_description"):  # the package's own name of it, too
+        assert brought_path(f"robot_descriptions:{name}") == robots / "ur" / "ur5_robot.urdf"
+    with pytest.raises(MissingFile, match="`robot_descriptions pull NAME` fetches another"):
+        brought_path("robot_descriptions:panda")
