@@ -130,7 +130,9 @@ class ProgramCell:
                 odd=(),
                 has_way_in=False,
             )
-            others[name] = part if name in free else replace(part, path_error=0.0, corners=())
+            corners = tuple(zone for zone in part.corners if zone.links)
+            error = part.path_error if name in free else 0.0
+            others[name] = replace(part, path_error=error, corners=corners)
         return replace(_of(made, ""), drives=tuple(driven)), others
 
 
@@ -163,8 +165,10 @@ def _of(made: Trajectory, robot: str) -> Trajectory:
 
 
 def _links_of(zone: CornerZone, robot: str) -> dict[str, Deviation]:
-    """How far links of a robot may be off, by their own names."""
-    links = {name.rpartition("/")[::2]: off for name, off in zone.links.items()}
+    """How far those links of a robot may be off that may be, by their own names."""
+    links = {
+        name.rpartition("/")[::2]: off for name, off in zone.links.items() if off.at(1.0) > 0.0
+    }
     return {link: off for (owner, link), off in links.items() if owner == robot}
 
 

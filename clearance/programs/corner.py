@@ -5,6 +5,7 @@ between:
 
     p = E + f1(a) + f2(b),   0 <= b <= a <= 1,   R = exp(b' w2) exp(a' w1) R_E,   0 <= a', b' <= 1,   f(s) = d s.
 
+Joints that are told where to go are at q_E + a h1 + b h2, as far between as the point.
 The nominal motion has a = 2u - u^2 and b = u^2. A path's point with a + b = 2u is held against the nominal one at
 u, at strokes off by s and -s, -(u - u^2) <= s <= min(u, 1 - u) - (u - u^2). Where a side is an arc, f is the arc,
 and admissible are all points of the convex hull of entry, corner, exit and arcs: p with a ball about it
@@ -113,11 +114,14 @@ def _spread(
     shifts[:, 1:][:, sizes == 0.0] = 0.0
     halves[:, 1:][:, sizes == 0.0] = 0.0
     near = 0.5 * (given.before + given.after) + 0.25 * half * (given.rates[0] - given.rates[1])
+    held = follower.told.held[0] - follower.told.held[1]
+    start = near[i] + np.where(follower.free, 0.0, shifts[:, :1] * held)
     poses = stretch.poses(
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
     )
-    solved = joints_at(follower.arm.tool, poses, near[i], follower.free)
-    return Spread(solved.positions - near[i], shifts, halves, _hull(stretch))
+    solved = joints_at(follower.arm.tool, poses, start, follower.free)
+    off = np.where(follower.free, 0.0, halves[:, :1] * np.abs(held))
+    return Spread(solved.positions - near[i], off, shifts, halves, _hull(stretch))
 
 
 def _hull(stretch: Stretch) -> float:

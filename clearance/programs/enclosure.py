@@ -55,11 +55,13 @@ class Spread(NamedTuple):
 
     Attributes:
         joints: (n, k) [rad or m] how far the cubics are shifted for it.
+        held: (n, k) how far joints that do not follow may be from there, with s.
         shifts, halves: (n, 3) the middle of s, a and b, and half their range.
         ball: [m] how far the point may be from there, in any direction.
     """
 
     joints: np.ndarray
+    held: np.ndarray
     shifts: np.ndarray
     halves: np.ndarray
     ball: float = 0.0
@@ -67,7 +69,7 @@ class Spread(NamedTuple):
     @classmethod
     def none(cls, n: int, k: int) -> Spread:
         """The path itself."""
-        return cls(np.zeros((n, k)), np.zeros((n, 3)), np.zeros((n, 3)))
+        return cls(np.zeros((n, k)), np.zeros((n, k)), np.zeros((n, 3)), np.zeros((n, 3)))
 
 
 class Enclosed(NamedTuple):
@@ -113,12 +115,14 @@ def enclosed(
     between = matrix_product(np.swapaxes(path_turn, 2, 3), turn)
     off = np.concatenate([origin - path_origin, half_skew(between)], axis=2)
     _, rates = arm.tool.poses_and_rates(joints[0])
-    inverse, is_regular = _inverses(rates, path_turn[0], free)
+    rates[:, 3:] = np.swapaxes(path_turn[0], 1, 2) @ rates[:, 3:]
+    inverse, is_regular = _inverses(rates, free)
     longest = arm.longest(np.concatenate([given.before, given.after])) + _slid(arm, joints)
     longest += float(arm.sums(np.abs(spread.joints))[1].max(initial=0.0))
     unknown = _remainders(arm, stretch, joints, strokes, longest)
     error = greatest((inverse @ off[..., None])[..., 0])
     error += (np.abs(inverse) @ unknown[..., None])[..., 0]
+    error += (np.abs(inverse @ rates) @ spread.held[..., None])[..., 0]
     sizes = np.linalg.norm(inverse.reshape(*inverse.shape[:2], 2, 3), axis=3).transpose(2, 0, 1)
     off_middle = 1.1 * greatest(half_skew(between)).sum(axis=1)
     by_spread, turned = _of_spread(
@@ -127,9 +131,8 @@ def enclosed(
     within = np.abs(joints[1:]).sum(axis=0)
     varied = np.einsum("nkc,ncji->nkji", inverse, arm.second_rates(joints[0], path_turn[0]))
     variation = _Variation(np.abs(varied), sizes, within, off_middle + turned, longest)
-    return Enclosed(
-        _closed(arm, error + by_spread, variation, is_regular, free), joints[0], variation
-    )
+    box = _closed(arm, error + by_spread, variation, is_regular, free, spread.held)
+    return Enclosed(box, joints[0], variation)
 
 
 def _shifted(strokes: np.ndarray, spread: Spread) -> tuple[np.ndarray, np.ndarray]:
@@ -192,16 +195,12 @@ def _strokes(given: Intervals, half: np.ndarray) -> np.ndarray:
     return found
 
 
-def _inverses(
-    rates: np.ndarray, path_turn: np.ndarray, free: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _inverses(seen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(n, k, 6) the inverse of the Jacobian, turns seen from the path, and (n,) where there is one.
 
     Joints beyond six, and those that are not free, take no part: their rows of the bordered inverse are dropped.
     """
-    n, _, k = rates.shape
-    seen = rates.copy()
-    seen[:, 3:] = np.swapaxes(path_turn, 1, 2) @ rates[:, 3:]
+    n, _, k = seen.shape
     own = seen[:, :, free]
     found = np.zeros((n, k, 6))
     sizes = np.linalg.svd(own, compute_uv=False)
@@ -276,25 +275,37 @@ class _Variation(NamedTuple):
 
 
 def _closed(
-    arm: Arm, error: np.ndarray, variation: _Variation, is_regular: np.ndarray, free: np.ndarray
+    arm: Arm,
+    error: np.ndarray,
+    variation: _Variation,
+    is_regular: np.ndarray,
+    free: np.ndarray,
+    held: np.ndarray,
 ) -> np.ndarray:
-    """(n, k) boxes r with e + K r < r, or infinite; 0 for joints that are not free."""
-    box = 2.0 * error
+    """(n, k) boxes r with e + K r < r, or infinite; as `held` (n, k) for joints that are not free."""
+    box = np.where(free, 2.0 * error, held)
     for _ in range(3):
-        box = _grown(variation.bound(arm, box)[:, free][:, :, free], error, free)
-    change = variation.bound(arm, box)[:, free][:, :, free]
-    own = box[:, free]
-    mapped = error[:, free] + (change @ own[..., None])[..., 0]
-    is_proven = (mapped < own).all(axis=1) & is_regular
-    return np.where(is_proven[:, None], box, np.where(free, np.inf, 0.0))
+        change = variation.bound(arm, box)[:, free]
+        by_held = (change @ np.where(free, 0.0, held)[..., None])[..., 0]
+        box = np.where(free, _grown(change[:, :, free], error, by_held, free), held)
+    change = variation.bound(arm, box)[:, free]
+    mapped = error[:, free] + (change @ box[..., None])[..., 0]
+    is_proven = (mapped < box[:, free]).all(axis=1) & is_regular
+    return np.where(is_proven[:, None], box, np.where(free, np.inf, held))
 
 
-def _grown(change: np.ndarray, error: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """(n, k) the least boxes r with e + K r = r, a little wider; as wide as 1 where there are none."""
+def _grown(
+    change: np.ndarray, error: np.ndarray, by_held: np.ndarray, free: np.ndarray
+) -> np.ndarray:
+    """(n, k) the least boxes r with e + K r = r, a little wider; as wide as 1 where there are none.
+
+    Args:
+        by_held: (n, free) what joints that are not free add to e.
+    """
     found = np.zeros_like(error)
     margin = np.eye(int(free.sum())) - change
     contracts = change.sum(axis=2).max(axis=1, initial=0.0) < 1.0
     margin[~contracts] = np.eye(margin.shape[1])
-    solved = np.linalg.solve(margin, error[:, free, None])[..., 0]
+    solved = np.linalg.solve(margin, (error[:, free] + by_held)[..., None])[..., 0]
     found[:, free] = np.where(contracts[:, None], solved * (1.0 + 1e-6) + 1e-300, 1.0)
     return found

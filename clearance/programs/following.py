@@ -13,7 +13,8 @@ import numpy as np
 from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.inverse import joints_at, least_motion
-from clearance.programs.tool_path import Stretch
+from clearance.programs.joint_way import fastest
+from clearance.programs.tool_path import Stretch, Told
 from clearance.world.cubic import cubics_of, position_on
 
 SHORTEST = 2.0**-14
@@ -35,25 +36,30 @@ class Follower:
 
     Attributes:
         start: (k,) where its joints are at the beginning [rad or m].
-        free: (k,) which joints follow the path. held: (k,) how far the others go with the stretch, in proportion.
     """
 
     arm: Arm
     stretch: Stretch
     start: np.ndarray
-    free: np.ndarray
-    held: np.ndarray
 
-    def rates(
-        self, positions: np.ndarray, strokes: np.ndarray, share_rates: np.ndarray
-    ) -> np.ndarray:
+    @property
+    def told(self) -> Told:
+        """What is said of its joints."""
+        return self.stretch.told or Told(self.arm.follows, np.zeros((2, len(self.start))))
+
+    @property
+    def free(self) -> np.ndarray:
+        """(k,) which joints follow the path."""
+        return self.told.free
+
+    def rates(self, positions: np.ndarray, strokes: np.ndarray) -> np.ndarray:
         """(n, k) [1/s] how fast the joints go at positions (n, k), in the least motion.
 
         Args:
-            strokes: (3, n, 2) of the stretch. share_rates: (n,) [1/s] of the way through it.
+            strokes: (3, n, 2) of the stretch.
         """
         _, rates = self.arm.tool.poses_and_rates(positions)
-        found = share_rates[:, None] * np.where(self.free, 0.0, self.held)
+        found = strokes[1] @ self.told.held
         wanted = self.stretch.rates(strokes[0], strokes[1]) - (rates @ found[..., None])[..., 0]
         found[:, self.free] = least_motion(rates[:, :, self.free], wanted[:, :, None])[:, :, 0]
         return found
@@ -71,7 +77,9 @@ class Follower:
             type(cubics)(*(part[i] for part in cubics)),
             ((shares - at[i]) / np.diff(at)[i])[:, None],
         )
-        poses = self.stretch.poses(self._strokes(shares)[0])
+        strokes = self._strokes(shares)[0]
+        near[:, ~self.free] = (self.start + strokes @ self.told.held)[:, ~self.free]
+        poses = self.stretch.poses(strokes)
         solved = joints_at(self.arm.tool, poses, near, self.free)
         bad = int(np.argmax(solved.left))
         if solved.left[bad] > REACHED:
@@ -83,7 +91,7 @@ class Follower:
 
     def rates_at(self, position: np.ndarray, share: float) -> np.ndarray:
         """(k,) how the joints go with the share."""
-        return self.rates(position[None], self._strokes(np.array([share])), np.ones(1))[0]
+        return self.rates(position[None], self._strokes(np.array([share])))[0]
 
     @cached_property
     def _coarse(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -94,7 +102,9 @@ class Follower:
             step = min(step, 1.0 - shares[-1], LONGEST / max(float(np.abs(rates[-1]).max()), 1e-9))
             near = found[-1] + step * rates[-1]
             share = 1.0 if shares[-1] + step > 1.0 - 1e-12 else shares[-1] + step
-            pose = self.stretch.poses(self._strokes(np.array([share]))[0])
+            strokes = self._strokes(np.array([share]))[0]
+            near[~self.free] = (self.start + strokes @ self.told.held)[0, ~self.free]
+            pose = self.stretch.poses(strokes)
             solved = joints_at(self.arm.tool, pose, near[None], self.free)
             if solved.left[0] <= REACHED and np.abs(solved.positions[0] - near).max() <= FORESEEN:
                 shares.append(share)
@@ -106,17 +116,14 @@ class Follower:
         return np.array(shares), np.array(found), np.array(rates)
 
 
-def follower_of(
-    arm: Arm,
-    stretch: Stretch,
-    hold: Mapping[str, float] | None,
-    start: np.ndarray,
-    free_beside: Collection[str] = (),
-) -> Follower:
-    """An arm on a stretch from where its joints are (k,), some of which are told where they go meanwhile.
+def told_of(
+    arm: Arm, hold: Mapping[str, float] | None, start: np.ndarray, free_beside: Collection[str] = ()
+) -> Told:
+    """What a line or an arc from where the joints are (k,) says of them.
 
     Args:
-        free_beside: joints beside the arm that follow the path too; the others go only where they are told.
+        hold: where joints go meanwhile, by name. free_beside: joints beside the arm that follow the path too; the
+            others go only where they are told.
 
     Raises:
         UnknownJoint: one that is told is none of the program. BadInput: fewer than six are left.
@@ -143,7 +150,8 @@ def follower_of(
             if arm.seen_from
             else "six or more; an arm of fewer goes by joint moves",
         )
-    return Follower(arm, stretch, start, free, held)
+    least_time = float((np.abs(held) / fastest(arm.joints)).max(initial=0.0))
+    return Told(free, np.stack([held, np.zeros_like(held)]), least_time)
 
 
 def _stuck(arm: Arm, pose: np.ndarray, joints: np.ndarray) -> BadProgram:

@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, at
 from clearance.programs.arm import Arm
-from clearance.programs.following import follower_of
+from clearance.programs.following import Follower, told_of
 from clearance.programs.joint_way import RUN_UP, JointWay, fastest, joint_law
 from clearance.programs.moves import (
     SHARE_OF_WAY,
@@ -96,6 +96,7 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
         first, second = way.part(1.0 - into, 1.0), following.part(0.0, out)
         zone = Corner(radius, (move, next_move), (first, second), radius < move.zone)
         if isinstance(first, Stretch) and isinstance(second, Stretch):
+            _require_same_joints(move, first, second)
             legs.append(Leg(move, corner(first, second), corner=zone))
         else:
             is_cut = SHARE_OF_WAY in (into, out)
@@ -106,6 +107,15 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
         yield Leg(last)
         return
     yield from _with_speeds(arm, [*legs, Leg(last, way.part(before, 1.0))])
+
+
+def _require_same_joints(move: JointMove | PathMove, first: Stretch, second: Stretch) -> None:
+    """Nothing, if the same joints follow on both sides of a corner zone at the end of a move."""
+    assert first.told is not None and second.told is not None
+    if not np.array_equal(first.told.free, second.told.free):
+        with at(move.where):
+            told = "other joints are held after the corner zone than before it"
+            raise BadProgram(told, where="hold", valid="the same joints on both sides, or zone: 0")
 
 
 def is_none(way: Way) -> bool:
@@ -133,7 +143,7 @@ def ways_of(arm: Arm, run: Run, start: np.ndarray) -> list[PlannedWay]:
                 way = _stretch(arm, pose, move, joints)
                 if not is_none(way):
                     pose = way.poses(np.array([[1.0, 0.0]]))[0]
-                    joints = _joints_after(arm, way, move, joints, run[i + 1 :])
+                    joints = _joints_after(arm, way, joints, run[i + 1 :])
         found.append(PlannedWay(move, way, joints))
     return found
 
@@ -151,20 +161,17 @@ def _stretch(arm: Arm, start: np.ndarray, move: PathMove, joints: np.ndarray) ->
     found = line(start, end) if move.via is None else arc(start, move.via, end, move.along)
     if not found.length <= LONGEST:
         raise BadProgram(f"a way of {found.length:.3g} m", valid=f"{LONGEST:g} m or less")
-    held = follower_of(arm, found, move.hold, joints, move.free).held
-    return replace(found, least_time=float((np.abs(held) / fastest(arm.joints)).max(initial=0.0)))
+    return replace(found, told=told_of(arm, move.hold, joints, move.free))
 
 
-def _joints_after(
-    arm: Arm, way: Stretch, move: PathMove, joints: np.ndarray, later: Run
-) -> np.ndarray:
+def _joints_after(arm: Arm, way: Stretch, joints: np.ndarray, later: Run) -> np.ndarray:
     """(k,) the joints at the end of a path; those that follow it only where later moves of the run need them."""
-    follower = follower_of(arm, way, move.hold, joints, move.free)
+    follower = Follower(arm, way, joints)
     free = {joint.name for joint, is_free in zip(arm.joints, follower.free, strict=True) if is_free}
     for one in later:
         if isinstance(one, JointMove) or (isinstance(one, PathMove) and free & {*(one.hold or {})}):
             return follower.positions(np.ones(1))[0]
-    return joints + follower.held
+    return joints + follower.told.held[0]
 
 
 def _cut(arm: Arm, zone: float, before: Way, after: Way) -> tuple[float, float, float]:
@@ -280,17 +287,21 @@ def _rate_in_corner(arm: Arm, zone: Corner) -> float:
         turned = second.slopes(np.zeros(1)) - first.slopes(np.ones(1))
         bend = float(np.linalg.norm(turned)) + 2.0 * (first.bend + second.bend)
         acceleration = min(before.acceleration, after.acceleration)
+        held = np.array(
+            [side.told.held[0] for side in zone.sides if isinstance(side, Stretch) and side.told]
+        )
+        bends = np.abs(held[1] - held[0]) / fastest(arm.joints)
+        rates.append(float(np.sqrt(0.5 / RUN_UP / max(float(bends.max()), 1e-12))))
     else:
-        ways = [_joint_way(arm, move, side, zone.joints, share) for move, side, share in sides]
+        ways = [_joint_way(arm, side, zone.joints, share) for _, side, share in sides]
         bend = float((np.abs(ways[1] - ways[0]) / fastest(arm.joints)).max())
         acceleration = 1.0 / RUN_UP
     return float(min(*rates, np.sqrt(acceleration / max(2.0 * bend, 1e-12))))
 
 
-def _joint_way(arm: Arm, move: Move, side: Way, joints: np.ndarray, share: float) -> np.ndarray:
+def _joint_way(arm: Arm, side: Way, joints: np.ndarray, share: float) -> np.ndarray:
     """(k,) about how far the joints go on one side of a corner, from how they go at its share that is the
     corner."""
     if isinstance(side, JointWay):
         return side.share * side.whole
-    assert isinstance(move, PathMove)
-    return follower_of(arm, side, move.hold, joints, move.free).rates_at(joints, share)
+    return Follower(arm, side, joints).rates_at(joints, share)

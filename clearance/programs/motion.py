@@ -17,7 +17,7 @@ from clearance.errors import BadDimension, BadProgram, UnknownLink, at, nearest_
 from clearance.programs.arm import Arm
 from clearance.programs.carriers import arm_of, on_carriers, start_of
 from clearance.programs.corner import PATH_ERROR, corner_of
-from clearance.programs.following import Follower, follower_of
+from clearance.programs.following import Follower
 from clearance.programs.inverse import joints_at
 from clearance.programs.joint_corner import JointCorner, bow
 from clearance.programs.joint_way import JointWay
@@ -176,7 +176,7 @@ class _Samples:
 
     def _along(self, leg: Leg, stretch: Stretch, move: PathMove) -> None:
         """What the tool's path makes of the joints."""
-        follower = follower_of(self.arm, stretch, move.hold, self.at, move.free)
+        follower = Follower(self.arm, stretch, self.at)
         samples, wide = self._enclosed(follower, leg.pieces, self._seam)
         if leg.corner is not None:
             corner = stretch.poses(np.array([[1.0, 0.0]]))
@@ -226,13 +226,12 @@ class _Samples:
     def _beside_joints(self, leg: Leg, corner: Corner) -> None:
         """The corner zone between two moves of which one is a joint move."""
         (piece,), joints, wide, is_proven = leg.pieces, [self.at], np.zeros(len(self.at)), True
-        for move, side in zip(corner.moves, corner.sides, strict=True):
+        for side in corner.sides:
             if isinstance(side, JointWay):
                 joints.append(side.joints(np.ones(1))[0])
                 last = side.share * side.whole
                 continue
-            assert isinstance(move, PathMove)
-            follower = follower_of(self.arm, side, move.hold, joints[-1], move.free)
+            follower = Follower(self.arm, side, joints[-1])
             samples, narrow = self._enclosed(follower, [Piece(1.0, 0.0, 1.0, 0.0)])
             is_proven = is_proven and not narrow.any()
             joints.append(samples.positions[-1])

@@ -77,7 +77,7 @@ class PathSamples:
         rates_all[np.abs(rates_all) < 1e-9 * np.abs(rates_all).max(initial=0.0)] = 0.0
         strokes = follower.stretch.strokes(shares_all, rates_all, changes_all)
         positions = follower.positions(shares_all)
-        velocities = follower.rates(positions, strokes, rates_all)
+        velocities = follower.rates(positions, strokes)
         given = Intervals(
             np.diff(times_all),
             positions[:-1],
@@ -96,7 +96,7 @@ def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
     turned = np.linalg.norm(stretch.turns, axis=1).sum()
     length = sum(way.length for way in stretch.ways)
     turns = [joint.kind is not JointKind.PRISMATIC for joint in follower.arm.joints]
-    held = np.abs(follower.held) / np.where(turns, STEP_TURN, step)
+    held = np.abs(follower.told.held).sum(axis=0) / np.where(turns, STEP_TURN, step)
     steps = share * max(length / step, turned / STEP_TURN, held.max())
     least = LEAST_IN_CORNER if stretch.is_corner else 1
     return max(least, int(np.ceil(steps - 1e-9)))  # rounding makes no step more

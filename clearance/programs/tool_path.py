@@ -13,6 +13,7 @@ them. Not for: how fast (`time_law`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -132,6 +133,23 @@ STILL = Straight(np.zeros(3))
 NO_TURN = np.zeros(3)
 
 
+class Told(NamedTuple):
+    """What is said of the joints on a path.
+
+    Attributes:
+        free: (k,) which follow it. held: (2, k) how far the others go with each stroke [rad or m].
+        least_time: [s] in which they go so far, as fast as they may.
+    """
+
+    free: np.ndarray
+    held: np.ndarray
+    least_time: float = 0.0
+
+    def part(self, share: float) -> Told:
+        """Of a share of the path."""
+        return self._replace(held=share * self.held, least_time=share * self.least_time)
+
+
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """A part of a tool's path.
@@ -140,14 +158,19 @@ class Stretch:
         start: (4, 4) the tool's pose at its beginning [m].
         ways: how each stroke moves the tool's point. turns: (2, 3) rotation vectors of both [rad].
         is_corner: the strokes are those of a corner zone.
-        least_time: [s] that joints take which are told where to go meanwhile, as fast as they may.
+        told: of the joints that go along; None where nobody has asked.
     """
 
     start: np.ndarray
     ways: tuple[Straight | Arc, Straight | Arc]
     turns: np.ndarray
     is_corner: bool = False
-    least_time: float = 0.0
+    told: Told | None = None
+
+    @property
+    def least_time(self) -> float:
+        """[s] That joints take which are told where to go."""
+        return 0.0 if self.told is None else self.told.least_time
 
     @property
     def length(self) -> float:
@@ -225,14 +248,17 @@ class Stretch:
             return self
         first = self.poses(np.array([[start, 0.0]]))[0]
         way, share = self.ways[0].part(start, end), end - start
-        turns, least_time = share * self.turns, share * self.least_time
-        return replace(self, start=first, ways=(way, STILL), turns=turns, least_time=least_time)
+        turns, told = share * self.turns, self.told and self.told.part(share)
+        return replace(self, start=first, ways=(way, STILL), turns=turns, told=told)
 
 
 def corner(before: Stretch, after: Stretch) -> Stretch:
     """The nominal path of a corner zone that takes the place of the parts of two lines or arcs."""
     ways, turns = (before.ways[0], after.ways[0]), np.array([before.turns[0], after.turns[0]])
-    return Stretch(before.start, ways, turns, is_corner=True)
+    told = before.told
+    if told is not None and after.told is not None:
+        told = Told(told.free, np.array([told.held[0], after.told.held[0]]))
+    return Stretch(before.start, ways, turns, is_corner=True, told=told)
 
 
 def line(start: np.ndarray, end: np.ndarray) -> Stretch:

@@ -10,7 +10,7 @@ import pybullet_data
 
 import clearance as cl
 from clearance.programs.arm import Arm
-from clearance.programs.following import Follower, follower_of
+from clearance.programs.following import Follower
 from clearance.programs.path_samples import PathSamples
 from clearance.programs.time_law import trapezoid
 from clearance.programs.tool_path import Stretch, arc, line
@@ -70,7 +70,7 @@ def sampled(
     one: Arm, on: Stretch, start: np.ndarray, step: float = 0.003
 ) -> tuple[Follower, PathSamples]:
     """The samples of a stretch at 0.25 m/s."""
-    follower = follower_of(one, on, None, start)
+    follower = Follower(one, on, start)
     pieces = trapezoid(0.25 / on.length, 1.0 / on.length)
     return follower, PathSamples.of(follower, pieces, step)
 

@@ -3,6 +3,8 @@ told."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -107,22 +109,21 @@ def test_the_tool_is_taken_along_many_lines_that_are_very_short():
     assert off.max() < 1e-7
 
 
-@pytest.mark.parametrize("moves", [False, True])
-def test_a_corner_is_proven_where_a_joint_is_held_and_refused_where_it_goes(moves):
+@pytest.mark.parametrize("by", [0.0, 0.02])
+def test_a_corner_is_proven_where_a_joint_is_held_on_both_sides(by):
     one = arm("iiwa")
     start = tuple(posture(one, np.random.default_rng(0)))
-    hold = {one.joints[2].name: start[2] + (0.02 if moves else 0.0)}
+    hold = {one.joints[2].name: start[2] + by}
     ways = [(0.0, 0.05, 0.0), (0.0, 0.0, 0.05)]
     path = lines(first_pose("iiwa", start), ways, zone=0.002, hold=hold)
-    if moves:
-        with pytest.raises(cl.ClearanceError, match="changes its speed at once"):
-            motion(path, "iiwa", start)
-        return
     found = motion(path, "iiwa", start).trajectory
     (corner,) = found.corners
     assert 0.0005 < corner.links[one.link].way < 0.006
     column = found.joint_names.index(one.joints[2].name)
-    assert np.abs(found.positions[:, column] - start[2]).max() < 1e-12
+    at = found.positions[:, column] - start[2]
+    assert at[-1] == pytest.approx(by, abs=1e-12) and (np.diff(at) >= -1e-12).all()
+    with pytest.raises(cl.ClearanceError, match="other joints are held after the corner zone"):
+        motion([path[0], replace(path[1], hold={})], "iiwa", start)
 
 
 def test_a_zone_too_wide_to_be_proven_is_passed_on_its_nominal_path_and_told():

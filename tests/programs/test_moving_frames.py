@@ -16,7 +16,7 @@ from clearance.programs.moves import JointMove, Move, PathMove, Program
 from clearance.world.cubic import positions_along
 from clearance.world.robot import Joint, JointKind, Robot
 from tests.programs.arms import arm, turned
-from tests.programs.exact_arm import joints_for, tool_at, turn, vector_of
+from tests.programs.exact_arm import joints_for, links_at, tool_at, turn, vector_of
 from tests.programs.test_corner import circle
 
 START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
@@ -173,9 +173,9 @@ def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
         (
             [
                 line(on_plate((0.0, 0.05, 0.0)), hold={"turn": 0.4}, zone=0.01),
-                line(on_plate((0.05, 0.05, 0.0)), hold={"turn": 0.4}),
+                line(on_plate((0.05, 0.05, 0.0)), free=("turn",)),
             ],
-            "changes its speed at once",
+            "other joints are held after the corner zone",
         ),
         (
             [line(np.eye(4), "wrist_roll")],
@@ -189,3 +189,51 @@ def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
 def test_what_cannot_be_followed_is_refused(moves, told):
     with pytest.raises(cl.ClearanceError, match=told):
         motion(moves)
+
+
+def test_no_path_through_a_corner_takes_a_link_farther_than_is_proven_while_the_plate_turns():
+    """The plate is as far between entry, corner and exit as the tool's point."""
+    corner, end = on_plate((0.05, -0.02, 0.02)), on_plate((0.05, 0.03, 0.06), by=(0.1, 0.0, 0.1))
+    moves = [line(corner, zone=0.004, hold={"turn": 0.5}), line(end, hold={"turn": 0.4})]
+    found, one, draw = motion(moves), arm("heron6"), np.random.default_rng(3)
+    (zone,) = found.trajectory.corners
+    times = np.linspace(zone.start, zone.end, 65)
+    joints, angles = columns(found, positions_along(found.trajectory, times))
+    nominal = [links_of(own, angle) for own, angle in zip(joints, angles, strict=True)]
+    turns = 0.5 - angles[0], angles[-1] - 0.5
+    assert turns[0] > 0.01 and turns[1] < -0.005
+    entry, exit_ = (
+        np.linalg.inv(plate_at(angles[i]).astype(float)) @ one.poses(joints[[i]])[0]
+        for i in (0, -1)
+    )
+    turned_by = vector_of(exit_[:3, :3] @ corner[:3, :3].T)
+    for _ in range(40):
+        now = joints[0]
+        for a, b in np.linspace((0.0, 0.0), np.sort(draw.random(2))[::-1], 4)[1:]:
+            pose = entry.astype(np.longdouble)
+            pose[:3, 3] += a * (corner - entry)[:3, 3] + b * (exit_ - corner)[:3, 3]
+            pose[:3, :3] = turn(draw.random() * turned_by) @ pose[:3, :3]
+            angle = angles[0] + a * turns[0] + b * turns[1]
+            wanted = plate_at(angle) @ pose
+            now = joints_for(one, (wanted[:3, :3], wanted[:3, 3]), now)
+        links = links_of(now, angle)
+        for link, off in zone.links.items():
+            assert any(
+                np.linalg.norm((links[link] - at[link])[:3, 3].astype(float)) <= off.way
+                and turn_between(links[link], at[link]) <= off.turn + 1e-7
+                for at in nominal
+            ), link
+    assert zone.links[one.link].way < 0.05 and zone.links["plate"].turn > 1e-3
+
+
+def links_of(joints: np.ndarray, angle: float) -> dict[str, np.ndarray]:
+    """(4, 4) the poses of all links, in long double."""
+    found = {"plate": plate_at(angle)}
+    for name, (rotation, at) in links_at(arm("heron6"), joints)[0].items():
+        found[name] = np.eye(4, dtype=np.longdouble)
+        found[name][:3, :3], found[name][:3, 3] = rotation, at
+    return found
+
+
+def turn_between(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(vector_of(a[:3, :3] @ b[:3, :3].T).astype(float)))
