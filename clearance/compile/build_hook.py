@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -44,8 +46,8 @@ class KernelBuild(BuildHookInterface):
         if is_editable:
             return
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{_platform()}"
         files = {folder / name: name for name in manifest["sizes"]}
+        build_data["tag"] = f"py3-none-{_platform(file.read_bytes() for file in files)}"
         told = folder / "manifest-of-wheel.json"
         told.write_text(json.dumps({**manifest, "is_checked": False}))
         files[told] = "manifest.json"
@@ -69,7 +71,11 @@ class KernelBuild(BuildHookInterface):
             sys.exit("error: the kernels cannot be compiled; the lines above say why")
 
 
-def _platform() -> str:
-    """This platform, with the version of its C library: a linked library may need one as new."""
+def _platform(libraries: Iterable[bytes]) -> str:
+    """This platform, on Linux with the oldest GNU C library (2.N) whose symbols the libraries need."""
+    needed = [int(n) for one in libraries for n in re.findall(rb"GLIBC_2\.([0-9]+)", one)]
     tags = list(platform_tags())
-    return next((tag for tag in tags if not tag.startswith("linux_")), tags[0])
+    oldest = f"manylinux_2_{max(needed, default=-1)}_"
+    fitting = [tag for tag in tags if tag.startswith(oldest)]
+    named = [tag for tag in tags if not tag.startswith("linux_")]
+    return [*fitting, *named, *tags][0]

@@ -35,7 +35,15 @@ TIGHT = 1e-3
 
 
 def lines_of(gain: Gain) -> Iterator[Line]:
-    """What was, what is changed by how much, what that comes to, and what no change of this kind can do."""
+    """What was, what is changed by how much, what that comes to, what no change of this kind can do; and what the
+    verdict after it does not cover."""
+    yield from _lines_of(gain)
+    verdict = gain.after.verdict
+    yield from (("measured", line) for line in verdict.scope)
+    yield from (("warning", line) for line in verdict.warnings)
+
+
+def _lines_of(gain: Gain) -> Iterator[Line]:
     yield "before", _worst(gain.before)
     if gain.kept and gain.size == 0.0:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"

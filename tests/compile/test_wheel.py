@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -57,6 +58,10 @@ def test_a_wheel_fits_every_python_of_its_platform(wheel):
     assert (tag.interpreter, tag.abi) == ("py3", "none") and tag.platform != "any"
     assert not tag.platform.startswith("linux_"), "the version of the C library is told"
     assert tag in set(sys_tags())
+    if tag.platform.startswith("manylinux_2_"):
+        content = [zipfile.ZipFile(wheel).read(name) for name in zipfile.ZipFile(wheel).namelist()]
+        needed = [int(n) for one in content for n in re.findall(rb"GLIBC_2\.(\d+)", one)]
+        assert int(tag.platform.split("_")[2]) == max(needed)
 
 
 def test_a_wheel_holds_the_libraries_and_nothing_else_of_the_build(wheel):

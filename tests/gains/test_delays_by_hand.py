@@ -49,6 +49,7 @@ def test_where_a_window_ends_a_later_path_may_pass():
     rule = cl.Rule(("post", "*"), cl.Window(0.0, 0.4), fail=0.05)
     found = gain(replace(case, limits=cl.Limits(rules=(rule,))), "timing", robot="one")
     assert found.kept and 0.1 < found.size < 0.4
+    assert ("measured", "self-collision not checked [CL531]") in [*lines_of(found)]
 
 
 def test_how_far_was_looked_is_said(monkeypatch):
