@@ -5,6 +5,7 @@ Not for: collecting cases (`collected`).
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -15,6 +16,9 @@ def assert_clear(
     run: Run, between: tuple[str, str] | None = None, at_least: float | None = None
 ) -> None:
     """Nothing, if bodies keep a clearance over the motion, as far as proven; at the samples where nothing is.
+
+    With `between` or `at_least` that is proven, whatever the run is; a warning names pairs that are excluded or
+    excused.
 
     Args:
         run: of `check`, or of the fixture `clearance_case`.
@@ -32,9 +36,15 @@ def assert_clear(
     if between is None and at_least is None:
         faults = _reasons(run)
     else:
-        from clearance.pytest_plugin.kept import faults_of
+        from clearance.pytest_plugin.kept import faults_of, left_out_of
 
-        faults = [*_doubts(run), *faults_of(run, between or ("*", "*"), at_least)]
+        pairs = between or ("*", "*")
+        faults = [*_doubts(run), *faults_of(run, pairs, at_least)]
+        if left_out := left_out_of(run, pairs):
+            from clearance.world.notice import listed
+
+            told = f"{pairs[0]} - {pairs[1]}: not measured are {listed(left_out)}"
+            warnings.warn(told, stacklevel=2)
     if faults:
         raise AssertionError("\n".join([f"{run.record.case.name} is not clear", *faults]))
 

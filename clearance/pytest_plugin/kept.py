@@ -12,6 +12,7 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest
 from clearance.record.wording import limit_mm, mm, moment_text, of_rule
 from clearance.run import Run
+from clearance.world.pairs import NO_GEOMETRY
 from clearance.world.rules import PairPattern, checked_level, matches
 
 CONTACT = "contact is not ruled out"
@@ -23,7 +24,7 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
     Raises:
         BadInput: no such pair, or no level.
     """
-    pattern = PairPattern((between[0], between[1]))
+    pattern = PairPattern(between)
     level = None if at_least is None else checked_level(at_least, "at_least")
 
     def is_meant(_: str, one: tuple[str, ...], other: tuple[str, ...]) -> bool:
@@ -37,6 +38,16 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
         if not found[left.rule]:
             found[left.rule] += _with_tolerances(left, between, level)
     return [line for lines in found.values() for line in lines]
+
+
+def left_out_of(run: Run, between: tuple[str, str]) -> list[str]:
+    """The pairs of such bodies that are excluded or excused, and why; not those without a shape."""
+    pattern, found = PairPattern(between), []
+    for one in run.record.unmeasured:
+        whole = one.obstacle == "*" and any(matches(one.link, name) for name in between)
+        if one.reason != NO_GEOMETRY and (whole or pattern.matches((one.link,), (one.obstacle,))):
+            found.append(f"{one.link} - {one.obstacle} ({one.reason})")
+    return found
 
 
 def _budgets(run: Run, is_meant: PairTest) -> tuple[RuleBudget, ...]:

@@ -57,7 +57,7 @@ class Session(Protocol):
         """The answer of each rule for the pairs that are meant, as if there were no others.
 
         Args:
-            need: as of the run if it is not given. levels: [m] that are to be decided beside the limits.
+            need: as of the run if not given; else proven too. levels: [m] to be decided beside the limits.
         """
 
     def budget_of_pairs(self, is_meant: PairTest) -> tuple[RuleBudget, ...]:

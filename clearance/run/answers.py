@@ -177,7 +177,7 @@ def answers_of_pairs(
 ) -> tuple[SectionPlan, list[SectionAnswer]]:
     """The sections of some pairs alone, and what they come to; none where no pair is meant."""
     case = plan.question.case
-    question = plan.question if need is None else replace(plan.question, need=need)
+    question = plan.question if need is None else replace(plan.question, need=need, certify=True)
     parts = [_part(case, section, is_meant) for section in plan.sections.sections]
     sections = tuple(replace(part, levels=levels) for part in parts if part.pairs)
     found = [_of_section(question, section, DEFAULT_RESOURCES) for section in sections]

@@ -50,7 +50,7 @@ class RunSession(MeasuringSession):
         """The answer of each rule for the pairs that are meant, as if there were no others.
 
         Args:
-            need: as of the run if it is not given. levels: [m] that are to be decided beside the limits.
+            need: as of the run if not given; else proven too. levels: [m] to be decided beside the limits.
         """
         some, found = answers_of_pairs(self.plan, is_meant, need, levels)
         if not found:

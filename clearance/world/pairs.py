@@ -23,6 +23,9 @@ from clearance.world.rules import matches
 from clearance.world.self_pairs import RIGID, self_pairs
 
 OBSTACLE = -1
+
+NO_GEOMETRY = "no geometry"
+"""Why a link without a shape is left out."""
 """Stands for the robot of a body that is an obstacle."""
 
 
@@ -342,7 +345,7 @@ def _omitted_links(case: Case, i_robot: int) -> list[Omission]:
         Omission(before + name, "*", "excluded in the case file") for name in placed.exclude_links
     ]
     omitted += [
-        Omission(before + name, "*", "no geometry")
+        Omission(before + name, "*", NO_GEOMETRY)
         for name in placed.robot.link_names
         if name not in with_shape and name not in excluded
     ]

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+import warnings
 from pathlib import Path
 
 import pytest
@@ -291,6 +292,24 @@ def test_pairs_that_are_not_there_are_an_error_with_the_nearest_name(run):
         with pytest.raises(BadInput, match="no") as error:
             assert_clear(run, between=between)
         assert told in str(error.value)
+
+
+def test_what_is_asked_is_proven_whatever_the_run_is(tmp_path):
+    """The box passes the wall between two samples, 3 mm away; at both it is farther than 200 mm."""
+    case = load_gates(tmp_path, {A: (0.0, 0.003)}, n_steps=4)
+    run = cl.check(case, certify=False)
+    assert run.worst["clearance"] > 0.05
+    with pytest.raises(AssertionError, match="at least 5 mm was asked for"):
+        assert_clear(run, between=("box", A), at_least=0.005)
+
+
+def test_pairs_that_a_pattern_means_and_that_are_excused_are_told(tmp_path):
+    run = cl.check(load_gates(tmp_path, CLEAR, "allow: [[box, gate_a]]"))
+    with pytest.warns(UserWarning, match="not measured are box - gate_a "):
+        assert_clear(run, between=("box", "gate_*"), at_least=0.02)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert_clear(run, between=("box", B), at_least=0.02)
 
 
 def test_contact_is_never_clear(tmp_path):
