@@ -26,6 +26,7 @@ from clearance.formats.program.expressions import (
     is_constant,
     number,
     value_of,
+    with_passed,
 )
 from clearance.formats.program.kept import Kept
 from clearance.formats.program.language import Language
@@ -166,9 +167,13 @@ class Execution(Remarks):
         own = self.language.value_of(name.name, self)
         if own is not None:
             return own
-        hint = nearest_name(name.name, {*self.frames[-1], *self.variables})
-        also = f" ({hint})" if hint.startswith("did") else ""
-        return Unknown(f"{name.name!r} is in no file that is given{also}")
+        told = f"{name.name!r} is in no file that is given"
+        return Unknown(told, lambda: self._misspelt(name.name))
+
+    def _misspelt(self, name: str) -> str:
+        """The variable that is perhaps meant; empty if none is near."""
+        hint = nearest_name(name, {*self.frames[-1], *self.variables})
+        return hint if hint.startswith("did") else ""
 
     def result_of(self, call: Call) -> Any:
         """The value of a function: one of the program, or of the language.
@@ -176,6 +181,7 @@ class Execution(Remarks):
         Raises:
             BadInput: none of them, which may move the robot.
         """
+        call = with_passed(call, self.frames[-1])
         if call.name in self.skip:
             self._leave_out(call)
             return Unknown(f"{call.name} ({call.line}) is left out")
@@ -240,6 +246,7 @@ class Execution(Remarks):
         self._called(routine, Call(routine.name, (), {}, routine.line))
 
     def _do(self, call: Call) -> Leave | None:
+        call = with_passed(call, self.frames[-1])
         if call.name in self.skip:
             self._leave_out(call)
         elif call.name in self.routines:

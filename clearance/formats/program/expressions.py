@@ -7,11 +7,12 @@ what functions mean (each language).
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from clearance.errors import BadProgram, BadSyntax, at
+from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.tokens import Cursor, Line, Token
 
 MOST_PARTS = 200
@@ -23,9 +24,20 @@ MOST_DEPTH = 60
 
 @dataclass(frozen=True)
 class Unknown:
-    """A value that only the controller knows; `why` says of what it is."""
+    """A value that only the controller knows.
 
-    why: str
+    Attributes:
+        told: of what it is. hint: what may be meant, which takes long to find; empty where nothing is near.
+    """
+
+    told: str
+    hint: Callable[[], str] = field(default=str, compare=False, repr=False)
+
+    @property
+    def why(self) -> str:
+        """Of what it is, with the hint."""
+        hint = self.hint()
+        return f"{self.told} ({hint})" if hint else self.told
 
 
 @dataclass(frozen=True)
@@ -41,6 +53,11 @@ class Name:
 
     name: str
     line: Line
+
+
+@dataclass(frozen=True)
+class Passed(Name):
+    """An argument that a routine has been given, and passes on if it has."""
 
 
 @dataclass(frozen=True)
@@ -166,6 +183,16 @@ def calls_in(one: Expression) -> Iterator[Call]:
         yield from calls_in(part)
 
 
+def with_passed(call: Call, given: Collection[str]) -> Call:
+    """A call without the arguments that it would pass on and the routine, of these arguments, is not given."""
+    kept = {
+        key: one
+        for key, one in call.named.items()
+        if not isinstance(one, Passed) or one.name in given
+    }
+    return call if len(kept) == len(call.named) else replace(call, named=kept)
+
+
 def names_in(one: Expression) -> Iterator[str]:
     """All variables in an expression."""
     if isinstance(one, Name):
@@ -192,54 +219,6 @@ def _parts(one: Expression) -> tuple[Expression, ...]:
             return one.on
         case _:
             return ()
-
-
-class Spelled(str):
-    """A name as it is compared; messages show it as it is written."""
-
-    def __new__(cls, name: str, written: str = "") -> Spelled:
-        found = super().__new__(cls, name)
-        found.written = written or name
-        return found
-
-    written: str
-
-    def __str__(self) -> str:
-        return self.written
-
-    def __repr__(self) -> str:
-        return repr(self.written)
-
-    def __format__(self, spec: str) -> str:
-        return format(self.written, spec)
-
-
-@dataclass(frozen=True)
-class Grammar:
-    """How a language writes expressions.
-
-    Attributes:
-        binary, unary: operators, how firmly each binds, and what it does.
-        constants: words for values. index: the brackets of an index. before_items: words before a bracket of
-            values. optional: what is before the name of an argument (then `:=`); empty where `=` behind it is.
-        folds: whether capital letters mean the same as small ones. spelling: how names are written then, by their
-            small letters; others are in small letters.
-    """
-
-    binary: Mapping[str, tuple[int, Callable[..., Any]]]
-    unary: Mapping[str, tuple[int, Callable[..., Any]]]
-    constants: Mapping[str, Any] = field(default_factory=dict)
-    index: str = "[]"
-    optional: str = ""
-    before_items: tuple[str, ...] = ()
-    folds: bool = False
-    spelling: Mapping[str, str] = field(default_factory=dict)
-
-    def folded(self, name: str) -> str:
-        """A name as it is compared."""
-        if not self.folds:
-            return name
-        return self.spelling.get(name.lower()) or Spelled(name.lower(), str(name))
 
 
 class ExpressionReader:
@@ -284,7 +263,11 @@ class ExpressionReader:
                 name = self._grammar.folded(
                     cursor.expect_kind("name", "the name of an argument").text
                 )
-                named[name] = self.expression() if cursor.accept(":=") else Constant(True)
+                if cursor.accept("?"):
+                    word = cursor.expect_kind("name", "an argument of the routine")
+                    named[name] = Passed(self._grammar.folded(word.text), word.line)
+                else:
+                    named[name] = self.expression() if cursor.accept(":=") else Constant(True)
             elif not mark and cursor.next.kind == "name" and cursor.after(1).text == "=":
                 name = cursor.take().text
                 cursor.take()

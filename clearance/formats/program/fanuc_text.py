@@ -19,12 +19,12 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     ExpressionReader,
-    Grammar,
     Name,
     Unknown,
     numeric,
 )
 from clearance.formats.program.fanuc_positions import Position, positions_of
+from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.statements import (
     RETURN,
     STOP,

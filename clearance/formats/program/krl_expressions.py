@@ -1,13 +1,16 @@
 """Words and expressions of KRL: instructions, aggregates (`{X 1, Y 2}`), members of enumerations.
 
 Not for: statements (`krl_text`), frames as values (`krl_values`).
+
+Source: KUKA, expert programming, priority of operators: comparisons bind least, NOT most.
 """
 
 from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from clearance.errors import BadSyntax
 from clearance.formats.program.expressions import (
@@ -16,10 +19,10 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     ExpressionReader,
-    Grammar,
     Unknown,
     numeric,
 )
+from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.krl_values import composed, quotient
 from clearance.formats.program.tokens import Cursor, Line, Token
 
@@ -64,6 +67,25 @@ SYSTEM = "IR_STOPM"
 """What every program calls where the controller stops with a message: it moves nothing."""
 
 
+def of_truths(act: Callable[..., Any]) -> Callable[..., Any]:
+    """An operator that takes truths, and raises TypeError for others, as KRL does."""
+    return _of(bool, act)
+
+
+def of_bits(act: Callable[..., Any]) -> Callable[..., Any]:
+    """An operator that takes whole numbers, bit by bit."""
+    return _of(int, act)
+
+
+def _of(kind: type, act: Callable[..., Any]) -> Callable[..., Any]:
+    def acted(*given: Any) -> Any:
+        if any(type(one) is not kind for one in given):
+            raise TypeError
+        return act(*given)
+
+    return acted
+
+
 class _Capitals(Grammar):
     """A grammar whose names are compared in capitals."""
 
@@ -73,22 +95,26 @@ class _Capitals(Grammar):
 
 GRAMMAR = _Capitals(
     binary={
-        "OR": (1, lambda a, b: bool(a) or bool(b)),
-        "EXOR": (1, lambda a, b: bool(a) != bool(b)),
-        "AND": (2, lambda a, b: bool(a) and bool(b)),
-        "==": (3, operator.eq),
-        "<>": (3, operator.ne),
-        **{word: (3, act) for word, act in COMPARED.items()},
-        "+": (4, numeric(operator.add)),
-        "-": (4, numeric(operator.sub)),
-        "*": (5, numeric(operator.mul)),
-        "/": (5, numeric(quotient)),
-        ":": (6, composed),
+        "==": (1, operator.eq),
+        "<>": (1, operator.ne),
+        **{word: (1, act) for word, act in COMPARED.items()},
+        "OR": (2, of_truths(operator.or_)),
+        "B_OR": (2, of_bits(operator.or_)),
+        "EXOR": (3, of_truths(operator.xor)),
+        "B_EXOR": (3, of_bits(operator.xor)),
+        "AND": (4, of_truths(operator.and_)),
+        "B_AND": (4, of_bits(operator.and_)),
+        "+": (5, numeric(operator.add)),
+        "-": (5, numeric(operator.sub)),
+        "*": (6, numeric(operator.mul)),
+        "/": (6, numeric(quotient)),
+        ":": (7, composed),
     },
     unary={
-        "NOT": (7, operator.not_),
-        "-": (7, operator.neg),
-        "+": (7, operator.pos),
+        "NOT": (8, of_truths(operator.not_)),
+        "B_NOT": (8, of_bits(operator.invert)),
+        "-": (8, operator.neg),
+        "+": (8, operator.pos),
     },
     constants={"TRUE": True, "FALSE": False},
     folds=True,

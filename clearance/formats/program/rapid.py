@@ -90,9 +90,9 @@ def _entry(modules: Modules, asked: str | None) -> str:
         return asked.lower()
     if "main" in names or len(names) == 1:
         return "main" if "main" in names else names[0]
-    told = (
-        f"there is no procedure main, but {', '.join(names)}" if names else "there is no procedure"
-    )
+    if not names:
+        raise BadProgram("no procedure that runs by itself is in it", valid="PROC main()")
+    told = f"there is no procedure main, but {', '.join(map(str, names))}"
     raise MissingKey(told, where="entry", valid="the procedure that runs")
 
 

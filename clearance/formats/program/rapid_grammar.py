@@ -8,7 +8,8 @@ from __future__ import annotations
 import operator
 import re
 
-from clearance.formats.program.expressions import COMPARED, Grammar, numeric
+from clearance.formats.program.expressions import COMPARED, numeric
+from clearance.formats.program.grammar import Grammar
 
 WORDS = re.compile(
     r"""(?P<skip>\s+|![^\n]*|%%%.*?%%%)

@@ -16,10 +16,10 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     ExpressionReader,
-    Grammar,
     Name,
     Operation,
 )
+from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.rapid_grammar import WORDS, added
 from clearance.formats.program.statements import (
     RETURN,

@@ -15,10 +15,10 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     ExpressionReader,
-    Grammar,
     Name,
     numeric,
 )
+from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,

@@ -334,6 +334,33 @@ def test_a_loop_whose_passes_a_kept_value_counts_is_doubted(body, line):
     assert [one.split(",")[0] for one in found.doubts] == [told] * bool(line)
 
 
+@pytest.mark.parametrize(
+    ("condition", "is_true"),
+    [
+        ("b==FALSE OR TRUE", False),  # as (FALSE == (FALSE OR TRUE)): comparisons bind least
+        ("(b==FALSE) OR TRUE", True),
+        ("NOT b==TRUE EXOR b", True),
+        ("TRUE OR b AND b", True),
+        ("6 B_AND 3 == 2", True),
+        ("5 B_OR 3 B_EXOR 1 == 7", True),
+        ("B_NOT 5 == -6", True),
+    ],
+)
+def test_operators_bind_as_the_controller_has_it(condition, is_true):
+    body = f"b=FALSE\nIF {condition} THEN\nPTP XHOME\nENDIF\nLIN XP1\n"
+    assert len(program(f"{FRAMES}PTP XHOME\n{body}").moves) == 2 + is_true
+
+
+def test_truths_and_numbers_are_not_mixed():
+    with pytest.raises(cl.ClearanceError, match="line 8: this has no value for 1 and True"):
+        program("n=1\nIF n==1 AND TRUE THEN\nPTP XHOME\nENDIF\n")
+
+
+def test_names_that_are_like_an_unknown_one_are_sought_only_to_be_told(monkeypatch):
+    monkeypatch.setattr("clearance.formats.program.execution.nearest_name", lambda *_: 1 / 0)
+    assert len(program("n=nowhere\nb[1].x=elsewhere\nPTP XHOME").moves) == 1
+
+
 def test_system_variables_that_are_not_followed_are_doubted():
     quiet = "$ADVANCE=3\n$TECH[1].MODE=#OFF\n$TECH[2].CLASS=#PATH\n$OUT[1]=TRUE\nPTP XHOME"
     assert program(quiet).doubts == ()

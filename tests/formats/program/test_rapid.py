@@ -174,6 +174,16 @@ def test_arguments_without_a_name_are_those_that_a_call_needs():
     ]
 
 
+def test_an_argument_is_passed_on_if_it_is_given():
+    data = 'VAR wobjdata high:=[FALSE,TRUE,"",[[0,0,50],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];'
+    line = f"MoveL {P},v100,fine,tool0\\WObj?on;"
+    more = (
+        f"ENDPROC PROC go(\\wobjdata on)\nover \\on?on;\nENDPROC PROC over(\\wobjdata on)\n{line}"
+    )
+    found = moves_of("go;\ngo \\on:=high;\n" + more, data)
+    assert [place(one.to)[2] for one in found] == [0.0, 50.0]
+
+
 def test_a_field_is_that_of_its_own_record():
     records = "RECORD part num id; num count; num z; num x; ENDRECORD RECORD point num z; num x; num y; ENDRECORD "
     body = f"VAR robtarget p;\np:={P};\np.trans.x:=7;\nMoveL p,v100,fine,tool0;"
