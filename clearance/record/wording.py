@@ -14,20 +14,30 @@ from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 
 
-def mm(metres: float) -> str:
+def mm(metres: float, levels: Sequence[float] = ()) -> str:
     """A length in millimetres, rounded down so that a shown clearance is never more than the
     measured one.
 
-    Four digits or, below 10 mm, three decimals; what is above 0 and below a micrometre says so.
+    Four digits or, below 10 mm, three decimals; what is above 0 and below a micrometre says so. More digits, if it
+    would else seem to be below a level [m] that stands beside it.
     """
     if metres == 0.0:
         return "0"
     if 0.0 < metres < 1e-6:
         return "< 0.001"
     value = Decimal(repr(float(metres))) * 1000  # exact, so that 0.0283 m is 28.30 mm
-    places = max(0, min(3, 3 - value.adjusted()))
-    return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+    least = max(
+        (Decimal(limit_mm(level)) for level in levels if level <= metres), default=Decimal(0)
+    )
+    for places in range(max(0, min(3, 3 - value.adjusted())), MOST_PLACES + 1):
+        text = str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+        if Decimal(text) >= least:
+            break
+    return text
 
+
+MOST_PLACES = 6
+"""Decimals of a millimetre: a nanometre."""
 
 NOISE = 1e-12
 """[-] What is rounded up is first made less by this share: 0.05 m and a rounding is 50.00 mm, not 50.01."""
@@ -85,20 +95,20 @@ def near_mm(clearance: float, status: str, unit: str = "") -> str:
     return "contact" if status == Status.CONTACT else f"{mm(clearance)}{unit}"
 
 
-def least_text(moment: Moment) -> str:
-    """The clearance of the worst moment, or its depth where bodies touch."""
+def least_text(moment: Moment, levels: Sequence[float] = ()) -> str:
+    """The clearance of the worst moment, or its depth where bodies touch; `levels` [m] as of `mm`."""
     if moment.touches:
         return depth_text(moment.depth)
-    return f"least clearance {padded_mm(moment)}"
+    return f"least clearance {padded_mm(moment, levels)}"
 
 
 SEEN_PADDING = 1e-4
 """[m] Less padding than this is told only where bodies are listed."""
 
 
-def padded_mm(moment: Moment) -> str:
+def padded_mm(moment: Moment, levels: Sequence[float] = ()) -> str:
     """The clearance of a moment in millimetres; with padding, that and the distance of the shapes beside it."""
-    text = f"{mm(moment.clearance)} mm"
+    text = f"{mm(moment.clearance, levels)} mm"
     if moment.touches or moment.padding < SEEN_PADDING:
         return text
     shapes = mm(moment.clearance + moment.padding)

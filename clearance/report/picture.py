@@ -60,7 +60,10 @@ CREASE = math.radians(25.0)
 KEY_LIGHT = np.array([0.36, -0.48, 0.8])
 
 _INK, _FAINT, _SUSPECT = "#17202b", "#5d6975", "#6b2fa0"
-_DOTS_PER_INCH, _MOST_LETTERS = 100, 150
+_DOTS_PER_INCH, _LETTERS_OF_SIZE_1 = 100, 1500
+
+MOST_WARNINGS = 4
+"""Lines of warnings in a picture."""
 
 
 def png_of(record: Record, replay: Replay, verdict: Verdict) -> bytes:
@@ -93,8 +96,16 @@ def _with_inset(still: Still) -> np.ndarray:
     return image
 
 
+def _most(warnings: Sequence[str]) -> Sequence[str]:
+    """The first warnings, and how many more there are."""
+    if len(warnings) <= MOST_WARNINGS:
+        return warnings
+    more = len(warnings) - MOST_WARNINGS + 1
+    return (*warnings[: MOST_WARNINGS - 1], f"and {more} more, in the report")
+
+
 def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
-    """The verdict, the moment, and the limits and what was not checked, one below the other."""
+    """The verdict, the moment, the limits and what was not checked, and warnings, one below the other."""
     hue, limits = COLOURS.get(verdict.shade), record.case.limits
     colour = _SUSPECT if hue is None else f"#{hue:06x}"
     below = ", ".join([limits_text(limits.fail, limits.warn), *verdict.scope])
@@ -102,11 +113,13 @@ def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
         (f"{verdict.headline(str.upper)}   {record.case.name}", 15, colour, "bold"),
         (moment_line(record, verdict.worst), 12, _INK, "normal"),
         (below, 10, _FAINT, "normal"),
+        *((f"warning: {text}", 10, _FAINT, "normal") for text in _most(verdict.warnings)),
     )
     top = MARGIN
     box = {"facecolor": "#fafbfc", "alpha": 0.8, "edgecolor": "none", "pad": 2}
     for text, size, ink, weight in lines:
-        shown = text if len(text) <= _MOST_LETTERS else f"{text[: _MOST_LETTERS - 1]}…"
+        most = _LETTERS_OF_SIZE_1 // size
+        shown = text if len(text) <= most else f"{text[: most - 1]}…"
         figure.text(
             MARGIN / WIDTH, 1.0 - top / HEIGHT, shown, va="top", parse_math=False, fontsize=size,
             color=ink, weight=weight, family="DejaVu Sans", bbox=box,

@@ -70,7 +70,7 @@ def _headline(model: ReportModel) -> Text:
     elif limits.rules or verdict.nearest:
         after = f": {moment_line(record, worst)} ({name})"
     else:
-        after = f"  {name}: {least_text(worst)}"
+        after = f"  {name}: {least_text(worst, (limits.fail, limits.warn))}"
         after += f" ({limits_text(limits.fail, limits.warn)})"
         named = record.status_of(worst) != "clear"
         after += f": {worst.link} - {worst.obstacle}" if named else ""

@@ -45,3 +45,16 @@ def test_limits_are_shown_as_given():
 def test_joint_values_carry_their_unit():
     assert joint_value("revolute", 1.5707963267948966) == "90.00°"
     assert joint_value("prismatic", 0.0125) == "12.50 mm"
+
+
+@pytest.mark.parametrize(
+    ("metres", "levels", "told"),
+    [
+        (0.0126354, (), "12.63"),
+        (0.0126354, (0.012635, 0.02), "12.635"),
+        (0.0126349, (0.012635,), "12.63"),
+        (-0.001234, (0.005,), "-1.234"),
+    ],
+)
+def test_what_keeps_a_level_is_not_shown_below_it(metres, levels, told):
+    assert mm(metres, levels) == told

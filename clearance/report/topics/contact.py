@@ -65,7 +65,8 @@ def lines(model: ReportModel) -> Iterator[Line]:
     if found is None:
         return
     deepest = found["deepest"]
-    text = f"step {deepest['step']}, {deepest['link']} in {deepest['obstacle']}: {contact_text(deepest)}"
+    pair = f"{deepest['link']} in {deepest['obstacle']}"
+    text = f"at the steps: step {deepest['step']}, {pair}: {contact_text(deepest)}"
     of_link = model.record.sides[:2] == LINK_AND_OBSTACLE
     whose = "the link" if of_link else deepest["link"]
     yield "deepest", f"{text}; separation vector of {whose} ({_vector(deepest)}) mm"

@@ -30,8 +30,8 @@ from clearance.world.motion import Motion
 MOST_PAIRS = 8
 """Pairs that are as near, by name."""
 
-_PER = {"rad": (math.radians(1.0) * 1e3, "1°"), "m": (1.0, "1 mm")}
-"""Of a variable's unit: from metres of clearance a unit to millimetres a step, and the step."""
+_PER = {"rad": (math.radians(0.1) * 1e3, "0.1°"), "m": (1.0, "1 mm")}
+"""By the unit of a variable: from metres of clearance a unit to millimetres a step, and that step, a small one."""
 
 
 def data(model: ReportModel) -> dict[str, Any]:
