@@ -7,7 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.shapes import SHAPES
+from clearance.query.distance import distance
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.cell import once_a_cell
@@ -155,11 +157,15 @@ def _is_mesh(body: Body) -> bool:
     return not set(body.origin.split(", ")) <= SHAPES.keys()
 
 
+POINT = 1e-6
+"""[m] The radius of a ball that stands for a point."""
+
 FAR = 20.0
 """[-] An obstacle farther away than this many times the reach, and than this many metres, is not its own."""
 
-HALL, WALL = 100.0, 5.0
-"""[m] No cell is so large. [-] Within it, what is no farther away than this many times its length is a wall."""
+HALL, WALL, THIN = 100.0, 5.0, 0.1
+"""[m] No cell is so large. Within it [-] what is no farther away than this many times its length, and no thicker
+than this part of it, is a wall."""
 
 
 class Place(NamedTuple):
@@ -180,9 +186,15 @@ def odd_places(case: Case) -> list[str]:
     far = []
     for obstacle, gaps in zip(case.obstacles, _gaps(case, bases), strict=True):
         near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(gaps, reaches, strict=True))
-        if not near and min(gaps) > min(HALL, WALL * length_of(obstacle.body)):
+        if not near and not _may_be_wall(obstacle.body, min(gaps)):
             far.append((min(gaps), obstacle.name))
     return _in_words(case, greatest(far), bases) if far else []
+
+
+def _may_be_wall(body: Body, gap: float) -> bool:
+    sides = np.ptp(body.shape.bounds, axis=0)
+    is_thin = sides.min() <= THIN * sides.max()
+    return bool(is_thin and gap <= min(HALL, WALL * sides.max()))
 
 
 FAR_OFF = 5.0
@@ -190,20 +202,25 @@ FAR_OFF = 5.0
 
 
 def _far_off(case: Case) -> list[Notice]:
-    """A warning on obstacles that no robot ever comes near to; less strict where others are near, as in a hall."""
+    """A warning on obstacles that no robot ever comes near to; where others are near, as in a hall, not on walls,
+    and on shapes without a file only from twice as far."""
     reach = max(map(reach_of, case.robots))
     gaps = [min(one) for one in _gaps(case, _bases(case))]
     all_far = min(gaps, default=0.0) > FAR_OFF * reach
     far = [
         (gap, f"obstacle {one.name!r} stays {metres(gap)} m")
         for one, gap in zip(case.obstacles, gaps, strict=True)
-        if all_far or gap > max(2.0 * FAR_OFF * reach, WALL * length_of(one.body))
+        if all_far or (gap > _idle_from(one.body) * reach and not _may_be_wall(one.body, gap))
     ]
     if not far:
         return []
     whose = "the robot's base" if len(case.robots) == 1 else "every robot's base"
     text = f"{listed([text for _, text in greatest(far)])} and more away from {whose}"
     return [far_off_notice(text, min(far)[0] / reach)]
+
+
+def _idle_from(body: Body) -> float:
+    return FAR_OFF if _is_mesh(body) else 2.0 * FAR_OFF
 
 
 def far_off_notice(text: str, times: float) -> Notice:
@@ -236,16 +253,27 @@ def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> l
 
 
 def _gap(obstacle: Obstacle, place: Place, base: Place) -> float:
-    """[m] Nothing of an obstacle ever is nearer to a base."""
+    """[m] Nothing of an obstacle's surface ever is nearer to a base."""
     pose = place.pose
     local = pose[:3, :3].T @ (base.pose[:3, 3] - pose[:3, 3])
     if obstacle.stands:
-        gap = float(np.linalg.norm(local - np.clip(local, *obstacle.body.shape.bounds)))
+        gap = _from_surface(obstacle.body, local)
     else:  # it may be turned
         gap = float(
             np.linalg.norm(local) - np.linalg.norm(obstacle.body.shape.bounds, axis=1).max()
         )
     return gap - place.travel - base.travel
+
+
+def _from_surface(body: Body, point: np.ndarray) -> float:
+    """[m] No point of a body's surface is nearer to a point in its frame; 0 in a solid that is no box."""
+    low, high = body.shape.bounds
+    outside = float(np.linalg.norm(point - np.clip(point, low, high)))
+    if outside > 0.0 or length_of(body) < FAR:
+        return outside
+    if body.origin == "box":
+        return float(min((point - low).min(), (high - point).min()))
+    return distance(PointCloud(point[None], POINT), body.shape).distance if _is_mesh(body) else 0.0
 
 
 def _robot_place(case: Case, i_robot: int) -> Place:

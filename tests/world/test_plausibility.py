@@ -75,9 +75,9 @@ def test_what_rides_on_a_link_is_not_many_times_the_reach():
     assert reported(replace(case, obstacles=(riding,))) == [("suspect", "units")]
 
 
-def frame_around(side: float) -> Polyhedron:
-    """A square frame about the origin, whose bars are a hundredth of `side` thick."""
-    bar = box((side, side / 100, side / 100))
+def frame_around(side: float, share: float = 0.01) -> Polyhedron:
+    """A square frame about the origin, whose bars are a share of `side` thick."""
+    bar = box((side, side * share, side * share))
     half = side / 2
     turned = bar.vertices[:, [1, 0, 2]] * [-1, 1, 1]
     parts = [bar.vertices + [0, way * half, 0] for way in (-1, 1)]
@@ -92,8 +92,10 @@ def frame_around(side: float) -> Polyhedron:
         ({"obstacle": box((60.0, 60.0, 60.0)), "pose": at(0.0, 0.0, -35.0)}, "warning",
          "obstacle 'block' stays 5 m and more away from the robot's base, 6 times its reach"),
         ({"pose": at(15.0)}, "warning", "obstacle 'block' stays 14.9 m and more away"),
+        ({"obstacle": frame_around(19.0), "pose": at(0.0)}, "warning",
+         "nothing comes nearer than 9.21 m to the robot, 12 times its reach"),
         ({"obstacle": frame_around(20.0), "pose": at(0.0)}, "warning",
-         "nothing comes nearer than 9.7 m to the robot, 12 times its reach"),
+         "obstacle 'block' stays 9.9 m and more away from the robot's base, 12 times its reach"),
         ({"obstacle": frame_around(90.0), "pose": at(0.0)}, "suspect", "'block' is 90.9 m long"),
     ],
 )  # fmt: skip
@@ -106,6 +108,30 @@ def test_what_is_far_from_the_robot_is_no_quiet_clear(changes, severity, says):
     found = [one for one in check(case).record.notices if one.kind == "units"]
     assert [one.severity for one in found] == [severity]
     assert says in found[0].text
+
+
+@pytest.mark.parametrize(
+    ("shape", "place", "origin", "severity"),
+    [
+        (box((100.0, 80.0, 50.0)), at(0.5, 0.2, 0.3), "box", ["suspect"]),
+        (box((100.0, 80.0, 50.0)), at(140.0), "box", ["suspect"]),
+        (box((0.3, 0.2, 0.1)), at(500.0, 250.0, 300.0), "box", ["suspect"]),
+        (box((20.0, 6.0, 12.0)), at(50.0, 25.0, 30.0), "bracket.stl", ["suspect"]),
+        (frame_around(54.0, 0.2), at(0.3), "ring.stl", ["suspect"]),
+        (frame_around(54.0), at(0.3), "hall.stl", []),
+        (box((5.0, 1.5, 3.0)), at(9.0), "bracket.stl", ["warning"]),
+        (box((5.0, 1.5, 3.0)), at(9.0), "box", []),
+        (box((60.0, 60.0, 60.0)), at(0.0, 0.0, -30.5), "box", []),
+        (box((40.0, 0.3, 8.0)), at(0.0, 30.0), "box", []),
+    ],
+)  # fmt: skip
+def test_millimetres_beside_obstacles_of_usual_size(shape, place, origin, severity):
+    """Solids about the cell, or far from it, whatever else is near the robot; walls are none."""
+    near = case_of(obstacle=box((0.5, 0.5, 0.5)))
+    other = Obstacle(Body("other", shape, origin), place)
+    found = notices_of(replace(near, obstacles=(*near.obstacles, other)))
+    assert [str(one.severity) for one in found] == severity
+    assert all("obstacle 'other'" in one.text for one in found)
 
 
 def test_angles_that_look_like_degrees_are_told_how_to_say_so():
