@@ -54,8 +54,8 @@ def program() -> str:
     """sha256 of all sources of this package, presets among them, and of the versions below them."""
     versions = [(name, metadata.version(name)) for name in (*LIBRARIES, "pyarrow")]
     versions += [(name, metadata.version(name)) for name in READERS if is_installed(name)]
-    told = (package_digest(), FORMAT, versions, platform.python_version(), platform.machine())
-    return hashlib.sha256(repr(told).encode()).hexdigest()
+    parts = (package_digest(), FORMAT, versions, platform.python_version(), platform.machine())
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 
 def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
@@ -66,12 +66,12 @@ def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
             the files that it led to are.
     """
     given = item.trajectory
-    told: tuple[object, ...]
+    name: tuple[object, ...]
     if given is None:
         path = PurePath(item.file)
-        told = (path.parent.name, path.name)  # a case without a name takes theirs
+        name = (path.parent.name, path.name)  # a case without a name takes theirs
     else:
-        told = (item.name, given.reading, given.robot)
+        name = (item.name, given.reading, given.robot)
     read = sorted({one for one in files if not one[0].startswith(LOOKUP)})
-    asked = (program(), told, item.options.key, read)
+    asked = (program(), name, item.options.key, read)
     return hashlib.sha256(repr(asked).encode()).hexdigest()

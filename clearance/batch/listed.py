@@ -23,10 +23,10 @@ def write_list(store: Store, items: Sequence[Item]) -> None:
     """
     number = {one: i for i, one in enumerate(dict.fromkeys(item.options for item in items))}
     options = (json.dumps(one.plain(), default=str) for one in number)
-    store.write_list(options, _told(items, number))
+    store.write_list(options, _list_rows(items, number))
 
 
-def _told(
+def _list_rows(
     items: Sequence[Item], number: dict[CaseOptions, int]
 ) -> Iterator[tuple[int, str, str, int]]:
     for item in items:

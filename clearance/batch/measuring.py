@@ -133,13 +133,13 @@ class _Work:
 
     def _measure(self, item: Item) -> None:
         read = time.time_ns()
-        case, kept, since = read_item(item, self.batch)
+        case, sources, since = read_item(item, self.batch)
         row = row_of(answer(item.options.question(case), ONE_THREAD))
         others = conditions_of(item, case)
         key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *others)])
-        inputs = inputs_text((*kept, *others))
+        inputs = inputs_text((*sources, *others))
         self.measured.append(ItemResult(item.number, key, inputs, row))
-        self._note(kept, since or read)
+        self._note(sources, since or read)
         self._note(case.sources, read)
 
     def _note(self, sources: Sequence[Source], read: int) -> None:

@@ -150,7 +150,7 @@ def row_of(run: Run) -> dict[str, Any]:
             {"kind": one.kind, "about": one.about, "text": one.text}
             for one in doubts_of(record, run.judgement)
         ],
-        "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
+        "findings": [_finding_row(finding) for finding in findings[:MOST_FINDINGS]],
     }
 
 
@@ -179,7 +179,7 @@ def _incomplete(run: Run, n_findings: int) -> str:
     return why_incomplete(run.session) or unlisted
 
 
-def _told(finding: Finding) -> dict[str, Any]:
+def _finding_row(finding: Finding) -> dict[str, Any]:
     values = {name: getattr(finding, name) for name in FINDING.names}
     waived = finding.waived
     return values | {"waived": None if waived is None else f"{waived.reason} ({waived.by})"}

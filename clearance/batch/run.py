@@ -76,7 +76,7 @@ def run_batch(
 
 def _keep(done: TaskResult, items: dict[int, Item], store: Store, hashes: FileHashes) -> None:
     hashes.learn(done.read)
-    faults = list(_told(done.faults, items))
+    faults = list(_fault_rows(done.faults, items))
     store.put(
         rows=((one.key, one.row) for one in done.measured),
         inputs=dict.fromkeys((items[one.number].file, one.inputs) for one in done.measured),
@@ -86,7 +86,9 @@ def _keep(done: TaskResult, items: dict[int, Item], store: Store, hashes: FileHa
     )
 
 
-def _told(faults: Sequence[Fault], items: dict[int, Item]) -> Iterator[tuple[str, str, str, str]]:
+def _fault_rows(
+    faults: Sequence[Fault], items: dict[int, Item]
+) -> Iterator[tuple[str, str, str, str]]:
     """Name, text, trace and files of each; the files as they are now."""
     hashes = FileHashes()
     for one in faults:

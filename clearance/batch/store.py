@@ -332,13 +332,13 @@ def _is_new(db: sqlite3.Connection) -> bool:
 def _in_words(error: sqlite3.DatabaseError, path: Path) -> ClearanceError:
     """What SQLite says, as one line."""
     code = getattr(error, "sqlite_errorcode", 0) & 0xFF
-    where, kept = str(path), "what was measured before is kept; the same command goes on"
+    where, rows_stay = str(path), "what was measured before is kept; the same command goes on"
     if code in _FULL:
         return Incomplete(
-            f"cannot write here: {error}", where=where, valid=f"{kept} once there is room"
+            f"cannot write here: {error}", where=where, valid=f"{rows_stay} once there is room"
         )
     if code in _HELD:
-        return Incomplete("another process holds it", where=where, valid=kept)
+        return Incomplete("another process holds it", where=where, valid=rows_stay)
     if code in _SHUT:
         return Unwritable(
             f"cannot write here: {error}", where=where, valid="a folder that can be written"

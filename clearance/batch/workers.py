@@ -86,7 +86,7 @@ class WorkerEngine:
         while len(queue) or any(one.task for one in self._workers):
             ready = wait([one.pipe for one in self._workers])
             for one in [one for one in self._workers if one.pipe in ready]:
-                done = self._taken(one, queue)
+                done = self._received(one, queue)
                 self._hand_out(queue)
                 if done is not None:
                     yield done
@@ -100,7 +100,7 @@ class WorkerEngine:
                     with suppress(OSError):  # it is gone, which its pipe tells
                         one.pipe.send(one.task)
 
-    def _taken(self, one: Worker, queue: Queue) -> TaskResult | None:
+    def _received(self, one: Worker, queue: Queue) -> TaskResult | None:
         """What a worker has sent; None where that it is ready, or where it has died."""
         try:
             message = one.pipe.recv()

@@ -54,11 +54,15 @@ def refuse_folder(path: Path) -> None:
         return
     found = [*path.glob("*.yaml"), *path.glob("*.yml"), *path.glob("*/case.yaml")]
     cases = [one for one in sorted(found) if one.is_file() and _OF_CASE.search(one.read_bytes())]
-    beside = [one for one in cases if one.parent == path] or cases
-    named = [one for one in beside if one == path / "case.yaml"] or beside
-    told = ", ".join(str(one) for one in named[:NEAREST_NAMES])
+    inside = [one for one in cases if one.parent == path] or cases
+    named = [one for one in inside if one == path / "case.yaml"] or inside
+    listed_names = ", ".join(str(one) for one in named[:NEAREST_NAMES])
     more = f" and {len(named) - NEAREST_NAMES} more" if len(named) > NEAREST_NAMES else ""
-    valid = f"a case in it: {told}{more}" if named else "no case is in it; a case file is needed"
+    valid = (
+        f"a case in it: {listed_names}{more}"
+        if named
+        else "no case is in it; a case file is needed"
+    )
     raise MissingFile(f"{str(path)!r} is a folder", valid=valid)
 
 

@@ -103,12 +103,12 @@ class Unpacked:
         Raises:
             BadPack: it was read from other files than the zip lists.
         """
-        told = {path: sha256 for path, sha256 in self.manifest.reads}
+        listed_files = {path: sha256 for path, sha256 in self.manifest.reads}
         read = {one.path: one.sha256 for one in case.sources}
-        for path in [*told, *read]:
-            if told.get(path) != read.get(path):
+        for path in [*listed_files, *read]:
+            if listed_files.get(path) != read.get(path):
                 problem = "is not what it was when it was packed"
-                problem = "is read, and not packed" if path not in told else problem
+                problem = "is read, and not packed" if path not in listed_files else problem
                 raise BadPack(f"{path!r} {problem}", valid=REMEDY)
         for one in case.sources:
             if one.is_file and not Path(one.read_from).is_relative_to(self.folder):
@@ -197,8 +197,8 @@ def _manifest(archive: zipfile.ZipFile, n_bytes: int) -> Manifest:
     if MANIFEST not in members:
         raise BadPack("this zip holds no packed case", valid=REMEDY)
     if len(archive.infolist()) > MOST_FILES + 1 or total > LARGEST:
-        told = f"{len(archive.infolist())} files of {total} bytes"
-        raise BadPack(told, valid=f"at most {MOST_FILES} files, {LARGEST} bytes")
+        size = f"{len(archive.infolist())} files of {total} bytes"
+        raise BadPack(size, valid=f"at most {MOST_FILES} files, {LARGEST} bytes")
     if total > max(SMALL, MOST_SHRUNK * n_bytes):
         raise BadPack(
             f"{total} bytes in a zip of {n_bytes}", valid=f"at most {MOST_SHRUNK} times as many"
@@ -273,6 +273,6 @@ def require_entry(found: Unpacked, kind: str) -> Path:
     """
     is_case = found.entry.is_file()
     if is_case != (kind == "case"):
-        told, commands = ("case", "check") if is_case else ("report", "view or verify")
-        raise BadPack(f"a packed {told}", valid=f"clearance {commands} takes it")
+        what_for, commands = ("case", "check") if is_case else ("report", "view or verify")
+        raise BadPack(f"a packed {what_for}", valid=f"clearance {commands} takes it")
     return found.entry

@@ -95,9 +95,9 @@ def _refuse_variables(sources: Iterable[Source]) -> None:
     """Refuses files that mean something else on another machine."""
     asked = variables_asked(one for one in sources if one.is_file)
     if asked:
-        told = ", ".join(f"${name}" for name in asked)
+        variables = ", ".join(f"${name}" for name in asked)
         raise BadPack(
-            f"a xacro file asks for {told}, which is another on every machine",
+            f"a xacro file asks for {variables}, which is another on every machine",
             valid="an argument of the robot (xacro_args) in its place",
         )
 

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.errors import BadChange, BadDimension
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM
-from clearance.world.tool import Tool, apart
+from clearance.world.tool import Tool, pose_errors
 
 _SIDES = np.array([side for side in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(side)])
 DIRECTIONS = _SIDES / np.linalg.norm(_SIDES, axis=1)[:, None]
@@ -78,7 +78,7 @@ class ToolPoses:
 
     def moves(self, x: np.ndarray) -> list[ToolMove]:
         """How far the tool is moved by offsets of these splines."""
-        off = apart(self.tool.poses(self._at(x)), self.tool.poses(self.positions))
+        off = pose_errors(self.tool.poses(self._at(x)), self.tool.poses(self.positions))
         sizes = np.linalg.norm(off.reshape(-1, 2, 3), axis=2)
         return [
             ToolMove(self.tool.name, keep, float(far), float(turn))
@@ -92,7 +92,7 @@ class ToolPoses:
             beyond: [m] that is to cover rounding.
         """
         poses, rates = self.tool.poses_and_rates(self._at(x))
-        off = apart(poses, self.tool.poses(self.positions))
+        off = pose_errors(poses, self.tool.poses(self.positions))
         parts = [np.empty(0)], [np.empty((0, x.size))]
         for i, keep in enumerate(self.keeps):
             for part, most, arm in (

@@ -66,11 +66,11 @@ def closing_of(shape: Polyhedron, least: float = -1.0, most: float = FEW) -> Clo
     if shape.component_closed.all():
         return None
     found = _open_of(shape)
-    taken = (found.share > least) & (found.share <= most)
-    if not taken.any():
+    closed = (found.share > least) & (found.share <= most)
+    if not closed.any():
         return None
-    turns = np.where(taken[shape.face_component], found.ways, 0)
-    return Closing(turns, found.caps[taken[found.component]])
+    turns = np.where(closed[shape.face_component], found.ways, 0)
+    return Closing(turns, found.caps[closed[found.component]])
 
 
 def loose_triangles(shape: Polyhedron) -> np.ndarray:
@@ -136,15 +136,15 @@ def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int)
     use = edge_use(tails, heads)
     first = use.starts[np.flatnonzero(use.n_uses == 2)]
     one, two = face[use.order[first]], face[use.order[first + 1]]
-    apart = (use.forward[first] == use.forward[first + 1]) * n_faces
-    other = (two + apart) % (2 * n_faces)
+    crossing = (use.forward[first] == use.forward[first + 1]) * n_faces
+    other = (two + crossing) % (2 * n_faces)
     opposite = (other + n_faces) % (2 * n_faces)
     labels = joined_labels(
         2 * n_faces, np.concatenate([one, one + n_faces]), np.concatenate([other, opposite])
     )
-    kept, turned = labels[:n_faces], labels[n_faces:]
-    ways = np.where(kept <= turned, 1, -1)
-    piece = np.minimum(kept, turned)
+    as_given, turned = labels[:n_faces], labels[n_faces:]
+    ways = np.where(as_given <= turned, 1, -1)
+    piece = np.minimum(as_given, turned)
     there = np.unique(face)
     most = np.bincount(piece[there], ways[there], minlength=2 * n_faces)
     return np.where(most[piece] < 0, -ways, ways)

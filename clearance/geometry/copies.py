@@ -63,8 +63,8 @@ def two_sided(
     """
     asked = asked.copy()
     for faces, _, same, turned in _same_corners(corners, starts, asked[component]):
-        left_over = np.bincount(same, np.where(turned, -1, 1)) != 0
-        asked[component[faces[left_over[same]]]] = False
+        unpaired = np.bincount(same, np.where(turned, -1, 1)) != 0
+        asked[component[faces[unpaired[same]]]] = False
     return asked
 
 

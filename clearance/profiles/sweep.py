@@ -134,10 +134,10 @@ def _swept(
     require_no_shortfall([one.body for one in bodies], "a profile")
     off = max(one.off for one in bodies)
     if off > 0.0 and section is not None:
-        told = (
+        fault = (
             f"links may be {off * 1e3:.3g} mm off in corner zones, which a section does not count"
         )
-        raise BadInput(told, where="section", valid="the projection, or a program without zones")
+        raise BadInput(fault, where="section", valid="the projection, or a program without zones")
     views = _views(bodies, plane, section, tolerance)
     raster = _page(views)
     for view in views:

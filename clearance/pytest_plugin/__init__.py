@@ -52,11 +52,11 @@ def _add(group: pytest.OptionGroup, name: str, known: Option, default: Any) -> N
     """Adds an option of a check: `--clearance-` and what the command line calls it."""
     flag, place = f"--clearance-{flag_of(name, known)}", f"{PREFIX}{name}"
     if known.sort is SWITCH:
-        told = known.help.replace("%", "%%")
-        group.addoption(flag, dest=place, action="store_const", const=True, help=told)
+        text = known.help.replace("%", "%%")
+        group.addoption(flag, dest=place, action="store_const", const=True, help=text)
         if known.off:
             off = f"--clearance-{known.off.replace('_', '-')}"
-            group.addoption(off, dest=place, action="store_const", const=False, help=told)
+            group.addoption(off, dest=place, action="store_const", const=False, help=text)
         return
     usual = "" if default in (None, ()) else f"  [default: {known.sort.shown(default)}]"
     group.addoption(

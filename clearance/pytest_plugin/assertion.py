@@ -57,6 +57,6 @@ def _reasons(run: Run) -> list[str]:
 def _doubts(run: Run) -> list[str]:
     """Why what was measured is not to be trusted, whichever pair is asked about."""
     verdict = run.verdict
-    told = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
-    told += verdict.unproven_motion
-    return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]
+    lines = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
+    lines += verdict.unproven_motion
+    return lines if verdict.disputed_by is None else [*lines, f"{verdict.disputed_by} disagrees"]

@@ -138,7 +138,7 @@ class RuleItem(_Item):
         found = [one for one in run.findings if one.rule == self.rule and one.broken]
         failing = [one for one in found if one.fails]
         if failing:
-            raise self.failure(_told(one) for one in failing)
+            raise self.failure(_finding_text(one) for one in failing)
         doubts = _in_doubt(run)
         if doubts:  # kept, as far as such input says anything
             pytest.skip(f"the test of the verdict fails: {'; '.join(doubts)}")
@@ -160,12 +160,12 @@ class VerdictItem(_Item):
 def _in_doubt(run: Run) -> list[str]:
     """Why nothing that passes in a run counts for much: suspect input, unproven programs, peers that disagree."""
     verdict = run.verdict
-    told = [f"suspect {one.kind}" for one in verdict.suspects]
-    told += verdict.unproven_motion
-    return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]
+    parts = [f"suspect {one.kind}" for one in verdict.suspects]
+    parts += verdict.unproven_motion
+    return parts if verdict.disputed_by is None else [*parts, f"{verdict.disputed_by} disagrees"]
 
 
-def _told(finding: Finding) -> str:
+def _finding_text(finding: Finding) -> str:
     from clearance.findings.finding_text import finding_line
 
     return f"{finding_line(finding)} (finding {finding.id})"

@@ -84,8 +84,8 @@ def _faults(record: Record, answer: RuleAnswer, at_least: float | None) -> Itera
         yield f"{worst.link} - {worst.obstacle}: {near} at {moment_text(record, worst)}; {wanted}"
     elif certificate is not None and answer.limits.below(certificate.lower_bound.min(), level):
         proven = mm(float(certificate.lower_bound.min()))
-        told = f"only {proven} mm is proven, though nothing nearer is seen"
-        yield f"{told}; {wanted}; {why_undecided(record.case)}"
+        claim = f"only {proven} mm is proven, though nothing nearer is seen"
+        yield f"{claim}; {wanted}; {why_undecided(record.case)}"
 
 
 def _no_such_pair(run: Run, between: tuple[str, str]) -> BadInput:

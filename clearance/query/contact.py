@@ -24,7 +24,7 @@ from clearance.query.distance import distance
 from clearance.query.intersection import Intersection, intersect
 from clearance.query.penetration import ConvexCorners, Penetration, depths_at_most, penetration
 from clearance.query.region_bounds import ball_depth, thickness, volume_of_facets, ways_through
-from clearance.query.retreat import Ray, shortened, shortened_through, ways_out
+from clearance.query.retreat import Ray, separations, shortened, shortened_through
 from clearance.query.solid_near import SolidNear, solid_for, solid_near
 
 EXACT = 1e-12
@@ -224,8 +224,10 @@ class _PlacedPair:
         if self._by_region:
             ray = self._through_region(ray)
         elif self._needs_search:
-            extra = np.array([whole.direction, *(thin.direction for thin in self._rays_across())])
-            rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
+            extra = np.array(
+                [whole.direction, *(across.direction for across in self._rays_across())]
+            )
+            rays = separations(self.outer_a, self.outer_b, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
         if not bounded:
             return ray, 0.0
@@ -313,10 +315,10 @@ class _PlacedPair:
 
     def _rays_across(self) -> list[Ray]:
         """The two ways out of what is shared where it is thinnest; none where it is empty."""
-        thin = self._width
-        if thin is None:
+        width = self._width
+        if width is None:
             return []
-        return [Ray(thin.depth, direction) for direction in (thin.direction, -thin.direction)]
+        return [Ray(width.depth, direction) for direction in (width.direction, -width.direction)]
 
     def _width_of_region(self, more_than: float, only_convex: bool) -> float:
         """[m] the width of a convex part of the region: a separation of the bodies separates it from itself.

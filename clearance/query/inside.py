@@ -86,7 +86,7 @@ class PossibleContainment:
         for sides, outer, inner in ways:
             for holder, points in sides:
                 if isinstance(points, CloudPoints):
-                    _look_at_cloud(holder, points, outer, inner, found)
+                    _search_cloud(holder, points, outer, inner, found)
                     continue
                 rule = holder.rule if along_a_way else holder.rule._replace(stride=-1.0)
                 in_doubt(*holder.faces, points, rule, outer, inner, found)
@@ -100,7 +100,7 @@ def doubt_of(a: Polyhedron, b: Polyhedron) -> PossibleContainment | None:
 
 
 def _sides(outer: Polyhedron, inner: Polyhedron) -> _Sides:
-    holders = () if isinstance(outer, PointCloud) else _kept(_holders, outer, _holders_of)
+    holders = () if isinstance(outer, PointCloud) else _cached(_holders, outer, _holders_of)
     if not holders:
         return ()
     if isinstance(inner, PointCloud):
@@ -110,7 +110,7 @@ def _sides(outer: Polyhedron, inner: Polyhedron) -> _Sides:
         (holder, points)
         for holder in holders
         for points in _points_asked(holder, inner)
-        if not holder.rule.by_one or _may_hold(holder, points)
+        if not holder.rule.by_one or _may_contain(holder, points)
     )
 
 
@@ -120,19 +120,19 @@ def _points_asked(holder: Holder, inner: Polyhedron) -> Iterator[np.ndarray]:
         n_uses = np.bincount(inner.face_vertices, minlength=len(inner.vertices))
         parts = (inner.vertices[n_uses > 0],)
     else:
-        parts = _kept(_parts, inner, _parts_of)
+        parts = _cached(_parts, inner, _parts_of)
     for points in parts:
         ends = np.stack([points.argmin(axis=0), points.argmax(axis=0)], axis=1).reshape(-1)
         yield points[ends] if holder.rule.by_one else points
 
 
-def _may_hold(holder: Holder, outermost: np.ndarray) -> bool:
+def _may_contain(holder: Holder, outermost: np.ndarray) -> bool:
     """False if two corners are farther apart than any two points within the holder's bounds."""
     breadth = np.linalg.norm(outermost[::2] - outermost[1::2], axis=1).max()
     return bool(breadth <= np.linalg.norm(holder.bounds[1] - holder.bounds[0]))
 
 
-def _look_at_cloud(
+def _search_cloud(
     holder: Holder, cloud: CloudPoints, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
 ) -> None:
     """Sets `found` (n,) where a point of a cloud is in doubt, at poses (n, 4, 4) of the holder and its own."""
@@ -177,7 +177,7 @@ def _parts_of(shape: Polyhedron) -> tuple[np.ndarray, ...]:
     return tuple(shape.vertices[np.unique(corners)] for corners in of_parts)
 
 
-def _kept(
+def _cached(
     known: weakref.WeakKeyDictionary[Polyhedron, tuple],
     shape: Polyhedron,
     make: Callable[[Polyhedron], tuple],

@@ -138,8 +138,8 @@ def _distance(point: np.ndarray, corners: np.ndarray) -> float:
     normal = np.cross(ahead[:, 0], ahead[:, 1])
     area_sq = np.einsum("ij,ij->i", normal, normal)
     height = np.einsum("ij,ij->i", off[:, 0], normal)
-    beside = np.einsum("ijk,ik->ij", np.cross(ahead, -off), normal)
-    inside = (beside >= 0.0).all(axis=1) & (area_sq > 0.0)
+    sides = np.einsum("ijk,ik->ij", np.cross(ahead, -off), normal)
+    inside = (sides >= 0.0).all(axis=1) & (area_sq > 0.0)
     foot = height * height / np.where(area_sq > 0.0, area_sq, 1.0)
     return float(np.sqrt(np.where(inside, np.minimum(foot, least), least).min()))
 
@@ -148,6 +148,6 @@ def _may_be_nearest(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
     """(t,) False for triangles whose box is farther from the point than the nearest corner of all."""
     off = corners - point
     low, high = off.min(axis=1), off.max(axis=1)
-    beside = np.maximum(0.0, np.maximum(low, -high))
+    outside = np.maximum(0.0, np.maximum(low, -high))
     nearest_sq = np.einsum("ij,ij->i", off[:, 0], off[:, 0]).min()
-    return np.einsum("ij,ij->i", beside, beside) <= nearest_sq * (1.0 + 1e-9)
+    return np.einsum("ij,ij->i", outside, outside) <= nearest_sq * (1.0 + 1e-9)

@@ -40,7 +40,7 @@ class Ray(NamedTuple):
     direction: np.ndarray
 
 
-def ways_out(
+def separations(
     a: Sequence[ConvexCorners], b: Sequence[ConvexCorners], within: float, extra: np.ndarray
 ) -> list[Ray]:
     """Translations of the parts `a` that part all of them from all of `b`, shortest first.

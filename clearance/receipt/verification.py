@@ -45,7 +45,7 @@ class Verification:
         below: [m] the fail limit of each of those rules whose bound is below it, as the case has it.
         beyond: [m] how much more than is proven the report certifies in some interval, by rule.
         verdict: of the case, answered again. asked: what it rests on besides the case's own file.
-        beside: what it does not cover, and warnings, one line each.
+        further: what it does not cover, and warnings, one line each.
         not_verified: files of the report that are not as they are made again, and why; empty if all are.
     """
 
@@ -67,7 +67,7 @@ class Verification:
     beyond: Mapping[str, float] = field(default_factory=dict)
     verdict: str = ""
     asked: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
+    further: tuple[str, ...] = ()
     not_verified: str = ""
     source: str = ""
 
@@ -93,10 +93,10 @@ class Verification:
         not_verified = f", NOT VERIFIED: {self.not_verified}" if self.not_verified else ""
         report = "" if self.not_verified else "; every byte of the report matches a fresh run"
         asked = f" ({'; '.join(self.asked)})" if self.asked else ""
-        beside = "".join(f"; {one}" for one in self.beside)
+        more = "".join(f"; {one}" for one in self.further)
         return (
             f"{sampled}{nominal}PROVEN{self._exceptions}{not_verified}: {bounds} between all {self.n_pairs} pairs "
-            f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{beside}{report}; "
+            f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{more}{report}; "
             f"{count(len(self.files), 'input')} of {shown(self.source or self.name)} unchanged, "
             f"data {self.data[:16]}"
         )
@@ -122,8 +122,8 @@ class Verification:
                 "with tolerances in {} intervals, in which contact is not ruled out",
             ),
         )
-        told = " and ".join(text.format(n) for n, text in exceptions if n)
-        return told and f" EXCEPT {told}"
+        listed_exceptions = " and ".join(text.format(n) for n, text in exceptions if n)
+        return listed_exceptions and f" EXCEPT {listed_exceptions}"
 
 
 def proven(case: Case, data: CaseData, receipt: Receipt) -> Verification:

@@ -98,8 +98,8 @@ def _verified(
     asked = changed_options(own, question, files)
     source = "" if isinstance(case, Case) else str(case or receipt.head["case"])
     verdict = run.verdict
-    beside = (*verdict.scope, *(f"warning: {line}" for line in verdict.warnings))
-    found = replace(found, asked=asked, verdict=verdict.headline(), beside=beside, source=source)
+    further = (*verdict.scope, *(f"warning: {line}" for line in verdict.warnings))
+    found = replace(found, asked=asked, verdict=verdict.headline(), further=further, source=source)
     return _compared_with_report(found, run, data, receipt, place)
 
 

@@ -187,10 +187,12 @@ def answers_of_pairs(
 def _part(case: Case, section: Section, is_meant: PairTest) -> Section:
     """The section with those of its pairs that are meant."""
     rule = case.limits.rule_names[section.rule]
-    kept = [
+    measurable = [
         i for i, pair in enumerate(section.pairs)
         if is_meant(rule, names_of(case, pair.a), names_of(case, pair.b))
     ]  # fmt: skip
     return replace(
-        section, pairs=tuple(section.pairs[i] for i in kept), places=section.places[kept]
+        section,
+        pairs=tuple(section.pairs[i] for i in measurable),
+        places=section.places[measurable],
     )

@@ -56,8 +56,8 @@ def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:
     """A warning that nothing comes near to anything, which boxes of hollow meshes do not show."""
     least = min((one.found.clearance.min(initial=np.inf) for one in found), default=np.inf)
     reach = max(map(reach_of, case.robots))
-    told = any(notice.kind == "units" for notice in case.notices)
-    if FAR_OFF * reach < least < np.inf and not told:
+    is_noted = any(notice.kind == "units" for notice in case.notices)
+    if FAR_OFF * reach < least < np.inf and not is_noted:
         text = f"nothing comes nearer than {metres(least)} m to the robot"
         yield far_off_notice(text, least / reach)
 
@@ -79,8 +79,8 @@ def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterato
                 clouds = (body for body in pairs[i] if body.body_in(case).is_cloud)
                 names |= {body.name_in(case): None for body in clouds}
     if names:
-        told = "has no depth, volume or separation vector here: clouds of points"
-        text = f"contact with {listed([*names], 6)} {told}"
+        lacks = "has no depth, volume or separation vector here: clouds of points"
+        text = f"contact with {listed([*names], 6)} {lacks}"
         yield Notice(Severity.WARNING, "contact", text)
 
 

@@ -158,14 +158,14 @@ class QuestionOptions:
     def __post_init__(self) -> None:
         check_values(self)
         if self.body_gaps and self.need not in ("steps", "pairs"):
-            told = f"body gaps need the least of every pair, not {self.need!r}"
-            raise Contradiction(told, valid="need 'steps' or 'pairs'")
+            fault = f"body gaps need the least of every pair, not {self.need!r}"
+            raise Contradiction(fault, valid="need 'steps' or 'pairs'")
         if self.need != "steps" and self.method != "exact":
-            told = f"method {self.method!r} measures every step"
-            raise Contradiction(told, valid="need 'steps', or method 'exact'")
+            fault = f"method {self.method!r} measures every step"
+            raise Contradiction(fault, valid="need 'steps', or method 'exact'")
         if self.need in ("limit", "minimum") and self.cross_check:
-            told = f"cross-check needs every step, not {self.need!r}"
-            raise Contradiction(told, valid="need 'steps' or 'pairs'")
+            fault = f"cross-check needs every step, not {self.need!r}"
+            raise Contradiction(fault, valid="need 'steps' or 'pairs'")
 
 
 @dataclass(frozen=True, kw_only=True)

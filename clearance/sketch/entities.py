@@ -73,8 +73,8 @@ class Line(Entity):
     def offset(self) -> float:
         """[m] signed distance of the line from the origin along its normal (-sin, cos)."""
         d = self.direction
-        beside = d[0] * self.sketch.origin[1] - d[1] * self.sketch.origin[0]
-        return float(self.sketch.numbers(self.variable, 2)[1] + beside)
+        moment = d[0] * self.sketch.origin[1] - d[1] * self.sketch.origin[0]
+        return float(self.sketch.numbers(self.variable, 2)[1] + moment)
 
     @property
     def foot(self) -> np.ndarray:

@@ -239,8 +239,8 @@ def _loose_motions(problem: Problem, x: np.ndarray, part: int):
     """(basis of the remaining motions (n, k), first columns) with the part's initial cluster fixed."""
     equations = equations_of(problem, part, x)
     motions = _motions(equations)
-    held = motions.basis[_gauge(problem, part, equations, motions.place)]
-    _, values, vt = np.linalg.svd(held)
+    fixed = motions.basis[_gauge(problem, part, equations, motions.place)]
+    _, values, vt = np.linalg.svd(fixed)
     rank = int(np.sum(values > CLEAR)) if values.size else 0
     return motions.basis @ vt[rank:].T, equations.first
 

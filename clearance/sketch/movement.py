@@ -118,8 +118,8 @@ class _Work:
             if found is None:
                 return None
             step, multipliers = found
-            x, taken = self._search(x, step, multipliers)
-            if taken * np.abs(step).max() <= 1e-9 * self.problem.size:
+            x, share = self._search(x, step, multipliers)
+            if share * np.abs(step).max() <= 1e-9 * self.problem.size:
                 break
         return self.restored(x)
 

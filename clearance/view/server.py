@@ -65,8 +65,8 @@ class _Handler(BaseHTTPRequestHandler):
         content = self.server.content if status is HTTPStatus.OK else status.phrase.encode()
         self.send_response_only(status)
         kind = "text/html" if status is HTTPStatus.OK else "text/plain"
-        told = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(content))}
-        for name, value in {**told, **GUARDS}.items():
+        headers = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(content))}
+        for name, value in {**headers, **GUARDS}.items():
             self.send_header(name, value)
         self.end_headers()
         self.wfile.write(content)

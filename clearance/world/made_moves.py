@@ -30,9 +30,9 @@ class RobotMoves:
     @classmethod
     def of(cls, placed: PlacedRobot, prefix: str) -> RobotMoves:
         """Those of a robot that has some."""
-        taken = _taken(placed)
-        edges = placed.timing.run_times(np.array([*(one.start for one in taken), taken[-1].end]))
-        names = [prefix + one.name for one in taken]
+        spans = _spans(placed)
+        edges = placed.timing.run_times(np.array([*(one.start for one in spans), spans[-1].end]))
+        names = [prefix + one.name for one in spans]
         repeats = placed.timing.after == "loop"
         return cls(placed.robot.name, names, edges[:-1], edges[1:], repeats)
 
@@ -54,7 +54,7 @@ class MadeMoves:
     @classmethod
     def of(cls, case: Case) -> MadeMoves:
         """Those of a case."""
-        programmed = [placed for placed in case.robots if _taken(placed)]
+        programmed = [placed for placed in case.robots if _spans(placed)]
         several = len(programmed) > 1
         prefixes = (case.prefix_of(placed) if several else "" for placed in programmed)
         return cls(tuple(map(RobotMoves.of, programmed, prefixes)))
@@ -70,8 +70,8 @@ class MadeMoves:
         return np.where(np.array([not name for name in names])[found], -1, found), names
 
     def _name(self, places: Sequence[int]) -> str:
-        told = zip(self.robots, places, strict=True)
-        return ", ".join(one.names[i] for one, i in told if i >= 0)
+        by_robot = zip(self.robots, places, strict=True)
+        return ", ".join(one.names[i] for one, i in by_robot if i >= 0)
 
     def at(self, time: float) -> str:
         """The move at a time [s], of each robot that makes one; empty where none does."""
@@ -81,24 +81,24 @@ class MadeMoves:
         """The first and the last move of a stretch [s]: `LIN 3 to LIN 5`."""
         return " to ".join(dict.fromkeys(filter(None, (self.at(start), self.at(end)))))
 
-    def named(self, told: Any) -> Any:
+    def named(self, row: Any) -> Any:
         """Plain data, in which a row with a time has its `move`, and one with a start and an end its `moves`."""
         if not self.robots:
-            return told
-        if isinstance(told, list):
-            return [self.named(one) for one in told]
-        if not isinstance(told, dict):
-            return told
-        found = {key: self.named(value) for key, value in told.items()}
-        if isinstance(time := told.get("time"), float):
+            return row
+        if isinstance(row, list):
+            return [self.named(one) for one in row]
+        if not isinstance(row, dict):
+            return row
+        found = {key: self.named(value) for key, value in row.items()}
+        if isinstance(time := row.get("time"), float):
             found["move"] = self.at(time)
-        start, end = told.get("start"), told.get("end")
+        start, end = row.get("start"), row.get("end")
         if isinstance(start, float) and isinstance(end, float):
             found["moves"] = self.over(start, end)
         return found
 
 
-def _taken(placed: PlacedRobot) -> list[MoveSpan]:
+def _spans(placed: PlacedRobot) -> list[MoveSpan]:
     """The moves of a robot's program that take time."""
     moves = () if placed.trajectory is None else placed.trajectory.moves
     return [one for one in moves if one.end > one.start]

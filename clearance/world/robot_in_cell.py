@@ -63,9 +63,9 @@ def robots_in_cell(cases: Sequence[Case]) -> list[RobotInCell]:
         raise BadInput(
             f"{len(names)} robot is given", valid="cases with two or more robots in all are needed"
         )
-    told = iter(_told_apart(names))
+    unique = iter(_unique_names(names))
     return [
-        RobotInCell(next(told), i_case, i_robot, timeline)
+        RobotInCell(next(unique), i_case, i_robot, timeline)
         for i_case, timeline in enumerate(_timelines(cases))
         for i_robot in range(len(cases[i_case].robots))
     ]
@@ -75,7 +75,7 @@ def _timelines(cases: Sequence[Case]) -> list[Timeline]:
     return [timeline_of(case, [kinematic_motion(one) for one in case.robots]) for case in cases]
 
 
-def _told_apart(found: Sequence[tuple[str, str]]) -> list[str]:
+def _unique_names(found: Sequence[tuple[str, str]]) -> list[str]:
     """A name for each of some pairs of a case's and a robot's name."""
     names = [name for _, name in found]
     full = [name if names.count(name) == 1 else f"{case}/{name}" for case, name in found]

@@ -147,7 +147,7 @@ def tool_of(placed: PlacedRobot, name: str | None) -> Tool:
     )
 
 
-def apart(poses: np.ndarray, others: np.ndarray) -> np.ndarray:
+def pose_errors(poses: np.ndarray, others: np.ndarray) -> np.ndarray:
     """(n, 6) how poses lie off others (n, 4, 4): their origins [m], and the turn about the axis that does it
     [rad].
     """

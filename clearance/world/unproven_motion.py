@@ -21,8 +21,8 @@ def notices_on_unproven(placed: PlacedRobot, before: str = "") -> list[Notice]:
     if not spans:
         return []
     whose = f" of robot {about!r}" if before else ""
-    told = listed([f"{one.move}, {one.start:.3f}-{one.end:.3f} s: {one.why}" for one in spans])
-    text = f"measured at the samples and not proven{whose}: {told}"
+    stretches = listed([f"{one.move}, {one.start:.3f}-{one.end:.3f} s: {one.why}" for one in spans])
+    text = f"measured at the samples and not proven{whose}: {stretches}"
     return [Notice(Severity.UNPROVEN, "unproven motion", text, about)]
 
 

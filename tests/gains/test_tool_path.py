@@ -14,7 +14,7 @@ from clearance.gains.tool_path import tool_path_kept
 from clearance.gains.turn import Turn
 from clearance.world.kinematics import link_poses
 from clearance.world.robot import Joint, JointKind, Mimic
-from clearance.world.tool import apart, tool_of
+from clearance.world.tool import pose_errors, tool_of
 from tests.gains.gantries import along_x, gantry, slot, standing
 from tests.gains.making_gain import write_cell
 
@@ -230,7 +230,7 @@ def test_rates_of_a_tool_are_those_of_differences():
     rates = tool.poses_and_rates(at)[1]
     for column in range(3):
         step = np.eye(3)[column] * 1e-6
-        found = apart(tool.poses(at + step), tool.poses(at - step)) / 2e-6
+        found = pose_errors(tool.poses(at + step), tool.poses(at - step)) / 2e-6
         assert rates[:, :, column] == pytest.approx(found, abs=1e-8)
 
 
@@ -240,7 +240,7 @@ def test_how_poses_lie_apart_at_any_angle():
     for angle in (0.0, 1e-9, 0.3, 3.0):
         turned = np.eye(4)
         turned[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-        found = apart(turned[None], np.eye(4)[None])[0]
+        found = pose_errors(turned[None], np.eye(4)[None])[0]
         assert found == pytest.approx(np.append(np.zeros(3), angle * axis), abs=1e-9)
 
 

@@ -87,7 +87,7 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
         moving = replace(robot.placed, trajectory=trajectory)
         scene = new_scene(given, moving, meshes, folder)
     motion = _Motion(
-        trajectory, f"from {source}: {_told(trajectory)}", _notes_of(given, robot, files)
+        trajectory, f"from {source}: {_described(trajectory)}", _notes_of(given, robot, files)
     )
     text = _text(given, robot, scene, motion, folder, files)
     contents = {CASE: text_of(text).encode(), **scene.contents}
@@ -155,7 +155,7 @@ def _motion(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> tuple[
     return trajectory, f"{known.shown}, states {', '.join(given.states)}"
 
 
-def _told(trajectory: Trajectory) -> str:
+def _described(trajectory: Trajectory) -> str:
     start, end = trajectory.times[[0, -1]].tolist()
     n_joints = counted(len(trajectory.joint_names), "joint")
     return (
@@ -274,11 +274,13 @@ def motion_between(known: NamedStates, states: Sequence[str], robot: Robot) -> T
         )
     found = [positions_in_states(known, [state], robot).positions for state in states]
     names = [joint.name for joint in robot.moving_joints if any(joint.name in one for one in found)]
-    rows = np.array([[_held(name, i, found) for name in names] for i in range(len(found))])
+    rows = np.array(
+        [[_state_position(name, i, found) for name in names] for i in range(len(found))]
+    )
     return Trajectory(PERIOD * np.arange(len(states)), tuple(names), rows)
 
 
-def _held(name: str, i_state: int, found: Sequence[dict[str, float]]) -> float:
+def _state_position(name: str, i_state: int, found: Sequence[dict[str, float]]) -> float:
     """Where a joint is: by this state, else by the last before it, else by the first that says so."""
     before = [one[name] for one in found[: i_state + 1] if name in one]
     return before[-1] if before else next(one[name] for one in found if name in one)

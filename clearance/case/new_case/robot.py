@@ -120,7 +120,7 @@ class NewRobot:
         """What stands under `joints` for those that a trajectory does not move."""
         states = self.rest[0] if len(self.rest) == 1 else list(self.rest)
         return ({"state": states} if self.rest else {}) | {
-            joint.name: self._rest(joint) for joint in self._left(trajectory)
+            joint.name: self._rest(joint) for joint in self._unset_joints(trajectory)
         }
 
     def remarks(self, trajectory: Trajectory) -> dict[str, str]:
@@ -129,7 +129,7 @@ class NewRobot:
         left = {
             joint.name: "assumed: nothing moves it"
             + (", and so the robot's file has it" if reference.get(joint.name) else "")
-            for joint in self._left(trajectory)
+            for joint in self._unset_joints(trajectory)
         }
         return {"base": f"assumed: {self._stands}", **left}
 
@@ -142,7 +142,7 @@ class NewRobot:
             yield "nothing stands around the robot, whose links are measured against each other"
         if is_alone and "srdf" not in self.keys:
             yield "all pairs of links but neighbours are measured: no SRDF excuses any"
-        left = self._left(trajectory)
+        left = self._unset_joints(trajectory)
         at_rest = {joint.name: self._rest(joint) for joint in left}
         zero = [name for name, position in at_rest.items() if position == 0.0]
         if zero:
@@ -167,7 +167,7 @@ class NewRobot:
         meant = self.placed.robot.reference.get(joint.name, 0.0)
         return float(min(max(meant, joint.lower), joint.upper)) + 0.0
 
-    def _left(self, trajectory: Trajectory) -> list[Joint]:
+    def _unset_joints(self, trajectory: Trajectory) -> list[Joint]:
         """The joints that neither the trajectory nor a state gives a position."""
         known = {*trajectory.joint_names, *self.placed.fixed_positions}
         return [joint for joint in self.placed.robot.moving_joints if joint.name not in known]
@@ -192,18 +192,18 @@ def new_robot(given: NewCaseRequest, meshes: MeshStore) -> NewRobot:
         keys["geometry"] = "visual"
         placed, notes = _placed(keys, given, meshes)
     robot = placed.robot
-    taken = [
+    from_files = [
         f"robot {robot.name!r} from {meshes.files.shown(Path(placed.urdf_path))}: "
         f"{counted(len(robot.link_names), 'link')}, {len(robot.bodies)} of them with a shape, "
         f"{counted(len(robot.moving_joints), 'joint')} to move"
     ]
-    taken += [
+    from_files += [
         f"{what} from {meshes.files.shown(resolved(given.keys[key], Path()))}"
         for key, what in _BESIDE.items()
         if key in given.keys
     ]
     seen_only = "geometry" in keys and "geometry" not in given.keys
-    return NewRobot(placed, keys, given.rest, taken, notes, seen_only)
+    return NewRobot(placed, keys, given.rest, from_files, notes, seen_only)
 
 
 def _placed(
@@ -217,5 +217,5 @@ def _placed(
     entry = schema.RobotEntry("robot", robot, motion, "trajectory")
     placed, on_motion, _ = reader.moving(entry, Surroundings())
     matrix = placed.self_clearance and placed.self_clearance.matrix
-    told = (*placed.robot.notes, *reader.notes, *on_motion)
-    return placed, [*told, *(matrix.notes if matrix else ())]
+    notes = (*placed.robot.notes, *reader.notes, *on_motion)
+    return placed, [*notes, *(matrix.notes if matrix else ())]

@@ -68,14 +68,14 @@ def new_scene(
     asked = SceneRequest(resolved(given.scene, Path()), meshes.files, package_dirs, said)
     content = read_scene(asked)
     rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
-    taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
+    heading = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
     case, notes = _with_rows(content, asked, placed, meshes)
     if content.notices or case.notices:
-        told = (f"{taken}; it stays the file that it is, since it brings a warning",)
+        headings = (f"{heading}; it stays the file that it is, since it brings a warning",)
         return NewScene(
             path_from(folder, given.scene),
             "as it is, since it brings a warning",
-            taken=told,
+            taken=headings,
             includes=_seen_from(folder, given.includes),
         )
     made = written_scene(content, asked, folder, "clearance new")
@@ -86,7 +86,7 @@ def new_scene(
         [_carried(carry) for carry in case.carries],
         [row.between for row in case.allow],
         case.robots[0].padding,
-        (taken,),
+        (heading,),
         (*content.notes, *notes),
     )
 

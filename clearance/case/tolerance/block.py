@@ -71,11 +71,11 @@ def budget_of(given: Tolerance, case: Case, folder: Path, files: InputFiles) -> 
         coverage=given.coverage,
         is_normal=given.distributions == "normal",
         unproven_ok=given.unproven_ok,
-        sources=(*map(_told, presets), *tracked.sources),
+        sources=(*map(_described, presets), *tracked.sources),
     )
 
 
-def _told(one: Preset) -> str:
+def _described(one: Preset) -> str:
     return f"preset {one.name}: {one.source}"
 
 

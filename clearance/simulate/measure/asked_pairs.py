@@ -19,11 +19,11 @@ class NearestAsked(NamedTuple):
     """The nearest pair at one position.
 
     Attributes:
-        apart: False where its bodies touch. clearance: [m] less padding. place: of the pair in the checker.
+        is_separate: False where its bodies touch. clearance: [m] less padding. place: of the pair in the checker.
         points: (2, 3) [m] witness points in the world.
     """
 
-    apart: bool
+    is_separate: bool
     clearance: float
     place: int
     points: np.ndarray
@@ -32,7 +32,7 @@ class NearestAsked(NamedTuple):
 class NearestOfMany(NamedTuple):
     """The same at n positions: (n,), (n,), (n,), (n, 2, 3)."""
 
-    apart: np.ndarray
+    is_separate: np.ndarray
     clearances: np.ndarray
     places: np.ndarray
     points: np.ndarray
@@ -89,8 +89,8 @@ def nearest_of_many(found: Sequence[NearestOfMany]) -> NearestOfMany:
     """Row by row the nearest, contact first, the first of those alike."""
     first, *others = found
     for other in others:
-        nearer = (first.apart & ~other.apart) | (
-            (first.apart == other.apart) & (other.clearances < first.clearances)
+        nearer = (first.is_separate & ~other.is_separate) | (
+            (first.is_separate == other.is_separate) & (other.clearances < first.clearances)
         )
         pairs = zip(first, other, strict=True)
         first = NearestOfMany(*(_where(nearer, one, another) for one, another in pairs))

@@ -27,7 +27,7 @@ from clearance.world.kinematics import moving_positions
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity, accepted_kind, worst_first
-from clearance.world.one_time import left_to_the_run, phase_at
+from clearance.world.one_time import phase_at, time_dependent_parts
 from clearance.world.pairs import Selection, measured_selection, nothing_to_measure, selected_pairs
 from clearance.world.plausibility import notices_of
 from clearance.world.plausible_motion import largest_usual, notices_on_positions
@@ -164,7 +164,7 @@ class Checker:
         if undecided:
             self._asked.require_decided(undecided)
         (link, obstacle), (a, b) = self.pairs[found.place], found.points
-        return Clearance(found.clearance, link, obstacle, a, b, undecided, not found.apart)
+        return Clearance(found.clearance, link, obstacle, a, b, undecided, not found.is_separate)
 
     def distances(self, configurations: np.ndarray) -> ClearanceOfMany:
         """The least clearance at each of n configurations (n, k), in one compiled call.
@@ -183,7 +183,7 @@ class Checker:
         if in_doubt:
             self._asked.require_decided([self.pairs[i] for i, _ in in_doubt])
         return ClearanceOfMany(
-            found.clearances, found.places, found.points, undecided, ~found.apart
+            found.clearances, found.places, found.points, undecided, ~found.is_separate
         )
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
@@ -219,9 +219,9 @@ class Checker:
                 set(given) - set(self.joint_names),
                 set(self.joint_names) - set(given),
             )
-            told = (("unknown", unknown), ("missing", missing))
+            faults = (("unknown", unknown), ("missing", missing))
             raise BadInput(
-                "; ".join(f"{what}: {', '.join(sorted(names))}" for what, names in told if names),
+                "; ".join(f"{what}: {', '.join(sorted(names))}" for what, names in faults if names),
                 where="configuration",
                 valid=self._wanted(1),
             )
@@ -235,21 +235,21 @@ class Checker:
 def _measured(case: Case, time: float | None) -> tuple[Case, Selection]:
     """The case at a time [s] of its run, and its pairs; warnings say what is left out."""
     if case.tolerance is not None:
-        told = (
+        text = (
             "this Checker counts no tolerances: clearances are nominal; `check` proves what remains"
         )
-        warnings.warn(told, stacklevel=4)
+        warnings.warn(text, stacklevel=4)
     if time is not None:
         phase = phase_at(case, time)
         measured = selected_pairs(phase)
         if not measured.pairs:
             raise nothing_to_measure()
         return phase.case, measured
-    left_out = left_to_the_run(case)
-    if left_out:
-        told = "; ".join(left_out)
+    at_other_times = time_dependent_parts(case)
+    if at_other_times:
+        text = "; ".join(at_other_times)
         warnings.warn(
-            f"this Checker knows no time: {told}; give time=, [s] of the run", stacklevel=4
+            f"this Checker knows no time: {text}; give time=, [s] of the run", stacklevel=4
         )
     return case, measured_selection(case)
 

@@ -40,8 +40,8 @@ class Resources:
         Args:
             before: steps of all sections before it. of: of all sections.
         """
-        tell = self.progress
-        shifted = None if tell is None else lambda done, _: tell(before + done, of)
+        progress = self.progress
+        shifted = None if progress is None else lambda done, _: progress(before + done, of)
         return replace(self, progress=shifted, prefix=f"{self.prefix}{number}-")
 
     @property

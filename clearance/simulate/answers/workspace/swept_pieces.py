@@ -86,12 +86,12 @@ def swept_pieces(
     present = [phase for phase in timeline.phases if i_robot not in phase.absent_robots]
     pieces: list[SweptPiece] = []
     for phase in present:
-        bodies = list(_held_bodies(case, phase, i_robot))
+        bodies = list(_swept_bodies(case, phase, i_robot))
         pieces += _pieces_of_phase(phase, bodies, within, cut_links)
     return pieces
 
 
-class _HeldBody(NamedTuple):
+class _SweptBody(NamedTuple):
     """A body at the pose of a link of the forest, or up to `off` [m] from there."""
 
     name: str
@@ -100,14 +100,14 @@ class _HeldBody(NamedTuple):
     off: float
 
 
-def _held_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
+def _swept_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_SweptBody]:
     """The measured links of a robot, then what it has in hand."""
     placed, forest = phase.case.robots[i_robot], forest_of(phase.case)
     for i, body in enumerate(placed.robot.bodies):
         if body.name not in (*placed.exclude_links, own_floor(placed)):
             link = forest.robot_starts[i_robot] + placed.robot.link_names.index(body.name)
             off = corner_off(case, phase, BodyIndex(i_robot, i))
-            yield _HeldBody(body.name, body.shape, link, off)
+            yield _SweptBody(body.name, body.shape, link, off)
     for i, obstacle in enumerate(phase.case.obstacles):
         holder = holding_link(phase, i)
         if holder is not None and holder[0] == i_robot:
@@ -115,11 +115,11 @@ def _held_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
             if isinstance(shape, PointCloud):
                 shape = shape.box_about()
             off = corner_off(case, phase, BodyIndex(OBSTACLE, i))
-            yield _HeldBody(obstacle.name, shape, forest.obstacle_links[i], off)
+            yield _SweptBody(obstacle.name, shape, forest.obstacle_links[i], off)
 
 
 def _pieces_of_phase(
-    phase: Phase, bodies: list[_HeldBody], within: float, cut_links: Collection[str]
+    phase: Phase, bodies: list[_SweptBody], within: float, cut_links: Collection[str]
 ) -> Iterator[SweptPiece]:
     case, motions, every = phase.case, phase.motions, slice(None)
     links = forest_of(case).links
