@@ -122,7 +122,7 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.nda
 
 ANOTHER = (
     "another configuration of the target (RAPID: [cf1, cf4, cf6, cfx], or `ConfJ\\Off` before the move to ignore "
-    "it; KRL: S and T; else `within`)"
+    "it; KRL: S and T; FANUC: CONFIG; else `within`)"
 )
 """The remedy where a pose is within reach, and not in the configuration that is asked for."""
 
@@ -156,4 +156,5 @@ def range_of(joint: Joint, low: float, high: float) -> str:
 def _shown(joint: Joint, value: float) -> str:
     """A position of a joint [rad or m], as people read it."""
     is_slide = joint.kind is JointKind.PRISMATIC
-    return f"{value:.4g} m" if is_slide else f"{np.degrees(value):.4g} deg"
+    shown = round(float(value if is_slide else np.degrees(value)), 9)
+    return f"{shown:.4g} m" if is_slide else f"{shown:.4g} deg"

@@ -117,6 +117,10 @@ def targets_of(arm: Arm, move: JointMove, start: np.ndarray) -> np.ndarray:
     return found
 
 
+NO_WAY = 1e-12
+"""[rad] or [m] A shorter way takes no time that matters."""
+
+
 def fastest(joints: Sequence[Joint]) -> np.ndarray:
     """(k,) [rad/s] or [m/s] the greatest speeds of joints."""
     known = [one.velocity if np.isfinite(one.velocity) else 0.0 for one in joints]
@@ -125,6 +129,6 @@ def fastest(joints: Sequence[Joint]) -> np.ndarray:
 
 def joint_law(joints: Sequence[Joint], way: np.ndarray, speed: float) -> tuple[float, float]:
     """[1/s] and [1/s^2] The rate of a joint move, and its change: no joint is faster than it may be."""
-    goes = way != 0.0
-    rate = float(speed * (fastest(joints)[goes] / np.abs(way[goes])).min())
+    ways = np.maximum(np.abs(way), NO_WAY)
+    rate = float(speed * (fastest(joints) / ways).min())
     return rate, rate / (speed * RUN_UP)

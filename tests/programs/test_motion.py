@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.programs.joint_way import joint_law
 from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program
 from clearance.report.motion_file import motion_content
@@ -134,3 +135,11 @@ def test_a_zone_too_wide_to_be_proven_is_passed_on_its_nominal_path_and_told():
     ends = tool(motion(moves), positions_along(found, np.array([span.start, span.end])))
     apart = np.linalg.norm(ends[:, :3, 3] - moves[0].pose[:3, 3], axis=1)
     assert apart == pytest.approx([0.06, 0.06], abs=1e-6)
+
+
+def test_a_joint_that_stands_but_for_rounding_takes_no_time():
+    joints = arm("heron6").own
+    way = np.array([0.5, 2e-320, 0.0, -1e-30, 0.0, 0.0])
+    with np.errstate(all="raise"):
+        rate, _ = joint_law(joints, way, 0.5)
+    assert rate == pytest.approx(0.5 * joints[0].velocity / 0.5)

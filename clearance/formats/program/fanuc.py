@@ -59,8 +59,8 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         BadInput: with the file and the line.
     """
     with at(asked.shown):
-        main = listing_of(asked.data, asked.shown)
-        others = [listing_of(data, shown, shown) for shown, data in asked.beside.items()]
+        main = listing_of(asked.data)
+        others = [listing_of(data, file) for file, data in asked.beside.items()]
         routines = {
             one.name: Routine(one.name, Line(1), _ARGUMENTS, one.body) for one in (*others, main)
         }

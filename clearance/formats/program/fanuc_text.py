@@ -136,7 +136,7 @@ class Listing:
     body: tuple[Statement, ...]
 
 
-def listing_of(data: bytes, shown: str, file: str = "") -> Listing:
+def listing_of(data: bytes, file: str = "") -> Listing:
     """The statements of a file.
 
     Args:
@@ -145,7 +145,7 @@ def listing_of(data: bytes, shown: str, file: str = "") -> Listing:
     Raises:
         BadProgram: a part that is not there; BadSyntax: an instruction without its end: with the line.
     """
-    text = text_of(data, shown)
+    text = text_of(data, file)
     head = re.search(r"^/PROG\s+(\S+)", text, re.MULTILINE)
     start, points, end = (
         re.search(rf"^/{part}\b.*$", text, re.MULTILINE) for part in ("MN", "POS", "END")

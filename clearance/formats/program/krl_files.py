@@ -19,10 +19,9 @@ from clearance.formats.program.tokens import NEWLINE, Line, Token, text_of, toke
 
 @dataclass(frozen=True)
 class Source:
-    """The content of a file, its name in messages, and as of a `Line`."""
+    """The content of a file, and the file as of a `Line`."""
 
     data: bytes
-    shown: str
     file: str = ""
 
 
@@ -65,8 +64,8 @@ def _groups(asked: ProgramRequest) -> dict[str, list[Source]]:
     """The files of each module; the program's own is the last of its."""
     found = dict[str, list[Source]]()
     for shown, data in asked.beside.items():
-        found.setdefault(_stem(shown), []).append(Source(data, shown, shown))
-    found.setdefault(_stem(asked.shown), []).append(Source(asked.data, asked.shown))
+        found.setdefault(_stem(shown), []).append(Source(data, shown))
+    found.setdefault(_stem(asked.shown), []).append(Source(asked.data))
     return found
 
 
@@ -92,7 +91,7 @@ def _own_names(module: Module) -> set[str]:
 
 def _lines(source: Source) -> Iterator[list[Token]]:
     """The words of each line that has any, and its end; heads (`&ACCESS`) are left out."""
-    for number, row in enumerate(text_of(source.data, source.shown).split("\n"), 1):
+    for number, row in enumerate(text_of(source.data, source.file).split("\n"), 1):
         words = [] if row.lstrip().startswith("&") else tokens_of(row, WORD)[:-1]
         line = Line(number, source.file)
         if words:

@@ -41,7 +41,7 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
     """
     rules, modules = grammar(WORDS), Modules()
     with at(asked.shown):
-        modules.read(text_of(asked.data, asked.shown), rules)
+        modules.read(text_of(asked.data), rules)
         for file, data in asked.beside.items():
             modules.read(text_of(data, file), rules, file)
         given = asked.asked

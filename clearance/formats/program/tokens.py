@@ -36,14 +36,17 @@ END, NEWLINE, SKIP = "END", "newline", "skip"
 """The kind of what follows the last word; groups of patterns: the end of a line, and what has no meaning."""
 
 
-def text_of(data: bytes, shown: str) -> str:
+def text_of(data: bytes, file: str = "") -> str:
     """The text of a file in UTF-8, with or without a byte order mark, or else Latin-1; lines end in `\\n`.
+
+    Args:
+        file: as of a `Line`.
 
     Raises:
         BadSyntax: it is no text.
     """
     if b"\0" in data or data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise BadSyntax("this is no text of single bytes", where=shown, valid="UTF-8 or Latin-1")
+        raise BadSyntax("this is no text of single bytes", where=file, valid="UTF-8 or Latin-1")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -88,7 +88,7 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
         BadInput: with the file and the line.
     """
     with at(asked.shown):
-        script = script_of(text_of(asked.data, asked.shown))
+        script = script_of(text_of(asked.data))
         data_beside = list[Statement]()
         for file, data in asked.beside.items():
             beside = script_of(text_of(data, file), file)
