@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-from clearance.case.standing import Place, Rider, standing_frames
+import numpy as np
+
+from clearance.case.standing import IN_WORLD, Place, Rider, standing_frames
 from clearance.errors import BadProgram
 from clearance.formats.schema import program as schema
 from clearance.geometry.pose import inverse
@@ -39,7 +41,7 @@ class Surroundings:
 
 @dataclass(frozen=True, eq=False)
 class ProgramCell:
-    """The robot of a program among others, some of which it may drive: those that stand in the world and have no
+    """The robot of a program among others, some of which it may drive: those whose base stands and that have no
     trajectory.
 
     Attributes:
@@ -50,15 +52,29 @@ class ProgramCell:
     around: Surroundings
 
     @cached_property
+    def _bases(self) -> dict[str, np.ndarray]:
+        """(4, 4) `world_from_base` of the robots whose base stands, whatever the program drives, by name [m]."""
+        others = self.around.robots
+        moving = [one for one in others if one.trajectory is not None]
+        places, found = standing_frames(moving, self.around.obstacles, {}), {}
+        for one in (self.own, *others):
+            below = IN_WORLD if one.mount is None else places.get(one.mount.on)
+            if below is not None:
+                local = one.world_from_base if one.mount is None else one.mount.pose
+                found[one.robot.name] = below.pose @ local
+        return found
+
+    @property
+    def world_from_own(self) -> np.ndarray | None:
+        """(4, 4) where the base of the program's robot stands [m]; None where it may move."""
+        return self._bases.get(self.own.robot.name)
+
+    @cached_property
     def _others(self) -> dict[str, PlacedRobot]:
         """The robots that may be driven, by name."""
-        if self.own.mount is not None:
-            return {}
-        return {
-            one.robot.name: one
-            for one in self.around.robots
-            if one.trajectory is None and one.mount is None
-        }
+        names = self._bases if self.world_from_own is not None else ()
+        others = {one.robot.name: one for one in self.around.robots if one.trajectory is None}
+        return {name: one for name, one in others.items() if name in names}
 
     @cached_property
     def robot(self) -> Robot:
@@ -67,7 +83,7 @@ class ProgramCell:
         own = self.own.robot
         links, joints = [*own.link_names], [*own.joints]
         for name, placed in self._others.items():
-            at = inverse(self.own.world_from_base) @ placed.world_from_base
+            at = inverse(self._bases[own.name]) @ self._bases[name]
             root, *more = (f"{name}/{link}" for link in placed.robot.link_names)
             links += [root, *more]
             joints.append(Joint(f"{name}/", JointKind.FIXED, own.link_names[0], root, at))
@@ -85,8 +101,21 @@ class ProgramCell:
         named = {name.partition("/")[0] for name in program.joints_named if "/" in name}
         for one in self.around.robots:
             if one.robot.name in named - set(self._others):
-                raise _not_driven(self.own, one)
+                raise self._not_driven(one)
         return tuple(name for name in self._others if name in named)
+
+    def _not_driven(self, other: PlacedRobot) -> BadProgram:
+        """Why the program may not drive a robot whose joints its moves name."""
+        if other.trajectory is not None:
+            why = f"robot {other.robot.name!r} follows a trajectory of its own"
+        else:
+            one = self.own if self.world_from_own is None else other
+            assert one.mount is not None
+            why = f"robot {one.robot.name!r} stands on {one.mount.on!r}, which may move"
+        return BadProgram(
+            f"the program moves joints of robot {other.robot.name!r}, and {why}",
+            valid="no trajectory of that robot, and bases that stand",
+        )
 
     def start(self, driven: Sequence[str]) -> dict[str, float]:
         """Where the case has the joints of driven robots, by their names in `robot` [rad or m]."""
@@ -120,19 +149,12 @@ class ProgramCell:
         free = {name.partition("/")[0] for path in paths if path for name in path.free}
         others = {}
         for name in driven:
-            part = replace(
-                _of(made, name),
-                frames=(),
-                moves=(),
-                unproven=(),
-                assumed=(),
-                left_out=(),
-                odd=(),
-                has_way_in=False,
+            part = _of(made, name)
+            others[name] = Trajectory(
+                *(part.times, part.joint_names, part.positions, part.velocities),
+                path_error=part.path_error if name in free else 0.0,
+                corners=tuple(zone for zone in part.corners if zone.links),
             )
-            corners = tuple(zone for zone in part.corners if zone.links)
-            error = part.path_error if name in free else 0.0
-            others[name] = replace(part, path_error=error, corners=corners)
         return replace(_of(made, ""), drives=tuple(driven)), others
 
 
@@ -170,21 +192,6 @@ def _links_of(zone: CornerZone, robot: str) -> dict[str, Deviation]:
         name.rpartition("/")[::2]: off for name, off in zone.links.items() if off.at(1.0) > 0.0
     }
     return {link: off for (owner, link), off in links.items() if owner == robot}
-
-
-def _not_driven(own: PlacedRobot, other: PlacedRobot) -> BadProgram:
-    """Why a program may not drive a robot whose joints its moves name."""
-    name, valid = other.robot.name, "no trajectory of that robot, and both bases in the world"
-    if other.trajectory is not None:
-        why = "follows a trajectory of its own"
-    else:
-        stands = own if own.mount is not None else other
-        assert stands.mount is not None
-        name, why = stands.robot.name, f"stands on {stands.mount.on!r}"
-    return BadProgram(
-        f"the program moves joints of robot {other.robot.name!r}, and robot {name!r} {why}",
-        valid=valid,
-    )
 
 
 def _named(joint: Joint, before: str) -> Joint:

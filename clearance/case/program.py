@@ -56,7 +56,7 @@ def program_motion(
     with at(shown):
         driven = cell.driven(given)
         own = {**cell.start(driven), **given.start, **start}
-        frames = _Frames(given, placed, cell.places(driven))
+        frames = _Frames(given, cell, cell.places(driven))
         moves = tuple(_moves(read, frames))
         program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
         found = motion_of(cell.robot, program)
@@ -123,9 +123,9 @@ class _Frames:
     """The frames of a program, seen from links of the robot."""
 
     def __init__(
-        self, given: schema.Program, placed: PlacedRobot, places: Mapping[str, Place | None]
+        self, given: schema.Program, cell: ProgramCell, places: Mapping[str, Place | None]
     ) -> None:
-        self._given, self._placed, self._places = given, placed, places
+        self._given, self._cell, self._places = given, cell, places
         self.used = set[str]()
 
     def place(self, name: str, within: tuple[str, ...] = ()) -> Place:
@@ -149,12 +149,15 @@ class _Frames:
         found = IN_WORLD if name == schema.WORLD else self._given_place(name)
         if found.link:
             return found
-        if self._placed.mount is not None:
+        world_from_own = self._cell.world_from_own
+        if world_from_own is None:
+            mount = self._cell.own.mount
+            assert mount is not None
             raise BadProgram(
-                f"the robot stands on {self._placed.mount.on!r}, so the place of {name!r} seen from it may change",
+                f"the robot stands on {mount.on!r}, so the place of {name!r} seen from it may change",
                 valid="frames on base",
             )
-        return Place("", inverse(self._placed.world_from_base) @ found.pose)
+        return Place("", inverse(world_from_own) @ found.pose)
 
     def _given_place(self, name: str) -> Place:
         """Where something of the case is: in the world, or on a link.
@@ -173,7 +176,7 @@ class _Frames:
             )
             told = f"{name!r} moves, so the place of a target on it may change"
             raise BadProgram(told, valid=valid)
-        if found.link not in self._placed.robot.link_names:
+        if found.link not in self._cell.own.robot.link_names:
             self.used.add(name)
         return found
 

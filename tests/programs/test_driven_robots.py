@@ -107,6 +107,16 @@ def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
     assert arm.trajectory.drives == ("turntable",) and table.timing == arm.timing
 
 
+def test_bases_on_what_stands_are_as_in_the_world(tmp_path):
+    """The obstacle `far` is at (5, 5, 5) m."""
+    content = driving(tmp_path, [lin((0.0, 0.05, 0.0), hold={"turntable/turn": 0.6})])
+    world = cl.load_case(saved(tmp_path, content)).robots
+    for robot in content["robots"]:
+        robot["base"] = {"on": "far", "xyz": [at - 5.0 for at in robot["base"]["xyz"]]}
+    for one, same in zip(cl.load_case(saved(tmp_path, content)).robots, world, strict=True):
+        assert np.abs(one.trajectory.positions - same.trajectory.positions).max() < 1e-9
+
+
 def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path):
     """On the part, 0.1 m out and 0.3 m above the plate's frame."""
     xyz = np.array(on_plate((0.0, -0.05, 0.05))) - [0.1, 0.0, 0.3]
@@ -171,8 +181,8 @@ def test_a_work_object_that_a_mechanical_unit_moves_is_a_frame_on_it(tmp_path):
 
 REFUSED = {
     "a trajectory of its own": "'turntable' follows a trajectory of its own",
-    "on the floor": "'turntable' stands on 'far'",
-    "the arm on it": "'arm' stands on 'far'",
+    "the table on the arm": "'turntable' stands on 'arm/gripper', which may move",
+    "the arm on the table": "'arm' stands on 'turntable/plate', which may move",
     "a joint it has not": "unknown joint 'turntable/tilt'",
     "two programs": "the program of another robot moves 'part'",
 }
@@ -186,10 +196,10 @@ def test_what_a_program_may_not_move_is_refused(tmp_path, fault):
     if fault == "a trajectory of its own":
         (tmp_path / "turn.csv").write_text("time,turn\n0,0.5\n9,0.6\n")
         table |= {"trajectory": "turn.csv", "joints": {}}
-    elif fault == "on the floor":
-        table["base"] = {"on": "far"}
-    elif fault == "the arm on it":
-        arm["base"] = {"on": "far"}
+    elif fault == "the table on the arm":
+        table["base"] = {"on": "arm/gripper"}
+    elif fault == "the arm on the table":
+        arm["base"] = {"on": "turntable/plate"}
     elif fault == "two programs":
         more = yaml.safe_load((tmp_path / "program.yaml").read_text())
         more["frames"] = {"jig": {"on": "part", "xyz": [-0.1, 0.0, -0.3]}}
