@@ -293,6 +293,17 @@ FAULTS = {
         [{"circ": {"via": {"frame": "base", "xyz": "end"}, "to": {"frame": "base", "xyz": "end"}}}],
         "coincide",
     ),
+    "a circle of 1 km": (
+        [
+            {
+                "circ": {
+                    "via": {"frame": "base", "xyz": [1000.0, 0.0, 0.5]},
+                    "to": {"frame": "base", "xyz": [0.0, 1000.0, 0.5]},
+                }
+            }
+        ],
+        "the arc's radius is 707.1 m; 100 m or less, or lin",
+    ),
     "a zone at the end": (
         [{"lin": {"to": {"frame": "base", "xyz": "end"}, "zone": 0.01}}],
         "without a move after it",

@@ -234,6 +234,14 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
     assert FAULTS[body] in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "end", ["MoveL p10_Table, v100", "MoveL p10_Table, v100, fine, gun\\WObj:=table;"]
+)
+def test_a_module_that_is_cut_off_is_refused(end):
+    with pytest.raises(cl.ClearanceError, match="line 26: the file ends; "):
+        read("a.mod", CELL[: CELL.index(end) + len(end)])
+
+
 UNDECIDED = {
     "VAR num x:=1;\nIF di1=1 x:=2;": "'x' is given a value at line 4",
     "VAR num x:=1;\nIF di1=1 Incr x;": "'x' is given a value at line 4",
