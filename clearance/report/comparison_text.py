@@ -7,11 +7,15 @@ from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Compar
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import bodies_text
-from clearance.record.wording import near_mm
+from clearance.record.wording import count, near_mm
 from clearance.report.moment import name_shown
 
 HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", "why")
 """What `comparison_cells` are."""
+
+
+MOST_NOTES = 4
+"""Notes of one run alone that are listed; more are counted."""
 
 
 def comparison_text(comparison: Comparison) -> str:
@@ -26,10 +30,12 @@ def comparison_text(comparison: Comparison) -> str:
 
 
 def _in_doubt(comparison: Comparison) -> list[str]:
-    """What of a comparison is in doubt whatever its findings say, a few words each."""
+    """Why a comparison does not pass, and what of it is in doubt whatever its findings say, a few words each."""
     rows = comparison.doubts
+    n_broken = sum(row.alarms for row in comparison.rows)
     kinds = dict.fromkeys(row.doubt.kind for row in rows if row.alarms)
-    parts = [
+    parts = [f"BREAKS A RULE in {count(n_broken, 'finding')}"] * bool(n_broken)
+    parts += [
         f"NEW {_many(kind, [r for r in rows if r.alarms and r.doubt.kind == kind])}"
         for kind in kinds
     ]
@@ -58,11 +64,15 @@ _NAMES = {
 def doubt_lines(comparison: Comparison) -> list[str]:
     """What is known less, then each doubt that is new, gone, or fails the run as before, one line each."""
     lines = [f"less is known: {text}" for text in comparison.less]
-    for row in comparison.doubts:
-        if row.before and row.now and not row.doubt.fails:
-            continue
+    told = [row for row in comparison.doubts if row.doubt.fails or not (row.before and row.now)]
+    notes = [row.now for row in told if row.doubt.kind == NOTE]
+    if len(notes) > MOST_NOTES:  # as where a file has another name, with which each of its notes begins
+        told = [row for row in told if row.doubt.kind != NOTE]
+    for row in told:
         change = "as before" if row.before and row.now else "new" if row.now else "gone"
         lines.append(f"{change}: {doubt_text(row.doubt)}")
+    if len(notes) > MOST_NOTES:
+        lines.append(f"notes: {sum(notes)} new, {len(notes) - sum(notes)} gone")
     return lines
 
 

@@ -61,6 +61,9 @@ TABLE = {
     "input dropped before": ({"notices": (WARNING,)}, {}, True, "", "gone: warning"),
     "input dropped in both": ({"notices": (WARNING,)}, {"notices": (WARNING,)}, True, "", ""),
     "a note": ({}, {"notes": ("units are mm",)}, True, "", "new: note: units are mm"),
+    "many notes, as of a file with another name": (
+        {"notes": tuple("abc")}, {"notes": tuple("defgh")}, True, "", "notes: 5 new, 3 gone",
+    ),
     "proven no more": ({}, {"certify": False}, False, "LESS IS KNOWN", "less is known: the motion was proven"),
     "proven now": ({"certify": False}, {}, True, "", ""),
     "by the paper's method": (
