@@ -82,6 +82,9 @@ class Polyhedron:
         check_flat_and_convex(points, starts, flat)
         self._fill(points, starts, flat, excess, shortfall)
 
+    def __repr__(self) -> str:
+        return f"<Polyhedron: vertices {len(self.vertices)}, polygons {len(self.face_starts) - 1}>"
+
     def _fill(
         self,
         vertices: np.ndarray,

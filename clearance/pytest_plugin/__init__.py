@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, ClearanceError
 from clearance.options import SWITCH, Option, flag_of, options_in
 from clearance.pytest_plugin.assertion import assert_clear
 from clearance.run.options import CheckOptions
@@ -92,6 +92,10 @@ def clearance_case(request: pytest.FixtureRequest) -> Callable[[str | PathLike[s
     def checked(path: str | PathLike[str]) -> Run:
         from clearance.pytest_plugin.collected import check_case
 
-        return check_case(request.path.parent / path, request.config)
+        __tracebackhide__ = True
+        try:
+            return check_case(request.path.parent / path, request.config)
+        except ClearanceError as error:  # the frame of the test is enough
+            raise error.with_traceback(None) from None
 
     return checked

@@ -8,6 +8,8 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
+from clearance.errors import ClearanceError
+
 if TYPE_CHECKING:
     from clearance.run import Run
 
@@ -33,20 +35,26 @@ def assert_clear(
         BadInput: no pair is measured between such bodies, with the nearest name.
     """
     __tracebackhide__ = True
-    if between is None and at_least is None:
-        faults = _reasons(run)
-    else:
-        from clearance.pytest_plugin.kept import faults_of, left_out_of
-
-        pairs = between or ("*", "*")
-        faults = [*_doubts(run), *faults_of(run, pairs, at_least)]
-        if left_out := left_out_of(run, pairs):
-            from clearance.world.notice import listed
-
-            told = f"{pairs[0]} - {pairs[1]}: not measured are {listed(left_out)}"
-            warnings.warn(told, stacklevel=2)
+    try:
+        faults = _faults(run, between, at_least)
+    except ClearanceError as error:  # the frame of the test is enough
+        raise error.with_traceback(None) from None
     if faults:
         raise AssertionError("\n".join([f"{run.record.case.name} is not clear", *faults]))
+
+
+def _faults(run: Run, between: tuple[str, str] | None, at_least: float | None) -> list[str]:
+    if between is None and at_least is None:
+        return _reasons(run)
+    from clearance.pytest_plugin.kept import faults_of, left_out_of
+    from clearance.world.notice import listed
+
+    pairs = between or ("*", "*")
+    faults = [*_doubts(run), *faults_of(run, pairs, at_least)]
+    if left_out := left_out_of(run, pairs):
+        told = f"{pairs[0]} - {pairs[1]}: not measured are {listed(left_out)}"
+        warnings.warn(told, stacklevel=3)
+    return faults
 
 
 def _reasons(run: Run) -> list[str]:

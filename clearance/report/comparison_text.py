@@ -66,7 +66,9 @@ def doubt_lines(comparison: Comparison) -> list[str]:
     lines = [f"less is known: {text}" for text in comparison.less]
     told = [row for row in comparison.doubts if row.doubt.fails or not (row.before and row.now)]
     notes = [row.now for row in told if row.doubt.kind == NOTE]
-    if len(notes) > MOST_NOTES:  # as where a file has another name, with which each of its notes begins
+    if (
+        len(notes) > MOST_NOTES
+    ):  # as where a file has another name, with which each of its notes begins
         told = [row for row in told if row.doubt.kind != NOTE]
     for row in told:
         change = "as before" if row.before and row.now else "new" if row.now else "gone"

@@ -325,6 +325,10 @@ class Case:
         object.__setattr__(self, "allow", tuple(allow))
         _require_bodies(self)
 
+    def __repr__(self) -> str:
+        robots = ", ".join(repr(placed.robot) for placed in self.robots)
+        return f"<Case {self.name!r}: {robots}, obstacles {len(self.obstacles)}>"
+
     @property
     def files_read(self) -> tuple[str, ...]:
         """Where the files were found that it was made from."""

@@ -86,6 +86,10 @@ class Robot:
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     reference: Mapping[str, float] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        n_links, n_joints = len(self.bodies), len(self.moving_joints)
+        return f"<Robot {self.name!r}: links with shapes {n_links}, moving joints {n_joints}>"
+
     @cached_property
     def moving_joints(self) -> tuple[Joint, ...]:
         """The joints that a trajectory can name: not fixed and not mimicking."""

@@ -139,6 +139,11 @@ class Trajectory:
     unproven: tuple[UnprovenSpan, ...] = ()
     drives: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        n_samples, n_joints = self.positions.shape
+        span = f"{self.times[0]:g} to {self.times[-1]:g} s"
+        return f"<Trajectory: samples {n_samples}, joints {n_joints}, {span}>"
+
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
             if getattr(self, name) is not None:

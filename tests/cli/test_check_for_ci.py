@@ -84,7 +84,10 @@ def test_a_baseline_is_told_and_does_not_change_the_exit_code(place, capsys):
     assert check("worse/case.yaml", "--baseline", "before/findings.json", "--out", "now") == 1
     assert "since the baseline: BREAKS A RULE in 1 finding; 1 worse" in capsys.readouterr().out
     page = (place / "now" / "report.html").read_text()
-    assert "Since the baseline: BREAKS A RULE in 1 finding; 1 worse." in page and "worse, was 3.000 mm" in page
+    assert (
+        "Since the baseline: BREAKS A RULE in 1 finding; 1 worse." in page
+        and "worse, was 3.000 mm" in page
+    )
     assert check("clear/case.yaml", "--baseline", "before") == 0
     assert "since the baseline: 1 gone" in capsys.readouterr().out
 

@@ -186,6 +186,24 @@ def test_the_fixture_checks_a_case_by_its_path(need, inside, pytester):
     inside("--clearance-need", need).assert_outcomes(passed=1)
 
 
+def test_what_is_refused_in_a_test_shows_the_line_of_the_test_alone(inside, pytester):
+    write_gates(pytester.path / "cell", CLEAR)
+    pytester.makepyfile("""
+from clearance.pytest_plugin import assert_clear
+
+def test_of_no_pair(clearance_case):
+    assert_clear(clearance_case("cell/case.yaml"), between=("box", "gate_aa"))
+
+def test_of_no_case(clearance_case):
+    clearance_case("cell/none.yaml")
+""")
+    told = inside()
+    told.assert_outcomes(failed=2)
+    lines = told.stdout.str()
+    assert "did you mean 'gate_a'?" in lines and "there is no file 'none.yaml'" in lines
+    assert "kept.py" not in lines and "collected.py" not in lines and "in __init__" not in lines
+
+
 @pytest.mark.slow  # two workers import all that measures
 @pytest.mark.cold
 def test_with_several_workers(pytester, monkeypatch):

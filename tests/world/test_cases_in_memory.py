@@ -155,3 +155,13 @@ def test_limits_are_numbers_of_metres():
         cl.Question(case, certify_gap="a")
     with pytest.raises(cl.BadInput):
         cl.Resources(jobs="2")
+
+
+def test_what_is_printed_of_a_case_is_a_line():
+    case = cl.load_case("scenes/box_box/case.yaml")
+    placed = case.robots[0]
+    assert repr(placed.robot) == "<Robot 'gantry_box': links with shapes 1, moving joints 6>"
+    assert repr(case) == f"<Case 'box_box': {placed.robot!r}, obstacles 1>"
+    assert repr(placed.trajectory) == "<Trajectory: samples 301, joints 6, 0 to 6 s>"
+    assert repr(cl.box((1.0, 1.0, 1.0))) == "<Polyhedron: vertices 8, polygons 6>"
+    assert repr(cl.Checker(case)) == f"<Checker of {case!r}, pairs 1>"

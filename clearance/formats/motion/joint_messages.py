@@ -168,8 +168,8 @@ def _nothing_found(documents: Sequence[Any]) -> BadInput:
         return MissingKey(
             f"there is no {lacks!r}", valid=near if near.startswith("did") else _NEEDED
         )
-    keys = ", ".join(map(repr, first))
-    return MissingKey(f"there is no trajectory under the keys {keys:.80}", valid=_NEEDED)
+    keys = f"under the keys {', '.join(map(repr, first)):.80}" if first else "in an empty message"
+    return MissingKey(f"there is no trajectory {keys}", valid=_NEEDED)
 
 
 _NEEDED = (

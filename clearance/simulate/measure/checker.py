@@ -138,6 +138,9 @@ class Checker:
             own = [pairs[i] for i in places]
             self._alike.append(AskedPairs(case, own, places, padding, self._position))
 
+    def __repr__(self) -> str:
+        return f"<Checker of {self.case!r}, pairs {len(self.pairs)}>"
+
     def distance(self, configuration: Configuration) -> Clearance:
         """The least clearance at one configuration and where it is attained.
 

@@ -124,6 +124,7 @@ def point(**fields: object) -> str:
     [
         ("", BadShape, "path.yaml: the file is empty"),
         ("- 1\n", MissingKey, "a list of 1 is not a message; a message with joint_names and points"),
+        ("{}", MissingKey, "there is no trajectory in an empty message"),
         ("a: 1\nb: 2\n", MissingKey, "there is no trajectory under the keys 'a', 'b'"),
         ("joint_name: [a]\npoints: []\n", MissingKey, "no 'joint_names'; did you mean 'joint_name'?"),
         ("a: [1\n", BadSyntax, "line 2: not YAML"),
