@@ -111,7 +111,7 @@ def test_encodings_are_read():
     text = "# Stück\nmovej([0,0,0,0,0,0]) # für\n"
     for data in (text.encode("latin-1"), b"\xef\xbb\xbf" + text.encode(), text.encode("utf-8")):
         assert [move.line for move in moves_of(data.replace(b"\n", b"\r\n"))] == [2]
-    with pytest.raises(cl.ClearanceError, match="^a.script: this is no text of single bytes"):
+    with pytest.raises(cl.ClearanceError, match=r"^a\.script: this is no text of single bytes"):
         moves_of(text.encode("utf-16"))
 
 
