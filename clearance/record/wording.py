@@ -26,9 +26,8 @@ def mm(metres: float, levels: Sequence[float] = ()) -> str:
     if 0.0 < metres < 1e-6:
         return "< 0.001"
     value = Decimal(repr(float(metres))) * 1000  # exact, so that 0.0283 m is 28.30 mm
-    least = max(
-        (Decimal(limit_mm(level)) for level in levels if level <= metres), default=Decimal(0)
-    )
+    reached = [Decimal(limit_mm(level)) for level in levels if level <= metres]
+    least = max(reached, default=value - 1)
     for places in range(max(0, min(3, 3 - value.adjusted())), MOST_PLACES + 1):
         text = str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
         if Decimal(text) >= least:
