@@ -25,6 +25,7 @@ from clearance.receipt.receipt_file import (
 )
 from clearance.receipt.search import EvidenceSearch, TooManyProofs, evidence_for
 from clearance.receipt.writing import claims_of
+from clearance.simulate.measure import refine
 from tests.receipt.receipts import Said, turning_arm
 from tests.receipt.test_forged import loose
 
@@ -118,10 +119,17 @@ def test_half_a_turn_between_two_steps_is_refused():
 MILLIMETRE = round(1e-3 / UNIT)
 
 
+def evenly_proven(case: cl.Case) -> cl.Run:
+    """The run of a case, each interval proven to the same gap, the least one too."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(refine, "LEAST_QUERIES", -1)
+        return cl.check(case)
+
+
 @pytest.fixture(scope="module")
 def overstated():
     """A case's numbers, its claims, and its claims with 1 mm more in the interval of the least."""
-    run = cl.check(turning_arm(n_steps=7))
+    run = evenly_proven(turning_arm(n_steps=7))
     data = case_data(run.record.case)
     claims = claims_of(run.record, data)
     more = claims.copy()
@@ -158,7 +166,7 @@ def narrow(monkeypatch):
 
 @pytest.fixture(scope="module")
 def run():
-    return cl.check(turning_arm(n_steps=7, far=0.853))
+    return evenly_proven(turning_arm(n_steps=7, far=0.853))
 
 
 def question(run):
