@@ -7,9 +7,6 @@ import pytest
 
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope.exits import cell_of, is_in_ball
-from clearance.query import cutting, intersection
-from clearance.query.common_point import common_point
-from clearance.query.cutting import Cutting, CuttingTask, cut_down
 from clearance.query.intersection import intersect
 
 SHAPES = [(1, 1, 1), (1, 1, 1e-3), (1, 1e-6, 1e-6), (1e6, 1, 1e-5)]
@@ -59,17 +56,6 @@ def test_random_families_agree_with_one_hull_over_all_half_spaces(seed):
         assert found.volume == 0.0 and found.common.certificate is not None
 
 
-@pytest.mark.parametrize("sparse", [0.0, 2.0])
-def test_closing_up_rows_changes_no_bit(sparse, monkeypatch):
-    bodies = cluster(12, 200, 1)
-    task = CuttingTask.about(bodies, common_point(bodies).point)
-    usual = cut_down(task).moments()
-    monkeypatch.setattr(cutting, "SPARSE", sparse)
-    cut = cut_down(task)
-    assert cut.moments()[0] == pytest.approx(usual[0], rel=2e-15)
-    assert (cut.state[0] > 0) == (sparse == 2.0)
-
-
 def test_a_moved_body_is_the_hull_of_the_moved_corners():
     rng = np.random.default_rng(5)
     pose = np.eye(4)
@@ -85,32 +71,3 @@ def test_a_moved_body_is_the_hull_of_the_moved_corners():
     assert intersect([moved, there]).volume == pytest.approx(
         intersect([body, other]).volume, rel=1e-13
     )
-
-
-@pytest.mark.parametrize("rows", [cutting.ROWS_A_VERTEX, 1])
-def test_bodies_cut_in_one_call_are_cut_as_one_by_one(rows, monkeypatch):
-    bodies = cluster(12, 100, 4, spread=0.05)
-    task = CuttingTask.about(bodies, common_point(bodies).point)
-    one_by_one = Cutting(task, task.order[0])
-    assert all(one_by_one.by(k) for k in task.order[1:])
-    monkeypatch.setattr(
-        cutting, "ROWS_A_VERTEX", rows
-    )  # 1: the call stops where the rows are full, and goes on
-    at_once = Cutting(task, task.order[0])
-    n_first = len(at_once.spots)
-    assert at_once.by(*task.order[1:])
-    assert (len(at_once.spots) > n_first) == (rows == 1)
-    assert at_once.moments()[0] == pytest.approx(one_by_one.moments()[0], rel=4e-15)
-    if rows == cutting.ROWS_A_VERTEX:
-        assert at_once.moments().tobytes() == one_by_one.moments().tobytes()
-
-
-def test_what_breaks_in_the_other_thread_is_raised_by_the_call(monkeypatch):
-    def broken(task, side):
-        if side < 0.0:
-            raise KeyError("the far side")
-
-    monkeypatch.setattr(intersection, "HALVED_FROM", 10)
-    monkeypatch.setattr(intersection, "cut_down", broken)
-    with pytest.raises(KeyError, match="the far side"):
-        intersect(cluster(3, 10, 5, spread=0.05), threads=2)

@@ -10,8 +10,7 @@ import pytest
 import clearance as cl
 from clearance.query.contact import BodyPair
 from clearance.simulate.answers.contact import contacts as contact_work
-from clearance.simulate.answers.contact import events as contact_events
-from clearance.simulate.answers.contact.events import events_of, rated_places
+from clearance.simulate.answers.contact.events import events_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
@@ -138,20 +137,6 @@ def test_events_are_unbroken_stretches_of_one_pair():
     found = [(event.i_pair, steps[event.rows].tolist()) for event in events_of(steps, pairs)]
     assert found == [(0, [3, 4, 5]), (0, [7]), (1, [7]), (2, [3, 4])]
     assert list(events_of(steps[:0], pairs[:0])) == []
-
-
-@pytest.mark.parametrize("top", [0, 333, 999])
-def test_the_deepest_of_many_is_found_among_few(top):
-    looked = []
-
-    def rated(few):
-        looked.extend(few.tolist())
-        return -np.abs(few - top).astype(float)
-
-    places, ratings = rated_places(1000, rated)
-    assert abs(places[0] - top) <= 1
-    assert (np.diff(ratings) <= 0.0).all() and len(set(places.tolist())) == len(places)
-    assert len(looked) <= 2 * contact_events.MOST_RATED + 3
 
 
 @pytest.mark.slow

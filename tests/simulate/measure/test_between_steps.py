@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.measure import measure, parts
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -158,23 +157,6 @@ def test_two_robots_name_the_one_that_comes_near():
         worst = cl.check(replace(one, robots=robots)).record.worst
         assert (worst.link, worst.obstacle, worst.between) == ("arm/fore", "post", True)
         assert len(worst.positions) == 2
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
-@pytest.mark.parametrize("longest", [1, 256])
-def test_neither_threads_nor_parts_change_the_moment(jobs, longest, monkeypatch):
-    monkeypatch.setattr(parts, "LONGEST_PART", longest)
-    assert measure.parts is parts.parts
-    positions = [[-1.0 + 0.29 * i, 0.1 * np.sin(i)] for i in range(8)]
-    run = cl.check(sweeping(positions, PAST), resources=cl.Resources(jobs=jobs))
-    known = run.record.worst
-    assert (known.step, known.link, known.obstacle) == (3, "fore", "post")
-    again = cl.check(sweeping(positions, PAST), resources=cl.Resources(jobs=3 - jobs)).record.worst
-    assert (known.time, known.clearance, known.point_link) == (
-        again.time,
-        again.clearance,
-        again.point_link,
-    )
 
 
 def test_a_gap_below_rounding_ends_and_says_what_it_became():

@@ -141,24 +141,6 @@ def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["disk", "memory"]
 
 
-@pytest.mark.slow
-def test_a_run_stopped_between_its_passes_goes_on(case: Case, tmp_path: Path) -> None:
-    """The second pass proves the bounds; the first is not repeated."""
-    whole = answer(case, tmp_path / "kept", [], certify=True)
-    n_steps = case.robots[0].trajectory.n_steps
-    n_parts, n_proven = len(parts.parts(n_steps)), len(parts.parts(n_steps - 1))
-    with pytest.raises(Interrupted):
-        answer(case, tmp_path / "kept", [], certify=True, progress=stopping_at(n_parts + 3))
-    calls: list[int] = []
-    said: list[str] = []
-    found = answer(
-        case, tmp_path / "kept", said, certify=True, progress=lambda done, total: calls.append(done)
-    )
-    assert found == whole
-    assert len(calls) == n_proven - 3
-    assert said == [f"resuming: {n_steps} of {n_steps} steps are reused from an interrupted run"]
-
-
 def nudged(case: Case, what: str) -> Case:
     """The case with one number changed in its last bit."""
     obstacle, placed = case.obstacles[0], case.robots[0]

@@ -10,7 +10,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
-from clearance.simulate.measure import measure, parts
+from clearance.simulate.measure import parts
 from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
 
@@ -92,19 +92,6 @@ def test_less_asked_is_less_done(runs: dict[str, cl.Run]) -> None:
     assert queries["minimum"] < queries["steps"] <= queries["pairs"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
-def test_threads_change_nothing(need: str) -> None:
-    case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
-    one, other = (
-        cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=jobs))
-        for jobs in (1, 3)
-    )
-    assert one.steps.equals(other.steps)
-    assert one.record.tally == other.record.tally
-    assert list(one.pair_minima) == list(other.pair_minima)
-
-
 @pytest.mark.parametrize("longest", [7])
 def test_how_steps_are_parted_changes_no_clearance(
     longest: int, monkeypatch: pytest.MonkeyPatch
@@ -148,20 +135,6 @@ def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
     assert limit.worst["clearance"] == steps.worst["clearance"]
     assert limit.worst["step"] == steps.worst["step"]
     assert limit.status == "clear"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("effort", [0, 64])
-@pytest.mark.parametrize("name", ["box_pipe", "iiwa_pipe_rack"])
-def test_how_long_the_first_look_searches_changes_nothing(
-    name: str, effort: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Cut short, it still gives a distance that occurs, or the least would be missed."""
-    monkeypatch.setattr(measure, "FIRST_EFFORT", effort)
-    case = cl.load_case(SCENES / name / "case.yaml")
-    truth = cl.check(case, certify=False).steps["clearance"].to_numpy()
-    worst = cl.check(case, need="minimum", certify=False).worst
-    assert (worst["step"], worst["clearance"]) == (truth.argmin(), truth.min())
 
 
 def test_needs_that_do_not_go_together_are_refused() -> None:
