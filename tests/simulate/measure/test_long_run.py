@@ -237,12 +237,12 @@ def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_the_steps(tmp_path: Path) -> None:
-    """Ten times the steps: at most the clearances once (8 bytes a step) and a few codes, never rows or poses.
+    """Ten times the steps: at most the clearances and the bounds once (5 columns of 8 bytes), never rows or poses.
 
     Two threads take at most twice as much, and so much only where both are at work at once. In a process of its
     own: threads that other tests have left take memory too.
     """
     with multiprocessing.get_context("spawn").Pool(1) as alone:
         short, long, on_two = alone.apply(most_memory_of_all, (tmp_path,))
-    assert (long - short) / 18_000 < 20.0, (short, long)
+    assert (long - short) / 18_000 < 48.0, (short, long)
     assert on_two < 2 * long, (long, on_two)
