@@ -302,7 +302,7 @@ def _moving(
     around = Surroundings(tuple(one.placed for one in found.values()), riders)
     for i, one in read.items():
         with at(f"{entries[i].trajectory_field}.program"):
-            require_still(one.placed.given_trajectory, around)
+            require_still(one.placed, around)
     return [(found | read)[i] for i in range(len(entries))]
 
 

@@ -18,7 +18,6 @@ from clearance.errors import BadProgram
 from clearance.formats.schema import program as schema
 from clearance.geometry.pose import inverse
 from clearance.world.case import PlacedRobot
-from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 
@@ -71,8 +70,13 @@ class ProgramCell:
 
     @cached_property
     def _others(self) -> dict[str, PlacedRobot]:
-        """The robots that may be driven, by name."""
-        names = self._bases if self.world_from_own is not None else ()
+        """The robots that may be driven, by name; none whose name begins one of the program's own robot."""
+        if self.world_from_own is None:
+            return {}
+        own = self.own.robot
+        own_names = (*own.link_names, *(joint.name for joint in own.joints))
+        taken = {name.partition("/")[0] for name in own_names if "/" in name}
+        names = self._bases.keys() - taken
         others = {one.robot.name: one for one in self.around.robots if one.trajectory is None}
         return {name: one for name, one in others.items() if name in names}
 
@@ -98,7 +102,8 @@ class ProgramCell:
         Raises:
             BadInput: one that it may not.
         """
-        named = {name.partition("/")[0] for name in program.joints_named if "/" in name}
+        own = {joint.name for joint in self.own.robot.joints}
+        named = {name.partition("/")[0] for name in program.joints_named - own if "/" in name}
         for one in self.around.robots:
             if one.robot.name in named - set(self._others):
                 raise self._not_driven(one)
@@ -128,15 +133,12 @@ class ProgramCell:
     def places(self, driven: Sequence[str]) -> dict[str, Place | None]:
         """Where all is that a frame may be on, by name: in the world, or on a link of `robot`; None for what may
         move otherwise."""
-        own = self.own.robot
-        links = {link: link for link in own.link_names}
-        links |= {f"{own.name}/{link}": link for link in own.link_names}
-        for name in driven:
-            links |= {
-                f"{name}/{link}": f"{name}/{link}" for link in self._others[name].robot.link_names
-            }
-        robots = [one for one in self.around.robots if one.robot.name not in driven]
-        return standing_frames(robots, self.around.obstacles, links)
+        return _places(self.own.robot, driven, self.around)
+
+    def mounts(self, driven: Sequence[str]) -> set[str]:
+        """What the own robot and driven ones are on, where that is not the world."""
+        robots = (self.own, *(self._others[name] for name in driven))
+        return {one.mount.on for one in robots if one.mount is not None}
 
     def parted(
         self, made: Trajectory, driven: Sequence[str], program: schema.Program
@@ -149,49 +151,65 @@ class ProgramCell:
         free = {name.partition("/")[0] for path in paths if path for name in path.free}
         others = {}
         for name in driven:
-            part = _of(made, name)
+            part = _of(made, name, driven)
             others[name] = Trajectory(
                 *(part.times, part.joint_names, part.positions, part.velocities),
                 path_error=part.path_error if name in free else 0.0,
                 corners=tuple(zone for zone in part.corners if zone.links),
             )
-        return replace(_of(made, ""), drives=tuple(driven)), others
+        return replace(_of(made, "", driven), drives=tuple(driven)), others
 
 
-def require_still(made: Trajectory, around: Surroundings) -> None:
-    """Nothing, if what the frames of a program are on stands, or is moved by it alone.
+def require_still(placed: PlacedRobot, around: Surroundings) -> None:
+    """Nothing, if what the frames of a robot's program are on stands, or is moved by that program alone.
 
     Args:
-        around: all but its robot, as they move by the programs of all robots.
+        around: all but the robot, as they move by the programs of all robots.
 
     Raises:
         BadInput: the program of another robot moves it.
     """
-    own = [one.robot for one in around.robots if one.robot.name in made.drives]
-    links = {f"{robot.name}/{link}": link for robot in own for link in robot.link_names}
-    others = [one for one in around.robots if one.robot.name not in made.drives]
-    places = standing_frames(others, around.obstacles, links)
+    made = placed.given_trajectory
+    places = _places(placed.robot, made.drives, around)
     for name in made.frames:
         if places[name] is None:
             told = f"the program of another robot moves {name!r}, which frames are on"
             raise BadProgram(told, valid="frames on what no other program moves")
 
 
-def _of(made: Trajectory, robot: str) -> Trajectory:
-    """The part of a motion that is of one robot; of the own one, where it has no name."""
-    columns = [i for i, name in enumerate(made.joint_names) if name.rpartition("/")[0] == robot]
+def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> dict[str, Place | None]:
+    """What `ProgramCell.places` says."""
+    links = {link: link for link in own.link_names}
+    links |= {f"{own.name}/{link}": link for link in own.link_names}
+    others = []
+    for one in around.robots:
+        if one.robot.name in driven:
+            names = (f"{one.robot.name}/{link}" for link in one.robot.link_names)
+            links |= {name: name for name in names}
+        else:
+            others.append(one)
+    return standing_frames(others, around.obstacles, links)
+
+
+def _of(made: Trajectory, robot: str, driven: Sequence[str]) -> Trajectory:
+    """The part of a motion that is of one of the driven robots; of the own one, where it has no name."""
+    columns = [i for i, name in enumerate(made.joint_names) if _owner(name, driven) == robot]
     found = made.of_columns(columns)
     names = tuple(name.removeprefix(f"{robot}/") for name in found.joint_names)
-    corners = tuple(replace(zone, links=_links_of(zone, robot)) for zone in made.corners)
+    corners = tuple(
+        replace(zone, links={
+            name.removeprefix(f"{robot}/"): off for name, off in zone.links.items()
+            if _owner(name, driven) == robot and off.at(1.0) > 0.0
+        })
+        for zone in made.corners
+    )  # fmt: skip
     return replace(found, joint_names=names, corners=corners)
 
 
-def _links_of(zone: CornerZone, robot: str) -> dict[str, Deviation]:
-    """How far those links of a robot may be off that may be, by their own names."""
-    links = {
-        name.rpartition("/")[::2]: off for name, off in zone.links.items() if off.at(1.0) > 0.0
-    }
-    return {link: off for (owner, link), off in links.items() if owner == robot}
+def _owner(name: str, driven: Sequence[str]) -> str:
+    """The driven robot whose joint or link it is; empty for the own one's."""
+    before = name.partition("/")[0]
+    return before if "/" in name and before in driven else ""
 
 
 def _named(joint: Joint, before: str) -> Joint:

@@ -62,7 +62,7 @@ def program_motion(
         found = motion_of(cell.robot, program)
     made = replace(
         found.trajectory,
-        frames=tuple(sorted(frames.used)),
+        frames=tuple(sorted(frames.used | (cell.mounts(driven) if driven else set()))),
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
         left_out=read.left_out,
@@ -157,6 +157,7 @@ class _Frames:
                 f"the robot stands on {mount.on!r}, so the place of {name!r} seen from it may change",
                 valid="frames on base",
             )
+        self.used |= self._cell.mounts(())
         return Place("", inverse(world_from_own) @ found.pose)
 
     def _given_place(self, name: str) -> Place:
@@ -176,7 +177,7 @@ class _Frames:
             )
             told = f"{name!r} moves, so the place of a target on it may change"
             raise BadProgram(told, valid=valid)
-        if found.link not in self._cell.own.robot.link_names:
+        if found.link != name.removeprefix(f"{self._cell.own.robot.name}/"):
             self.used.add(name)
         return found
 

@@ -15,6 +15,7 @@ from tests.programs.test_programs_in_cases import (
     BASE,
     PLATE,
     START,
+    TURNTABLE,
     as_yaml,
     beside_a_turntable,
     case,
@@ -212,3 +213,20 @@ def test_what_a_program_may_not_move_is_refused(tmp_path, fault):
         ]
     with pytest.raises(cl.ClearanceError, match=REFUSED[fault]):
         cl.load_case(saved(tmp_path, content))
+
+
+def test_names_with_a_slash_are_of_the_robot_that_has_them(tmp_path):
+    """The table's own file has a slash in its joint's name."""
+    (tmp_path / "table.urdf").write_text(TURNTABLE.read_text().replace('"turn"', '"axis/turn"'))
+    content = driving(tmp_path, [lin(hold={"turntable/axis/turn": 0.6})])
+    content["robots"][1] |= {"urdf": "table.urdf", "joints": {"axis/turn": 0.5}}
+    arm, table = cl.load_case(saved(tmp_path, content)).robots
+    assert table.trajectory.joint_names == ("axis/turn",) and len(arm.trajectory.joint_names) == 6
+    assert table.trajectory.positions[-1, 0] == pytest.approx(0.6)
+
+
+def test_an_obstacle_that_carries_frames_or_bases_is_not_moved_by_a_gain(tmp_path):
+    content = driving(tmp_path, [lin(hold={"turntable/turn": 0.6})])
+    content["robots"][1]["base"] = {"on": "far", "xyz": [at - 5.0 for at in (2.0, 0.0, 0.0)]}
+    with pytest.raises(cl.BadInput, match="kind obstacle changes its joints"):
+        cl.gain(saved(tmp_path, content), "obstacle", obstacle="far")
