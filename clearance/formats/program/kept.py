@@ -47,11 +47,10 @@ class Kept:
         """A line on a branch or a loop that a kept value decided, if the robot moves; variables that it changes
         rest on the value too.
         """
-        is_branch = isinstance(one, If)
-        bodies = [body for _, body in one.branches] if is_branch else [one.body]
+        bodies = [body for _, body in one.branches] if isinstance(one, If) else [one.body]
         for name, _ in self.effects.changed_in(bodies):
             self.origins[-1 if name in self.frames[-1] else 0][name] = origin
-        other = "the way not taken is" if is_branch else "other numbers of passes are"
+        other = "the way not taken is" if isinstance(one, If) else "other numbers of passes are"
         told = f"{one.line}: {other} not measured; {origin} decides"
         moves = any(True for body in bodies for _ in self.effects.deciding(body))
         return {f"{told}, which the controller keeps between runs": None} if moves else {}

@@ -292,7 +292,7 @@ class _Krl:
             key: _numeric(value) for key, value in given.items() if re.fullmatch("E[1-6]", key)
         }
         if not any(key in AXES for key in given):
-            asked = _configuration(given) if kind == "ptp" else {}
+            asked = _configuration(given, settings) if kind == "ptp" else {}
             pose = settings.frame("$BASE", "frames") @ self._pose(given, settings)
             self.root.use(settings)
             return PoseTarget(pose, external, name=name, **asked)
@@ -339,14 +339,11 @@ def _is_real(key: str) -> bool:
     return key in FRAME or re.fullmatch("[AE][1-6]", key) is not None
 
 
-def _configuration(given: Aggregate) -> dict[str, Any]:
+def _configuration(given: Aggregate, settings: Settings) -> dict[str, Any]:
     """The configuration of a target, by the field of a `PoseTarget`.
 
     Bit n of T is 1 where axis n + 1 is below 0. Bits of S are 1 where the wrist is behind axis 1, where it is
-    before the line from axis 2 to 3, and where axis 5 is below 0.
-
-    Raises:
-        BadInput: S and T do not agree.
+    before the line from axis 2 to 3, and where axis 5 is below 0; robots of five axes have another third bit.
     """
     status, turn = (int(given[key]) if is_number(given.get(key)) else None for key in "ST")
     signs = {} if turn is None else {axis: bool(turn >> (axis - 1) & 1) for axis in range(1, 7)}
@@ -354,8 +351,8 @@ def _configuration(given: Aggregate) -> dict[str, Any]:
     if status is not None:
         is_below, is_behind = bool(status & 4), bool(status & 1)
         if signs.setdefault(5, is_below) != is_below:
-            told = f"S {status} and T {turn} do not agree on the sign of A5"
-            raise BadProgram(told, valid="bit 2 of S as bit 4 of T")
+            told = f"S {status} and T {turn} do not agree on the sign of A5: that of T is taken"
+            settings.run.doubts[f"{settings.line}: {told}"] = None
         found = {"is_behind": is_behind, "is_back": None if is_behind else not status & 2}
         if is_behind:
             found["unchecked"] = f"bit 1 of S {status}"

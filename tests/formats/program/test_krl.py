@@ -164,6 +164,13 @@ def test_turns_of_a_joint_move_become_ranges_of_axes():
     assert (below, above) == ([2, 5], [1, 3, 4, 6])
     assert (ptp.to.is_behind, ptp.to.is_back, ptp.to.unchecked) == (False, False, "")
     assert not line.to.ranges and line.to.is_behind is None
+    found = program(
+        FRAMES + f"PTP {{X 0, Y 0, Z 0, {DOWN}, S 2, T 51}}"
+    )  # of a palletiser of five axes
+    assert found.doubts == (
+        "line 9: S 2 and T 51 do not agree on the sign of A5: that of T is taken",
+    )
+    assert found.moves[0].to.ranges[5][0] < -1.0
     (over,) = moves_of(FRAMES + f"PTP {{X 0, Y 0, Z 0, {DOWN}, S 1, T 0}}")
     assert (over.to.is_behind, over.to.is_back, over.to.unchecked) == (True, None, "bit 1 of S 1")
 
@@ -216,10 +223,6 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         (
             FRAMES + LINE + "\nLIN_REL {A 10}",
             "line 10: a relative move that turns the tool is not read",
-        ),
-        (
-            FRAMES + "PTP {X 0,Y 0,Z 0,A 0,B 0,C 0,S 2,T 18}",
-            "line 9: S 2 and T 18 do not agree on the sign of A5",
         ),
         (FRAMES + "$IPO_MODE=#TCP\nLIN XP1", "line 10: $IPO_MODE is #TCP: the tool may stand"),
         (
