@@ -136,7 +136,7 @@ def verify(
     if not quiet:
         click.echo(found.headline)
         for path, digest in found.files if inputs else ():
-            click.echo(f"  {digest[:16]}  {shown(path)}")
+            click.echo(f"  {digest}  {shown(path)}")
         if found.unmeasured:
             click.echo(f"  links and pairs left out, as in the report: {len(found.unmeasured)}")
             for one in found.unmeasured[:MOST_LISTED]:

@@ -105,7 +105,8 @@ def _unseen(_: FileStart) -> bool:
 
 
 _MESH = (
-    "name it in a case file: scene: {{obstacles: [{{name: …, mesh: {{file: {name}, scale: 1}}}}]}}"
+    "name it in a case file: scene: {{obstacles: [{{name: …, mesh: {{file: {name}, scale: 0.001}}}}]}} if in "
+    "millimetres, scale: 1 in metres"
 )
 _CLOUD = "name it in a case file: scene: {{obstacles: [{{name: …, points: {{file: {name}, radius: …}}}}]}}"
 _PROGRAM = "name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"

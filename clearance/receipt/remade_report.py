@@ -138,7 +138,7 @@ def require_report(place: Path, receipt: Receipt) -> None:
             raise BadSyntax(
                 f"it {problem} when the receipt was written",
                 where=str(place / name),
-                valid="the report of the same run",
+                valid="the report as that run wrote it is needed",
             )
 
 
@@ -154,7 +154,9 @@ def _content(path: Path) -> bytes | None:
         return None
     except OSError as error:
         raise MissingFile(
-            f"cannot be read: {error.strerror or error}", where=str(path), valid="the report"
+            f"cannot be read: {error.strerror or error}",
+            where=str(path),
+            valid="the report is needed",
         ) from None
 
 
@@ -170,4 +172,8 @@ def _missing(place: Path, path: Path) -> MissingFile:
             where=str(path),
             valid="a run that came to its end",
         )
-    return MissingFile("there is none", where=str(path), valid="the report, saved with the receipt")
+    return MissingFile(
+        "there is none",
+        where=str(path),
+        valid="the report that was saved with the receipt is needed",
+    )

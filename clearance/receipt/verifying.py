@@ -257,7 +257,7 @@ def require_inputs(case: Case, receipt: Receipt) -> None:
             raise BadSyntax(
                 f"it {problem}",
                 where=shown(path),
-                valid="the input files as they were for the receipt",
+                valid="the input files as they were for the receipt are needed",
             )
 
 

@@ -172,7 +172,7 @@ def require_time(names: Sequence[str], others: str) -> None:
     if TIME not in names:
         raise MissingKey(
             f"there is no column {TIME!r} in the header {','.join(names)!r:.80}",
-            valid=f"the header names the columns, separated by commas: time and {others}",
+            valid=f"the first line names the columns, separated by commas: time and {others}",
         )
 
 
