@@ -51,6 +51,7 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.names import checked_name
 from clearance.world.notice import Notice
 from clearance.world.pairs import nothing_to_measure, selected_pairs
+from clearance.world.plausible_rest import notices_on_rest
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
 from clearance.world.waiver import Waiver
@@ -327,7 +328,10 @@ def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: 
 
 def _robot_notes(entry: schema.RobotEntry, placed: PlacedRobot, several: bool) -> list[str]:
     """What the file leaves open of a robot, and what was left out of it."""
-    notes = note_on_joints_at_zero(placed.robot, _placed_joints(placed), f"{entry.field}.joints")
+    notes = []
+    if not notices_on_rest(placed):  # which says the same
+        given, field = _placed_joints(placed), f"{entry.field}.joints"
+        notes = note_on_joints_at_zero(placed.robot, given, field)
     if several:
         notes = [f"robot {placed.robot.name!r}: {note}" for note in notes]
     matrix = placed.self_clearance and placed.self_clearance.matrix

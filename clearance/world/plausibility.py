@@ -27,6 +27,7 @@ from clearance.world.plausible_motion import (
     notices_on_motion,
 )
 from clearance.world.plausible_recordings import notices_on_holes
+from clearance.world.plausible_rest import notices_on_rest
 from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.pose_table import PoseTable
@@ -59,6 +60,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
         before, extents = case.prefix_of(placed), joint_extents(placed)
         if placed.trajectory is not None:
             found += notices_on_motion(placed, before, extents)
+            found += notices_on_rest(placed, before)
             found += notices_on_speed(placed, case.limits.joints, before)
             found += notices_on_holes(placed, before)
             found += notices_on_unproven(placed, before)

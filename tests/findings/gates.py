@@ -14,6 +14,7 @@ import clearance as cl
 from clearance.world.case import Case
 
 ROBOT = Path(__file__).parents[2] / "robots" / "gantry_box" / "gantry_box.urdf"
+RESTING = "slide_y: 0, slide_z: 0, yaw: 0, pitch: 0, roll: 0"
 HALF = 0.06  # [m] of the box, beside its way
 
 Gates = Mapping[str, tuple[float, float]]
@@ -31,7 +32,8 @@ def write_gates(
         f"pose: {{xyz: [{x}, {HALF + gap + 0.05!r}, 0]}}}}"
         for gate, (x, gap) in gates.items()
     ]
-    lines = [f"name: {name}", f"robot: {{urdf: {ROBOT}}}", "scene:", "  obstacles:", *obstacles]
+    robot = f"robot: {{urdf: {ROBOT}, joints: {{{RESTING}}}}}"
+    lines = [f"name: {name}", robot, "scene:", "  obstacles:", *obstacles]
     lines += ["trajectory: way.csv", f"limits: {limits}", *extra]
     path = folder / "case.yaml"
     path.write_text("\n".join(lines) + "\n")

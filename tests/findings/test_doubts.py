@@ -131,7 +131,7 @@ def test_doubts_read_back_as_they_were_written(tmp_path):
     found = listed(tmp_path, notices=(SUSPECT, WARNING), clock=Clock(float("inf")))
     (tmp_path / "findings.json").write_text(findings_text(found))
     told = json.loads(findings_text(found))
-    assert [one["code"] for one in told["doubts"]] == ["CL120", "CL531", "CL221", "CL130", "CL130"]
+    assert [one["code"] for one in told["doubts"]] == ["CL120", "CL531", "CL221", "CL130"]
     assert {one["code"] for one in told["findings"]} == {"CL501"}
     assert read_findings(tmp_path) == found and found.measured.clock_slack == "not tied"
     assert [one.kind for one in found.doubts][:2] == ["suspect", "not checked"]

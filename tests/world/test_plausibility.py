@@ -183,6 +183,31 @@ def test_a_joint_that_jumps_is_suspect_and_not_only_fast():
     assert reported(strict) == [("suspect", "limits"), ("violated", "joint limits")]
 
 
+def test_joints_that_nobody_gives_are_a_warning_where_a_column_may_be_lost():
+    """A chain of five: the middle is lost, the last is a gripper, and two of five are given."""
+    joints = tuple(replace(one, mimic=None) for one in chain(5).joints)
+    robot, still = replace(chain(5), joints=joints), {"j4": 0.1}
+
+    def told(*names, **more):
+        asked = Trajectory(np.array([0.0, 1.0]), names, np.full((2, len(names)), [[0.0], [0.5]]))
+        placed = PlacedRobot(robot, asked, **more)
+        return [
+            one.text
+            for one in notices_of(replace(case_of(), robots=(placed,)))
+            if one.kind == "rest"
+        ]
+
+    assert not told("j0", "j1", "j2", "j3")
+    (text,) = told("j0", "j1", "j3")
+    assert text.startswith(
+        "2 of 5 joints are given by nobody and stay at 0: 'j2', 'j4'; joints on both sides of 'j2'"
+    )
+    assert not told("j0", "j1", "j3", fixed_positions={"j2": 0.3})
+    (text,) = told("j0", "j1")
+    assert text.startswith("3 of 5 joints") and "both sides" not in text
+    assert not told("j0", "j1", fixed_positions=still)
+
+
 def test_a_robot_that_need_not_move_is_checked_too():
     far = case_of(pose=at(30.0, 30.0))
     resting = replace(far.robots[0], trajectory=None)
