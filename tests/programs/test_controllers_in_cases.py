@@ -10,6 +10,9 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.formats.plausibility import IN_DEGREES, odd_in_program
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.formats.schema.strict_model import validated
 from clearance.geometry.quaternions import quaternions_of
 from clearance.report.annotations import row_of
 from clearance.world.plausibility import notices_of
@@ -90,15 +93,13 @@ def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
 
 def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
     base = {"on": "base", "rpy": [0, 0, 360]}
-    tools, zones = {"TCP": {"rpy": [0, 0, 90]}}, {"CNT": 50.0}
-    path = controller_case(
-        tmp_path, "a.script", script(), axes=BEND, base=base, tools=tools, zones=zones
-    )
-    odd = [one.text for one in notices_of(cl.load_case(path)) if one.severity == "suspect"]
-    assert odd == [
-        "CHECK UNITS: a.script: base has an angle of 360 rad in its rpy, tools.TCP has an angle of 90 rad in its "
-        "rpy; angles are in radians, is this degrees (90° are 1.5708 rad)?",
-        "CHECK UNITS: a.script: zones.CNT is 50 m; lengths are in metres, is this millimetres?",
+    path = controller_case(tmp_path, "a.script", script(), axes=BEND, base=base)
+    (odd,) = [one.text for one in notices_of(cl.load_case(path)) if one.severity == "suspect"]
+    assert odd == f"CHECK UNITS: a.script: base has an angle of 360 rad in its rpy; {IN_DEGREES}"
+    given = {"file": "a", "tools": {"TCP": {"rpy": [0, 0, 90]}}, "zones": {"CNT": 50.0}}
+    assert odd_in_program(validated(ProgramFile, given, "program")) == [
+        f"tools.TCP has an angle of 90 rad in its rpy; {IN_DEGREES}",
+        "zones.CNT is 50 m; lengths are in metres, is this millimetres?",
     ]
     move = {
         "lin": {"to": {"frame": "base", "xyz": tool_at(START)[:3, 3].tolist(), "rpy": [0, 0, 45]}}

@@ -131,7 +131,7 @@ class _Conversion:
     @cached_property
     def first_tool(self) -> np.ndarray:
         """(4, 4) `flange_from_tool` of the first move that a tool matters to [m]."""
-        return next((one.tool for one in self._moves if _uses_tool(one)), self._moves[0].tool)
+        return next((one.tool for one in self._moves if uses_tool(one)), self._moves[0].tool)
 
     def moves(self) -> Iterator[tuple[schema.Move, str, str]]:
         """The moves, and changes of the tool before them; where each stands, and its name in reports.
@@ -142,7 +142,7 @@ class _Conversion:
         tool, names = self.first_tool, _names(self.read)
         for one, name in zip(self._stopping_moves(), names, strict=True):
             place = place_of(one)
-            if isinstance(one, ControllerMove) and _uses_tool(one):
+            if isinstance(one, ControllerMove) and uses_tool(one):
                 if not np.array_equal(one.tool, tool):
                     change = {"tool": pose_written(one.tool)}
                     yield validated(schema.Move, change, place), place, f"TOOL {place}"
@@ -326,9 +326,14 @@ class _Conversion:
 
     def doubts_on_axes(self) -> Iterator[str]:
         """A line each on what is assumed of axes, if the moves name any."""
-        ends = [one.to for one in self._moves]
-        if any(isinstance(to, AxisTarget) or to.ranges or to.near is not None for to in ends):
+        if self._names_axes:
             yield from self.arm.doubts_on_axes()
+
+    @cached_property
+    def _names_axes(self) -> bool:
+        """Whether a move says where axes are."""
+        ends = [one.to for one in self._moves]
+        return any(isinstance(to, AxisTarget) or to.ranges or to.near is not None for to in ends)
 
     def assumed(self) -> Iterator[str]:
         """A line each on what the moves leave open, and how that is taken."""
@@ -343,9 +348,10 @@ class _Conversion:
             unchecked["whether the wrist is before axis 1 and the upper arm"] = None
         if unchecked:
             yield f"configurations are not checked for {listed([*unchecked])}"
-        idle = {*self.arm.asked.units} - {one.unit for one in ends}
+        needed = {"base": bool(ends), "axes": self._names_axes, "axes_as": self._names_axes}
+        idle = [key for key in needed if not needed[key] and getattr(self.arm.asked, key)]
         if idle:
-            yield f"no move is on the mechanical units {listed(sorted(idle))}"
+            yield f"no move needs {listed(idle)}"
         if self.compared[0] >= 0.0:
             way, turn = self.compared[0] * 1e3, np.degrees(self.compared[1])
             yield f"poses with axes beside them agree with the robot within {way:.2g} mm and {turn:.2g} degrees"
@@ -375,7 +381,7 @@ def place_of(one: ControllerMove | ControllerWait) -> str:
     return f"{one.file} line {one.line}".lstrip()
 
 
-def _uses_tool(move: ControllerMove) -> bool:
+def uses_tool(move: ControllerMove) -> bool:
     """True where it matters which tool is on the flange."""
     return move.kind != "ptp" or isinstance(move.to, PoseTarget) or move.zone > 0.0
 

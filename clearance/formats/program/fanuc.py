@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, MissingKey, at
+from clearance.errors import BadProgram, MissingKey, at, nearest_name
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -64,6 +64,9 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         routines = {
             one.name: Routine(one.name, Line(1), _ARGUMENTS, one.body) for one in (*others, main)
         }
+        if (asked.asked.entry or main.name).upper() != main.name.upper():
+            told = f"there is no program {asked.asked.entry!r}"
+            raise BadProgram(told, where="entry", valid=nearest_name("", [main.name]))
         language = _Fanuc(asked.asked)
         run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
         statements = (one for listing in (*others, main) for one in within(listing.body))

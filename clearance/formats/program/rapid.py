@@ -5,6 +5,7 @@ Source: ABB, Technical reference manual, RAPID instructions, functions and data 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 
@@ -31,6 +32,7 @@ from clearance.formats.program.rapid_words import (
     WORDS,
 )
 from clearance.formats.program.tokens import text_of
+from clearance.formats.schema.program_file import ProgramFile
 
 
 def read_rapid(asked: ProgramRequest) -> ControllerProgram:
@@ -59,9 +61,20 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         run.enter(modules.routines[_entry(modules, given.entry)])
         moves = _with_zones(run.moves, language.zones)
         notes = (*run.notes, *language.assumed, *_on_cycles(moves))
+        doubts = (*run.doubts, *_replaced(modules, given))
         return ControllerProgram(
-            tuple(moves), notes, doubts=(*run.doubts,), maker="abb", left_out=run.left_out
+            tuple(moves), notes, doubts=doubts, maker="abb", left_out=run.left_out
         )
+
+
+def _replaced(modules: Modules, given: ProgramFile) -> Iterator[str]:
+    """A line on each tool and work object of the case whose data the files have too."""
+    for key, poses in (("tools", given.tools), ("frames", given.frames)):
+        for name in poses:
+            own = modules.declared.get(name.lower())
+            if own is not None:
+                told = f"replaces {own.name} at {own.line}, which the file gives"
+                yield f"{key}.{name} of the case {told}"
 
 
 def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:

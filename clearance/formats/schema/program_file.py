@@ -50,8 +50,9 @@ class ProgramFile(StrictModel):
     further files, `skip` are instructions to leave out, `link` is the flange, `base` is where the controller's
     base stands, `axes` says how joints follow axes, `axes_as` that axes turn as on robots of a maker (`plain`:
     joints are the axes). `tools` (on the flange) and `frames` (on the base) are those that the file names and does
-    not hold, `units` the frames of mechanical units that move the work. `zones` are radii [m] of corners for which
-    it has a word and no length (`C_PTP`, `CNT50`). `step` is the most that the tool moves between samples [m].
+    not hold (in RAPID they replace the file's), `units` the frames of mechanical units that move the work. `zones`
+    are radii [m] of corners for which it has a word and no length (`C_PTP`, `CNT50`). `step` is the most that the
+    tool moves between samples [m].
     """
 
     file: Name

@@ -8,9 +8,15 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 
 
-def read(name: str, text: str | bytes, beside=(), **asked) -> ControllerProgram:
-    """The program in a file of a name."""
+def reader_and_request(name: str, text: str | bytes, beside=(), **asked):
+    """The reader of a file of a name, and what it gets."""
     data = text.encode() if isinstance(text, str) else text
     given = validated(ProgramFile, {"file": name, **asked}, "program")
     row = format_of(Kind.PROGRAM, name, data)
-    return function_at(row.read)(ProgramRequest(data, name, given, dict(beside)))
+    return function_at(row.read), ProgramRequest(data, name, given, dict(beside))
+
+
+def read(name: str, text: str | bytes, beside=(), **asked) -> ControllerProgram:
+    """The program in a file of a name."""
+    reader, request = reader_and_request(name, text, beside, **asked)
+    return reader(request)

@@ -1,0 +1,72 @@
+"""What a case gives beside a program: all of it counts, or is refused with the nearest name."""
+
+from __future__ import annotations
+
+import pytest
+
+import clearance as cl
+from clearance.formats.program.given import require_used
+from tests.formats.program import test_fanuc, test_krl, test_rapid
+from tests.formats.program.reading import reader_and_request
+
+SCRIPT = "movej([0,0,0,0,0,0])\nset_tcp(p[0,0,0.1,0,0,0])\nmovel(p[0.4,0,0.3,0,0,0])\n"
+NO_TCP = "movej([0,0,0,0,0,0])\nmovel(p[0.4,0,0.3,0,0,0])\n"
+RAPID = f"""MODULE M
+PERS tooldata tWeld:=[TRUE,[[0,0,315],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];
+PROC main() WaitDI di1,1; MoveL [[9,0,0],[1,0,0,0],[0,0,0,0],{test_rapid.NONE}],v100,z10,tWeld; ENDPROC
+ENDMODULE"""
+LISTING = test_fanuc.listing(
+    test_fanuc.FRAMES + "L P[2] 100mm/sec CNT50 ;\nL P[3] 100mm/sec CNT20 ;"
+)
+KRL = f"{test_krl.HEAD}BAS(#TOOL,1)\nBAS(#BASE,0)\n$APO.CDIS=10\nLIN XP1 C_DIS\nPTP XP1 C_PTP\nEND"
+CONFIG = {
+    "weld.dat": test_krl.POINTS.encode(),
+    "$config.dat": b"DEFDAT $CONFIG\nTOOL_DATA[1]={X 0,Y 0,Z 300,A 0,B 0,C 0}\nENDDAT\n",
+}
+AT = {"xyz": [0.0, 0.0, 0.4]}
+WAIT, PTP = {"skip": ["waitdi"]}, {"zones": {"C_PTP": 0.05}}
+IDLE = "it changes no move: the program does not use it, or says it itself; "
+
+
+def check(name, text, beside=(), **asked):
+    read, request = reader_and_request(name, text, beside, **asked)
+    found = read(request)
+    require_used(request, read, found)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "beside", "asked", "told"),
+    [
+        ("a.script", SCRIPT, (), {"tools": {"tcp": AT}}, f"tools.tcp: {IDLE}without it"),
+        ("a.script", SCRIPT, (), {"zones": {"CNT": 0.1}}, f"zones.CNT: {IDLE}without it"),
+        ("a.script", NO_TCP.split("\n")[0], (), {"tools": {"tcp": AT}}, f"tools.tcp: {IDLE}"),
+        ("a.mod", RAPID, (), {"skip": ["WaitDI", "WaitDO"]}, "'WaitDO' is in no file of it; did you mean 'WaitDI"),
+        ("a.mod", RAPID, (), {"skip": ["WaitDI", "Grip"]}, "skip: 'Grip' is in no file"),
+        ("a.mod", RAPID, (), {**WAIT, "tools": {"tWled": AT}}, f"tools.tWled: {IDLE}did you mean 'tWeld'?"),
+        ("a.mod", RAPID, (), {**WAIT, "zones": {"z10": 0.3}}, f"zones.z10: {IDLE}without it"),
+        ("a.mod", RAPID, (), {**WAIT, "units": {"STN_1": {"on": "base"}}}, f"units.STN_1: {IDLE}without it"),
+        ("weld.src", KRL, CONFIG, {**PTP, "tools": {"TOOL_DATA[1]": AT}}, f"tools.TOOL_DATA[1]: {IDLE}"),
+        ("weld.src", KRL, CONFIG, {"zones": {"C_PTP": 0.05, "C_DIS": 0.3}}, f"zones.C_DIS: {IDLE}without"),
+        ("CELL.LS", LISTING, (), {"zones": {"CNT": 0.05, "CNT5": 0.3}}, f"CNT5: {IDLE}did you mean 'CNT50'?"),
+        ("CELL.LS", LISTING, (), {"entry": "MAIN"}, "entry: there is no program 'MAIN'; valid: CELL"),
+    ],
+)  # fmt: skip
+def test_a_value_that_changes_nothing_is_refused(name, text, beside, asked, told):
+    given = test_fanuc.CASE if name == "CELL.LS" else {}
+    with pytest.raises(cl.ClearanceError) as caught:
+        check(name, text, beside, **given, **asked)
+    assert told in str(caught.value)
+
+
+def test_values_that_the_program_uses_are_taken():
+    check("a.script", NO_TCP, tools={"tcp": AT})
+    check("weld.src", KRL, CONFIG, **PTP, frames={})
+    check("CELL.LS", LISTING, **test_fanuc.CASE, zones={"CNT50": 0.05, "CNT": 0.02}, entry="cell")
+
+
+def test_a_tool_of_the_case_that_replaces_the_files_stands_in_the_headline():
+    found = check("a.mod", RAPID, **WAIT, tools={"TWELD": AT})
+    (told,) = found.doubts
+    assert found.moves[0].tool[2, 3] == 0.4
+    assert told == "tools.TWELD of the case replaces tWeld at line 2, which the file gives"
