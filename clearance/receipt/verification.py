@@ -83,10 +83,14 @@ class Verification:
 
     @property
     def headline(self) -> str:
-        """One line: the bounds that are proven, for which case; all that is not proven stands before them."""
+        """One line: the bounds that are proven, for which case; before them a verdict that fails, and all that is
+        not proven."""
         sampled = "SAMPLED: " if self.kind == "sampled" else ""
         if self.failure:
             return f"{sampled}NOT PROVEN: {self.failure}"
+        if self.verdict and not self.verdict.startswith(("clear", "near")):
+            decision = self.verdict.partition(":")[0].partition(",")[0].upper()
+            sampled = f"{decision}, as the report says. {sampled}"
         nominal = "NOMINAL ONLY, tolerances are not taken off: " if self.nominal else ""
         bounds = ", ".join(self._bound_text(rule) for rule in self.bounds) or "nothing"
         span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"

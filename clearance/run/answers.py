@@ -86,18 +86,23 @@ def section_answers(plan: MeasurementPlan, resources: Resources) -> list[Section
     ]
     if not plan.question.certify or plan.question.need not in ("steps", "pairs"):
         return answers
-    return _with_least_proven(answers)
+    return _with_least_proven(answers, parts)
 
 
 ROUNDS = 4
 """Proofs of the least clearance: each may see a lesser one, of which the next proves more."""
 
 
-def _with_least_proven(answers: list[SectionAnswer]) -> list[SectionAnswer]:
+def _with_least_proven(
+    answers: list[SectionAnswer], parts: Sequence[Resources]
+) -> list[SectionAnswer]:
     """The answers, in which the least clearance of each rule is proven to within `LEAST_GAP`."""
     for _ in range(ROUNDS):
-        least = _least_by_rule(answers)
-        before, answers = answers, [_sharpened(one, least[one.section.rule]) for one in answers]
+        least, before = _least_by_rule(answers), answers
+        answers = [
+            _sharpened(one, least[one.section.rule], own)
+            for one, own in zip(answers, parts, strict=True)
+        ]
         if all(map(operator.is_, before, answers)):
             break
     return answers
@@ -113,15 +118,15 @@ def _least_by_rule(answers: Sequence[SectionAnswer]) -> dict[int, float]:
     return least
 
 
-def _sharpened(one: SectionAnswer, least: float) -> SectionAnswer:
+def _sharpened(one: SectionAnswer, least: float, own: Resources) -> SectionAnswer:
     """An answer, proven finer where its bound is below the least clearance of its rule [m]."""
     if one.certificate is None or not one.section.tied:
         return one
     from clearance.simulate.measure.certify import with_least_proven
 
     reached = least + one.section.padding
-    proven = with_least_proven(one.section.in_motion, one.found, one.certificate, reached)
-    return replace(one, certificate=proven)
+    proven = with_least_proven(one.section.in_motion, one.found, one.certificate, reached, own)
+    return one if proven is one.certificate else replace(one, certificate=proven)
 
 
 def _resources_of(sections: Sequence[Section], resources: Resources) -> list[Resources]:

@@ -161,7 +161,7 @@ def test_intervals_in_which_bodies_touch_are_told(tmp_path):
     found = cl.verify(tmp_path, case)
     assert found.proven and found.n_contact == 2
     assert found.headline.startswith(
-        "PROVEN EXCEPT in 2 intervals, in which bodies may touch: at least"
+        "CONTACT, as the report says. PROVEN EXCEPT in 2 intervals, in which bodies may touch: at least"
     )
 
 

@@ -6,7 +6,8 @@ Not for: the clearance at the steps (`measure`), which it starts from.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -82,18 +83,36 @@ def certify_motion(
 
 
 def with_least_proven(
-    what: PairsInMotion, found: Measurement, proven: ProvenMotion, least: float
+    what: PairsInMotion,
+    found: Measurement,
+    proven: ProvenMotion,
+    least: float,
+    resources: Resources = DEFAULT_RESOURCES,
 ) -> ProvenMotion:
     """The same proof, finer where it is more than `LEAST_GAP` below the least clearance [m] of the run."""
     work = _Work(what, _Question.of(found, what.limits, "steps", proven.gap))
     refinement = work.refinement(proven.gap)
     target = least - max(LEAST_GAP, refinement.finest)
-    if target <= what.limits.rounding or proven.lower_bound.min() >= target:
+    before = IntervalBounds(proven.lower_bound, proven.upper_bound, proven.share, proven.pair)
+    steps = np.flatnonzero((before.lower[:-1] < target) & (before.upper[:-1] >= target))
+    if target <= what.limits.rounding or len(steps) == 0:
         return proven
-    bounds = IntervalBounds(proven.lower_bound, proven.upper_bound, proven.share, proven.pair)
-    bounds, counts = refinement.raised(bounds, target)
+    own = IntervalBounds(*(np.append(column[steps], column[-1:]) for column in before))
+    refinement = replace(refinement, prove=lambda i, *asked: work.prove(int(steps[i]), *asked))
+    counts = refinement.raise_to(own, target)
+    after = IntervalBounds(*map(partial(_copied, resources), before._fields, before))
+    for column, finer in zip(after, own, strict=True):
+        column[steps] = finer[:-1]
     tally = np.array([proven.tally[name] for name in COUNTERS]) + counts
-    return _proven(what, found, bounds, proven.gap, tally, proven.notices)
+    return _proven(what, found, after, proven.gap, tally, proven.notices)
+
+
+def _copied(resources: Resources, name: str, column: np.ndarray) -> np.ndarray:
+    """A copy of a column, stored where the rows of the run are."""
+    kind = column.dtype.type
+    copy = resources.rows.array(f"{resources.prefix}least.{name}", column.shape, kind)
+    copy[:] = column
+    return copy
 
 
 def _proven(

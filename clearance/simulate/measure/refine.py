@@ -64,14 +64,14 @@ class Refinement:
         for level in sorted({0.0, *levels}):
             target = level - self.rounding if level > self.rounding else self.rounding
             if ((bounds.lower < target) & (bounds.upper >= target)).any():
-                bounds = _writable(bounds)
+                if not bounds.lower.flags.owndata:
+                    bounds = IntervalBounds(*(np.array(column) for column in bounds))
                 counts += self._decide(bounds, target, MOST_PARTS, MOST_QUERIES)
         return bounds, counts
 
-    def raised(self, bounds: IntervalBounds, target: float) -> tuple[IntervalBounds, np.ndarray]:
-        """The bounds, finer where they are below a target [m] just below the least clearance, and counters."""
-        bounds = _writable(bounds)
-        return bounds, self._decide(bounds, target, LEAST_PARTS, LEAST_QUERIES)
+    def raise_to(self, bounds: IntervalBounds, target: float) -> np.ndarray:
+        """Makes bounds finer where they are below a target [m] just below the least clearance; counters."""
+        return self._decide(bounds, target, LEAST_PARTS, LEAST_QUERIES)
 
     def _decide(
         self,
@@ -107,10 +107,3 @@ class Refinement:
             bounds.upper[step], bounds.share[step] = own.upper[0], own.share[0]
             bounds.pair[step] = own.pair[0]
         return counts
-
-
-def _writable(bounds: IntervalBounds) -> IntervalBounds:
-    """The bounds, or a copy of them if they are stored."""
-    if bounds.lower.flags.owndata:
-        return bounds
-    return IntervalBounds(*(np.array(column) for column in bounds))
