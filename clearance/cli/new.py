@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-import re
 import shlex
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.new_given import (
+    KeysParamType,
+    NamesParamType,
+    StartParamType,
+    given_of,
+    merged,
+    motion_of,
+    naming_options,
+)
 from clearance.cli.notices import say_notices
 from clearance.cli.options import INCLUDE_OPTION, XACRO_OPTIONS, OutputPath, SortParamType
 from clearance.errors import shown
@@ -25,84 +32,7 @@ if TYPE_CHECKING:
 
 _MOST_NOTES = 8
 
-_OPTION_OF_KEY = {
-    "robot.urdf": "--robot",
-    "robot.srdf": "--srdf",
-    "robot.joint_limits": "--joint-limits",
-    "robot.controllers": "--controllers",
-    "trajectory.file": "--trajectory",
-    "trajectory.program": "--program",
-    "trajectory.start_state": "--start",
-}
-"""The options that stand for keys of a case."""
-
-_OPTION_OF_PROGRAM = {"link": "--flange", "entry": "--entry", "skip": "--skip"}
-"""Those that stand for keys of its program."""
-
-_REMEDIES = {
-    "robot.srdf: the file": "--srdf FILE",
-    "trajectory: {program: …, start_state: {joint: …}}": "--start JOINT=VALUE,…",
-}
-"""What is valid in a case file, and what the command has in its place."""
-
-_KEYS_OF_PROGRAM = re.compile(r"program: (\{.*\})")
-"""Keys of a program as errors name them."""
-
 _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
-
-
-class _NamesParamType(click.ParamType):
-    """Names with commas between them."""
-
-    name = "names"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> list[str]:
-        """The names."""
-        names = [name.strip() for name in value.split(",")]
-        if not all(names):
-            self.fail(f"{value!r} has an empty name; names with commas between them", param, ctx)
-        return names
-
-
-class _KeysParamType(click.ParamType):
-    """Keys of a case file, as YAML."""
-
-    name = "keys"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, Any]:
-        """The keys with their values."""
-        from clearance.errors import ClearanceError
-        from clearance.plain_yaml import plain_data
-
-        try:
-            found = plain_data(value.encode())
-        except ClearanceError as error:
-            self.fail(f"{value!r}: {error}", param, ctx)
-        if not isinstance(found, dict):
-            self.fail(f"{value!r} has no keys; as in 'zones: {{CNT: 0.05}}'", param, ctx)
-        return found
-
-
-class _StartParamType(click.ParamType):
-    """Positions of joints, or the name of a state."""
-
-    name = "start"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, float] | str:
-        """The positions by joint, or the name."""
-        if "=" not in value:
-            return str(value)
-        pairs = [one.partition("=") for one in value.split(",")]
-        try:
-            return {name.strip(): float(number) for name, _, number in pairs}
-        except ValueError:
-            self.fail(f"{value!r} is given; joint_1=0.5,joint_2=0, or a state", param, ctx)
 
 
 def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
@@ -141,7 +71,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
 )
 @click.option(
     "--joints",
-    type=_NamesParamType(),
+    type=NamesParamType(),
     metavar="A,B,…",
     help="Joints of the columns of a CSV without a header, in order.",
 )
@@ -153,7 +83,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
 )
 @click.option(
     "--states",
-    type=_NamesParamType(),
+    type=NamesParamType(),
     metavar="A,B,…",
     help="Move through these states of the SRDF (or keyframes of MJCF), in place of a trajectory.",
 )
@@ -175,13 +105,13 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
 @click.option(
     "--program-keys",
     multiple=True,
-    type=_KeysParamType(),
+    type=KeysParamType(),
     metavar="YAML",
     help="Other keys of the program: 'beside: [HOME.LS]', 'zones: {CNT: 0.05}'. May be given again.",
 )
 @click.option(
     "--start",
-    type=_StartParamType(),
+    type=StartParamType(),
     metavar="JOINT=VALUE,…|STATE",
     help="Joint positions at the start of the program [rad or m], or a state of the SRDF.",
 )
@@ -288,85 +218,19 @@ def new(
         "columns": dict(columns or ()),
     }
     of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
-    asked = _motion(_given(motion), _merged([_given(of_program), *program_keys]), states)
+    asked = motion_of(given_of(motion), merged([given_of(of_program), *program_keys]), states)
     beside = (states or (), rest, scene, dict(includes), limits)
-    given = NewCaseRequest(_given(keys), asked or None, *beside)
+    given = NewCaseRequest(given_of(keys), asked or None, *beside)
     made = _made(given, out_dir)
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)
     return _checked(_command(out_dir)) if at_once else ExitCode.CLEAR
 
 
-@contextmanager
-def _naming_options() -> Iterator[None]:
-    """Errors name the options of this command, in place of the keys of a case."""
-    from clearance.errors import ClearanceError
-
-    try:
-        yield
-    except ClearanceError as error:
-        first, *places = error.where.split(": ")
-        option = _OPTION_OF_KEY.get(first, first)
-        if option == "--program" and places and places[-1] in _OPTION_OF_PROGRAM:
-            option = _OPTION_OF_PROGRAM[places.pop()]
-        error.where = ": ".join([option, *places])
-        for key, remedy in _REMEDIES.items():
-            error.valid = error.valid.replace(key, remedy)
-        error.valid = _KEYS_OF_PROGRAM.sub(r"--program-keys '\1'", error.valid)
-        raise
-
-
-def _given(keys: dict[str, Any]) -> dict[str, Any]:
-    """What is given of them."""
-    return {key: value for key, value in keys.items() if value not in (None, False, [], {})}
-
-
-def _merged(parts: list[dict[str, Any]]) -> dict[str, Any]:
-    """All keys; lists and mappings of one key go together."""
-    found: dict[str, Any] = {}
-    for key, value in (pair for one in parts for pair in one.items()):
-        match found.get(key), value:
-            case dict(old), dict(new):
-                found[key] = {**old, **new}
-            case list(old), list(new):
-                found[key] = [*old, *new]
-            case _:
-                found[key] = value
-    return found
-
-
-def _motion(
-    table: dict[str, Any], program: dict[str, Any], states: list[str] | None
-) -> dict[str, Any]:
-    """The keys of the trajectory, from those of a table or of a program.
-
-    Raises:
-        UsageError: several motions, or none that a key is of.
-    """
-    if table and (states or "file" not in table):
-        raise click.UsageError(_only_one(states, [*table]))
-    if not program:
-        return table
-    if "file" not in program:
-        option = next(iter(program)).replace("link", "flange")
-        option = option if option in ("entry", "flange", "skip", "start") else "program-keys"
-        raise click.UsageError(f"--{option} needs --program FILE")
-    if table or states:
-        raise click.UsageError("both --program and another motion; one of them")
-    start = program.pop("start", None)
-    return _given({"program": program, "start_state": start})
-
-
-def _only_one(states: list[str] | None, keys: list[str]) -> str:
-    if "file" in keys:
-        return f"both --trajectory and --states {','.join(states or ())}; one of them"
-    return f"--{keys[0]} says how a trajectory is read; --trajectory FILE is missing"
-
-
 def _made(given: NewCaseRequest, out_dir: Path) -> NewCase:
     from clearance.case.new_case.files import new_case
 
-    with _naming_options():
+    with naming_options():
         return _proposing(new_case(given, out_dir))
 
 
