@@ -57,6 +57,9 @@ FAIL, KEPT, ACCEPTED = "fail", "kept", "accepted"
 """What tolerances make of limits: proven to be kept with them, or not, which may pass; else `NOT_PROVEN`, and the
 headline says "fail"."""
 
+BEYOND = ("limits", "joint limits")
+"""Kinds of notices on motions that the robot cannot make."""
+
 _PASSING = (Status.CLEAR, Status.NEAR)
 
 
@@ -93,6 +96,7 @@ class Verdict:
         left: what they leave of the worst limit that is not proven with them, in a few words.
         with_tolerances: what they leave, one line each.
         at_level: that the worst is at a limit but for rounding; empty where none is.
+        beyond: that joints go farther, or are faster, than they may: the robot cannot move so; else empty.
     """
 
     status: str
@@ -119,6 +123,7 @@ class Verdict:
     at_level: str = ""
     self_clearance: tuple[str, ...] = ()
     unproven_motion: tuple[str, ...] = ()
+    beyond: str = ""
 
     @property
     def scope(self) -> tuple[str, ...]:
@@ -192,6 +197,8 @@ class Verdict:
             text += " at a single pose"
         if self.clocks:
             text += f", {self.clocks}"
+        if self.beyond:
+            text += f", {self.beyond}"
         if self.status in (SUSPECT, UNUSED_WAIVER):
             text = f"{shown(self.status)} (would be {text})"
         return text if self.disputed_by is None else f"{text}, but {self.disputed_by} disagrees"
@@ -272,6 +279,7 @@ def verdict_of(
         beside=tuple(beside),
         nearest=_nearest(record, worst),
         clocks=_when(record.case),
+        beyond="joints beyond their limits" if any(one.kind in BEYOND for one in notices) else "",
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
         waiver_faults=waiver_faults,

@@ -18,7 +18,14 @@ ROUNDING = 1e-6
 """[-] Rounding of a limit: trajectories at a limit are written in six digits or more."""
 
 JUMP = 50.0
-"""[-] A joint that is this many times as fast as it may be jumps; planned paths without times are up to 15."""
+"""[-] A joint that is this many times as fast as it may be jumps; paths that were planned without times are up to
+15 times as fast, in a third of their intervals."""
+
+ALONE, RARE = 3.0, 20
+"""[-] So does one that is this many times as fast, if it is too fast in no more than one of so many intervals."""
+
+STEP_TURN, STEP_SLIDE = 0.05, 5e-3
+"""[rad], [m] A shorter way in an interval is no jump: stamps of recordings that lie close make it fast."""
 
 
 def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
@@ -67,12 +74,22 @@ def _excesses(
     ):
         n_beyond = int((given > most * (1.0 + ROUNDING)).sum())
         if n_beyond:
-            is_jump = what == "moves at" and given.max() > JUMP * most > 0.0
+            is_jump = what == "moves at" and _jumps(course, given, most, n_beyond)
             yield (
                 is_jump,
                 f"joint {before + course.joint.name!r} {what} up to {given.max():.3g} {unit_of}, its limit is "
                 f"{most:g}, in {n_beyond} of {len(given)} intervals",
             )
+
+
+def _jumps(course: JointCourse, speeds: np.ndarray, most: float, n_beyond: int) -> bool:
+    """True if the greatest speed of a joint, in the run's time, is that of a jump."""
+    if speeds.max() > JUMP * most:
+        return True
+    worst = int(speeds.argmax())
+    way = abs(float(course.at_samples[worst + 1] - course.at_samples[worst]))
+    is_far = way > (STEP_TURN if turns(course.joint) else STEP_SLIDE)
+    return is_far and speeds[worst] > ALONE * most and n_beyond * RARE <= len(speeds)
 
 
 def motion_limit(placed: PlacedRobot, joint: Joint) -> MotionLimit:

@@ -168,6 +168,11 @@ def test_joints_beyond_their_limits():
     assert reported(case_of(limited, positions=(0.0, 8.0))) == [("suspect", "limits")]
     with pytest.raises(BadInput, match=r"limits\.joints is 'stop'; 'warn' or 'fail'"):
         notices_of(case_of(limits=Limits(joints="stop")))
+    assert (
+        check(case_of(limited, positions=(0.0, 1.2))).verdict.headline()
+        == "clear, joints beyond their limits"
+    )
+    assert check(case_of(limited, positions=(0.0, 0.9))).verdict.headline() == "clear"
     strict = Limits(joints="fail")
     assert reported(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [
         ("violated", "joint limits")
@@ -181,6 +186,30 @@ def test_a_joint_that_jumps_is_suspect_and_not_only_fast():
     assert reported(case_of(arm(velocity=1000.0), **jump)) == [("warning", "limits")]
     strict = case_of(arm(velocity=10.0), **jump, limits=Limits(joints="fail"))
     assert reported(strict) == [("suspect", "limits"), ("violated", "joint limits")]
+
+
+def test_a_joint_that_is_too_fast_once_jumps_and_one_that_often_is_is_fast():
+    """1 rad/s of 41 rows at 0.1 s; a step of 0.8 rad in place of 0.1 is at 8 rad/s, of a limit of 2."""
+    times, steps = 0.1 * np.arange(41), np.full(41, 0.1)
+
+    def told(limit, **changes):
+        ways = steps.copy()
+        for i, way in changes.get("ways", {}).items():
+            ways[i] = way
+        found = notices_of(
+            case_of(
+                arm(velocity=limit),
+                positions=np.cumsum(ways) - 3.0,
+                times=changes.get("times", times),
+            )
+        )
+        return [str(one.severity) for one in found if one.kind == "limits"]
+
+    assert told(2.0, ways={20: 0.8}) == ["suspect"]
+    assert told(3.0, ways={20: 0.8}) == ["warning"]
+    assert told(2.0, ways={10: 0.8, 20: 0.8, 30: 0.8}) == ["warning"]
+    close = np.sort([*times[:40], times[20] + 0.01])
+    assert told(1.5, times=close, ways={21: 0.049}) == ["warning"]
 
 
 def test_joints_that_nobody_gives_are_a_warning_where_a_column_may_be_lost():
