@@ -27,7 +27,6 @@ from clearance.geometry.pose import inverse
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
 from clearance.world.case import PlacedRobot
-from clearance.world.robot import Robot
 
 
 def program_motion(
@@ -52,7 +51,7 @@ def program_motion(
         assert isinstance(asked.program, schema.Program)
         shown, read = "program", _of_schema(asked.program)
     else:
-        shown, read = _read(asked.program_file, cell.robot, start, folder, files)
+        shown, read = _read(asked.program_file, cell, start, folder, files)
     given = read.program
     with at(shown):
         driven = cell.driven(given)
@@ -77,7 +76,7 @@ def program_motion(
 
 def _read(
     asked: ProgramFile,
-    robot: Robot,
+    cell: ProgramCell,
     start: Mapping[str, float],
     folder: Path,
     files: InputFiles,
@@ -101,7 +100,8 @@ def _read(
         return shown, _of_schema(read)
     with at(shown):
         require_used(request, function_at(row.read), read)
-        return shown, converted(read, asked, robot, start)
+        root = None if cell.own.mount else inverse(cell.own.world_from_base)
+        return shown, converted(read, asked, cell.robot, start, root)
 
 
 def _along(path: Path, row: Format) -> list[Path]:

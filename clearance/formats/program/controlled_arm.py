@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,7 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
 from clearance.geometry.quaternions import quaternions_of
 from clearance.world.kinematic_chain import KinematicChain, chain_between
+from clearance.world.notice import listed
 from clearance.world.robot import Robot
 
 FLANGE, BASE_LINK = "tool0", "base"
@@ -38,6 +39,7 @@ class ControlledArm:
     Attributes:
         doubt: why the robot's root link may not be the controller's base; empty where that does not matter.
         maker: the preset of `axes_as` where the case says none.
+        root_from_world: (4, 4) [m] where the world is, seen from the robot's root; None if that may change.
         notes: a line each on what is assumed. assumed: of the base, where nobody says it; empty where it is known.
     """
 
@@ -45,8 +47,10 @@ class ControlledArm:
     robot: Robot
     doubt: str = ""
     maker: str = "plain"
+    root_from_world: np.ndarray | None = None
     notes: list[str] = field(default_factory=list)
     assumed: str = ""
+    _several_turns: dict[str, None] = field(init=False, default_factory=dict)
 
     @cached_property
     def link(self) -> str:
@@ -154,11 +158,21 @@ class ControlledArm:
                 told = f"{name} at {_shown(ends)}, or whole turns off, and at {_shown(other)}"
                 raise BadProgram(f"the configuration asks for {told}", valid=FLAGS)
             if len(both) > 1:
-                self.notes.append(f"configurations are not checked where {name} has several turns")
+                self._several_turns[f"turns of {name}"] = None
             else:
                 found.setdefault(name, ends)
                 found[name] = both[0] if both else found[name]
         return found
+
+    def doubts_on_configurations(self, ends: Sequence[PoseTarget]) -> Iterator[str]:
+        """A line on flags of the configurations of poses that nothing checks, if there are any."""
+        unchecked = dict.fromkeys(one.unchecked for one in ends if one.unchecked)
+        unchecked |= self._several_turns
+        if self.wrist is None and any(one.is_behind is not None for one in ends):
+            unchecked["whether the wrist is before axis 1 and the upper arm"] = None
+        if unchecked:
+            told = f"configurations are not checked for {listed([*unchecked])}"
+            yield f"{told}: the nearest joints are taken, and the controller may take others"
 
     def base(self) -> dict[str, Any]:
         """The controller's base, as a frame of a program."""
@@ -175,7 +189,8 @@ class ControlledArm:
     def root_from_base(self) -> np.ndarray | None:
         """(4, 4) the controller's base, seen from the robot's root [m]; None where only the cell says it."""
         if self.asked.base is not None:
-            return self.asked.base.matrix() if self.asked.base.on == schema.BASE else None
+            on = self._root_from(self.asked.base.on)
+            return None if on is None else on @ self.asked.base.matrix()
         root = self.robot.link_names[0]
         link = BASE_LINK if BASE_LINK in self.robot.link_names else root
         if chain_between(self.robot, root, link).masters:
@@ -189,6 +204,16 @@ class ControlledArm:
         else:
             self.assumed = f"{told}; base: {{on: base}} in the program says that it is"
         return chain_between(self.robot, root, link).end
+
+    def _root_from(self, name: str) -> np.ndarray | None:
+        """(4, 4) what a base may be on, seen from the robot's root [m]; None where only the cell says it."""
+        if name == schema.WORLD:
+            return self.root_from_world
+        if name != schema.BASE and name not in self.robot.link_names:
+            return None
+        root = self.robot.link_names[0]
+        chain = chain_between(self.robot, root, root if name == schema.BASE else name)
+        return None if chain.masters else chain.end
 
     def tool_at(self, joints: Mapping[str, float], tool: np.ndarray) -> np.ndarray:
         """(4, 4) `root_from_tool` [m]."""

@@ -88,6 +88,11 @@ class ControllerMove:
     file: str = ""
     own: int = 0
 
+    @property
+    def uses_tool(self) -> bool:
+        """True where it matters which tool is on the flange."""
+        return self.kind != "ptp" or isinstance(self.to, PoseTarget) or self.zone > 0.0
+
 
 @dataclass(frozen=True)
 class ControllerWait:

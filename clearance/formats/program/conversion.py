@@ -70,12 +70,17 @@ class ConvertedProgram:
 
 
 def converted(
-    read: ControllerProgram, asked: ProgramFile, robot: Robot, start: Mapping[str, float]
+    read: ControllerProgram,
+    asked: ProgramFile,
+    robot: Robot,
+    start: Mapping[str, float],
+    root_from_world: np.ndarray | None = None,
 ) -> ConvertedProgram:
     """The moves of a robot that a controller's program makes.
 
     Args:
-        start: the joints at its beginning that the case gives [rad or m].
+        start: the joints at its beginning that the case gives [rad or m]. root_from_world: (4, 4) [m] where the
+            world is, seen from the robot's root; None if that may change.
 
     Raises:
         BadInput: with the line, or the key of the case.
@@ -83,7 +88,7 @@ def converted(
     has_poses = any(
         isinstance(one, ControllerMove) and isinstance(one.to, PoseTarget) for one in read.moves
     )
-    arm = ControlledArm(asked, robot, read.base if has_poses else "", read.maker)
+    arm = ControlledArm(asked, robot, read.base if has_poses else "", read.maker, root_from_world)
     made = _Conversion(read, arm)
     assert made.arm.link  # a fault of the case, and of no line
     own, starts_anywhere = made.start(start)
@@ -99,11 +104,11 @@ def converted(
     moves, places, names = zip(*named, strict=True)
     checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
     rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
-    unproven = (*rests_on, *made.doubts_on_axes(), *made.seeds)
+    unproven = (*rests_on, *(arm.doubts_on_axes() if made.names_axes else ()), *made.seeds)
     notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, unproven = (*notes, *unproven), ()
-    rests_on = (*unproven, *dict.fromkeys(made.waits), *read.doubts)
+    rests_on = (*unproven, *made.doubts())
     return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on, read.left_out)
 
 
@@ -131,7 +136,7 @@ class _Conversion:
     @cached_property
     def first_tool(self) -> np.ndarray:
         """(4, 4) `flange_from_tool` of the first move that a tool matters to [m]."""
-        return next((one.tool for one in self._moves if uses_tool(one)), self._moves[0].tool)
+        return next((one.tool for one in self._moves if one.uses_tool), self._moves[0].tool)
 
     def moves(self) -> Iterator[tuple[schema.Move, str, str]]:
         """The moves, and changes of the tool before them; where each stands, and its name in reports.
@@ -142,7 +147,7 @@ class _Conversion:
         tool, names = self.first_tool, _names(self.read)
         for one, name in zip(self._stopping_moves(), names, strict=True):
             place = place_of(one)
-            if isinstance(one, ControllerMove) and uses_tool(one):
+            if isinstance(one, ControllerMove) and one.uses_tool:
                 if not np.array_equal(one.tool, tool):
                     change = {"tool": pose_written(one.tool)}
                     yield validated(schema.Move, change, place), place, f"TOOL {place}"
@@ -324,13 +329,19 @@ class _Conversion:
         limits = [joint.velocity for joint in self.arm.chain.masters if joint.velocity > 0.0]
         return min(1.0, one.axis_speed / min(limits)) if np.isfinite(min(limits)) else 1.0
 
-    def doubts_on_axes(self) -> Iterator[str]:
-        """A line each on what is assumed of axes, if the moves name any."""
-        if self._names_axes:
-            yield from self.arm.doubts_on_axes()
+    def doubts(self) -> Iterator[str]:
+        """A line each on what controllers may do otherwise, whatever confirms axes and base."""
+        yield from self.arm.doubts_on_configurations(self._poses)
+        yield from dict.fromkeys(self.waits)
+        yield from self.read.doubts
 
     @cached_property
-    def _names_axes(self) -> bool:
+    def _poses(self) -> list[PoseTarget]:
+        """The ends of moves that are poses."""
+        return [one.to for one in self._moves if isinstance(one.to, PoseTarget)]
+
+    @cached_property
+    def names_axes(self) -> bool:
         """Whether a move says where axes are."""
         ends = [one.to for one in self._moves]
         return any(isinstance(to, AxisTarget) or to.ranges or to.near is not None for to in ends)
@@ -342,13 +353,7 @@ class _Conversion:
             yield "joint moves whose speed is the tool's go at the joints' full speeds"
         if any(one.axis_speed is not None for one in joint_moves):
             yield "speeds of axes are shares of the slowest joint's greatest speed"
-        ends = [one.to for one in self._moves if isinstance(one.to, PoseTarget)]
-        unchecked = dict.fromkeys(one.unchecked for one in ends if one.unchecked)
-        if any(one.is_behind is not None for one in ends) and self.arm.wrist is None:
-            unchecked["whether the wrist is before axis 1 and the upper arm"] = None
-        if unchecked:
-            yield f"configurations are not checked for {listed([*unchecked])}"
-        needed = {"base": bool(ends), "axes": self._names_axes, "axes_as": self._names_axes}
+        needed = {"base": bool(self._poses), "axes": self.names_axes, "axes_as": self.names_axes}
         idle = [key for key in needed if not needed[key] and getattr(self.arm.asked, key)]
         if idle:
             yield f"no move needs {listed(idle)}"
@@ -379,11 +384,6 @@ class _Conversion:
 def place_of(one: ControllerMove | ControllerWait) -> str:
     """Where a move stands."""
     return f"{one.file} line {one.line}".lstrip()
-
-
-def uses_tool(move: ControllerMove) -> bool:
-    """True where it matters which tool is on the flange."""
-    return move.kind != "ptp" or isinstance(move.to, PoseTarget) or move.zone > 0.0
 
 
 def _names(read: ControllerProgram) -> Iterator[str]:

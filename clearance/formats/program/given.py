@@ -20,7 +20,6 @@ from clearance.formats.program.controller_program import (
     ControllerWait,
     ProgramRequest,
 )
-from clearance.formats.program.conversion import uses_tool
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
@@ -79,7 +78,7 @@ def _plain(program: ControllerProgram) -> list[ControllerMove | ControllerWait]:
     """The moves, without the tools that do not matter to them."""
     return [
         replace(one, tool=np.eye(4))
-        if isinstance(one, ControllerMove) and not uses_tool(one)
+        if isinstance(one, ControllerMove) and not one.uses_tool
         else one
         for one in program.moves
     ]

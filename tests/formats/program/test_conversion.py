@@ -232,3 +232,13 @@ def test_what_has_no_meaning_for_the_robot_is_refused_with_its_line(moves, asked
         made(*moves, **asked)
     assert told in str(caught.value)
     assert "link" not in told or "line 3" not in str(caught.value)
+
+
+def test_flags_that_nothing_checks_stand_in_the_headline():
+    to = replace(POSE.to, unchecked="CONFIG F D B", is_behind=True, ranges={5: (0.0, 3.0)})
+    told = (
+        "configurations are not checked for CONFIG F D B, whether the wrist is before axis 1 and the upper arm: "
+        "the nearest joints are taken, and the controller may take others"
+    )
+    found = made(HOME, replace(POSE, to=to), base={"on": "base"}, axes_as="plain")
+    assert found.assumed == (told,) and not any("configurations" in note for note in found.notes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -101,3 +102,19 @@ def test_an_arm_that_is_built_otherwise_has_no_such_ranges(fault):
     made = controlled(arm(axes, places), "abb", **asked)
     assert made.wrist is None
     assert made.ranges_of(PoseTarget(np.eye(4), is_behind=True, is_back=True), np.eye(4)) == {}
+
+
+def test_the_wrist_is_found_wherever_the_base_is_on_the_robot_or_in_the_world():
+    robot, joints = arm(*ARMS["abb"]), np.radians([20.0, 10.0, 15.0, 5.0, 40.0, 0.0])
+    flange = chain_between(robot, "root", "tool0").frames(joints[None])[0, -1]
+    to = PoseTarget(flange, is_behind=False, is_back=False)
+    own = controlled(robot, "abb").ranges_of(to, np.eye(4))
+    assert {*own} == {"joint_1", "joint_3"}
+    raised = np.eye(4)
+    raised[2, 3] = 0.4
+    for on, root_from_world in (("root", None), ("world", np.eye(4))):
+        made = controlled(robot, "abb", base={"on": on, "xyz": [0.0, 0.0, -0.4]})
+        made.root_from_world = root_from_world
+        found = made.ranges_of(replace(to, pose=raised @ flange), np.eye(4))
+        assert found == {name: pytest.approx(ends) for name, ends in own.items()}
+    assert controlled(robot, "abb", base={"on": "link_1"}).wrist is None
