@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 @asked_options(Request)
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
-    """Finds the least change that makes a case keep its rules.
+    """Searches for the least change that makes a case keep its rules.
 
     The changed case is proven, and so is a lower bound of the change.
 

@@ -106,6 +106,10 @@ class Gain:
     tool_moves: tuple[ToolMove, ...] = ()
     tool_path: ToolPathError | None = None
 
+    def __repr__(self) -> str:
+        kept = "kept" if self.kept else "not kept"
+        return f"<Gain of {self.case!r}: {self.request.kind} of {self.who}, {kept}, {self.size:.4g} {self.unit}>"
+
     @property
     def unit(self) -> str:
         """Of `size` and `lower_bound`."""

@@ -19,7 +19,7 @@ from clearance.gains.change_parts import (
     proven_bound,
 )
 from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
-from clearance.record.wording import limit_mm, mm, moment_text, seconds
+from clearance.record.wording import count, limit_mm, mm, moment_text, seconds
 from clearance.report.blocks import (
     Bullets,
     Cell,
@@ -84,7 +84,11 @@ def _header(gain: Gain) -> Header:
 def _badge(gain: Gain) -> str:
     if not gain.kept:
         return "not kept"
-    return f"kept, changed by {size_text(gain)}" if gain.size else "kept as it is"
+    if not gain.size:
+        return "kept as it is"
+    if gain.request.kind == "waypoints":
+        return f"kept, {count(len(change_parts(gain)), 'joint')} changed"
+    return f"kept, changed by {size_text(gain)}"
 
 
 def _curves(gain: Gain) -> list[object]:

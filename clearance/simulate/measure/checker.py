@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import threading
 import warnings
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from operator import itemgetter
 
 import numpy as np
@@ -119,6 +120,7 @@ class Checker:
             raise BadInput(
                 f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it"
             )
+        self._made_of = case, time, tuple(accept)
         self._names = [placed.joints_given for placed in case.robots]
         self.joint_names = tuple(name for names in self._names for name in names)
         self._asked = AskedPositions(case, self._names, accept)
@@ -137,6 +139,11 @@ class Checker:
             places = np.flatnonzero(np.array(measured.paddings) == padding)
             own = [pairs[i] for i in places]
             self._alike.append(AskedPairs(case, own, places, padding, self._position))
+
+    def __reduce__(self) -> tuple[Callable[[Case], Checker], tuple[Case]]:
+        """Another process makes its own, of the same case."""
+        case, time, accept = self._made_of
+        return partial(Checker, time=time, accept=accept), (case,)
 
     def __repr__(self) -> str:
         return f"<Checker of {self.case!r}, pairs {len(self.pairs)}>"

@@ -1,5 +1,6 @@
 """One configuration after another against a run over the same positions, bit for bit, in any order."""
 
+import pickle
 import warnings
 from dataclasses import replace
 
@@ -243,3 +244,11 @@ def test_a_case_that_is_suspect_is_no_checker_unless_that_is_accepted():
         cl.Checker(limited(fixed_positions={name: 3.0}))
     with pytest.raises(BadInput, match="accept: 'unit' is given"):
         cl.Checker(case, accept=["unit"])
+
+
+def test_another_process_is_sent_what_makes_the_same():
+    case = cl.load_case("scenes/box_box/case.yaml")
+    checker = cl.Checker(case, time=2.5)
+    copy = pickle.loads(pickle.dumps(checker))
+    at = np.zeros(len(checker.joint_names))
+    assert copy.pairs == checker.pairs and str(copy.distance(at)) == str(checker.distance(at))
