@@ -70,7 +70,7 @@ def test_intervals_in_which_tolerances_leave_nothing_are_told(tmp_path):
     found = cl.verify(tmp_path, case)
     assert found.proven and found.n_contact == 0 and 0 < found.n_not_ruled_out < found.n_intervals
     told = f"PROVEN EXCEPT with tolerances in {found.n_not_ruled_out} intervals, in which contact"
-    assert found.headline.startswith(f"FAIL, as the report says. {told}")
+    assert found.headline.startswith(f"VIOLATED, as the report says. {told}")
 
 
 @pytest.mark.slow
