@@ -93,6 +93,9 @@ def converted(
     assert made.arm.link  # a fault of the case, and of no line
     own, starts_anywhere = made.start(start)
     made.begins_at_first = starts_anywhere
+    on_axes = (
+        [*arm.doubts_on_axes()] if made.names_axes else []
+    )  # before flags of configurations are held against them
     named = list(made.moves())
     tool = {"link": made.arm.link, **pose_written(made.first_tool)}
     program = {
@@ -104,7 +107,7 @@ def converted(
     moves, places, names = zip(*named, strict=True)
     checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
     rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
-    unproven = (*rests_on, *(arm.doubts_on_axes() if made.names_axes else ()), *made.seeds)
+    unproven = (*rests_on, *on_axes, *made.seeds)
     notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, unproven = (*notes, *unproven), ()

@@ -104,6 +104,19 @@ def test_joints_that_turn_otherwise_are_told_until_the_case_says_how():
         cl.ClearanceError, match="axes_as: with the axes of KUKA robots at 0, joint_1"
     ):
         made(robot, "kuka", axes_as="kuka")
+    flagged = ControllerMove(
+        4, "ptp", PoseTarget(np.eye(4), ranges={1: (3.0, 4.0)}, is_behind=True), np.eye(4)
+    )
+    asked = validated(ProgramFile, {"file": "a.src", "axes_as": "kuka"}, "program")
+    with pytest.raises(
+        cl.ClearanceError, match="axes_as: "
+    ):  # and not that the flags contradict each other
+        converted(
+            ControllerProgram((flagged,), maker="kuka"),
+            asked,
+            robot,
+            {f"joint_{i}": 0.0 for i in range(1, 7)},
+        )
     rules = {name: {"sign": -1} for name in ("joint_1", "joint_4", "joint_6")}
     rules |= {"joint_2": {"offset": "90deg"}, "joint_3": {"offset": "-90deg"}}
     found = made(robot, "kuka", (10, -90, 90, 20, 30, 40), axes_as="kuka", axes=rules)
