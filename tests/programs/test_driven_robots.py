@@ -153,6 +153,7 @@ ENDMODULE
 """
 
 
+@pytest.mark.slow
 def test_a_work_object_that_a_mechanical_unit_moves_is_a_frame_on_it(tmp_path):
     turn = turned((0.0, 0.0, -0.5)) @ tool_at(START)[:3, :3]
     via, to = on_plate((0.0, 0.05, 0.0)), on_plate((0.06, 0.05, 0.0))
