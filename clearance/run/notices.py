@@ -13,6 +13,7 @@ from clearance.record.certificate import Certificate
 from clearance.run.question import Question
 from clearance.simulate.answers.handling import far_grasps
 from clearance.simulate.measure import inside
+from clearance.simulate.measure.neighbours import neighbours_that_meet
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.measure.sections import SectionPlan
 from clearance.world.case import Case
@@ -40,6 +41,7 @@ def notices_of(
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_far_off(question.case, found)]
     empty += far_grasps(phases) if question.case.carries else []
+    empty += neighbours_that_meet(phases)
     empty += [_BY_PAPER] if question.method == "paper" else []
     untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []
     untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]
