@@ -1,4 +1,4 @@
-"""The number of link pairs of each robot that are measured, and of those that are not, by reason.
+"""What of a case is measured and what is left out: link pairs of each robot by reason, links and pairs by name.
 
 Not for: which pairs those are (`world.self_pairs`, `world.pairs`), nor each by name (`background.unmeasured`).
 """
@@ -6,11 +6,14 @@ Not for: which pairs those are (`world.self_pairs`, `world.pairs`), nor each by 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from typing import Any
 
 from clearance.record.record import CUT, Record
+from clearance.record.wording import count
 from clearance.world.case import PlacedRobot
 from clearance.world.collision_matrix import ADJACENT
+from clearance.world.notice import listed
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
 
 NEIGHBOURS = "neighbours"
@@ -24,6 +27,27 @@ def self_clearance_of(record: Record) -> list[dict[str, Any]]:
         for i, placed in enumerate(record.case.robots)
         if placed.self_clearance is not None
     ]
+
+
+def left_out_lines(record: Record) -> Iterator[str]:
+    """The links that the case excludes, and the pairs that it allows, beside those of two links of one robot."""
+    case = record.case
+    excluded = [case.prefix_of(one) + link for one in case.robots for link in one.exclude_links]
+    if excluded:
+        yield f"not measured: {count(len(excluded), 'excluded link')}: {listed(excluded)}"
+    rows = {str(row) for row in case.allow}
+    links = {
+        case.prefix_of(one) + link: one for one in case.robots for link in one.robot.link_names
+    }
+    allowed = [
+        f"{one.link} - {one.obstacle}"
+        for one in record.unmeasured
+        if one.reason in rows
+        and (one.obstacle not in links or links[one.link] is not links[one.obstacle])
+    ]
+    if allowed:
+        often = " at times" if any(row.when for row in case.allow) else ""
+        yield f"not measured{often}: {count(len(allowed), 'allowed pair')}: {listed(allowed)}"
 
 
 def self_clearance_lines(record: Record) -> tuple[str, ...]:

@@ -35,7 +35,7 @@ from clearance.findings.limit_lines import (
 )
 from clearance.findings.of_budget import tolerance_lines
 from clearance.findings.of_rule import code_of
-from clearance.findings.self_clearance import self_clearance_lines
+from clearance.findings.self_clearance import left_out_lines, self_clearance_lines
 from clearance.record.moment import Moment
 from clearance.record.record import Record
 from clearance.record.status import STATUSES, Status
@@ -82,6 +82,7 @@ class Verdict:
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
+        excused: links that are excluded, and pairs that are allowed, one line each.
         broken: rules of the case that are broken, beside its limits of clearance. beside: these and the profiles
             that are not kept.
         worst, worst_sample: the most critical moment, and step: of what is not waived where that is not clear,
@@ -124,6 +125,7 @@ class Verdict:
     self_clearance: tuple[str, ...] = ()
     unproven_motion: tuple[str, ...] = ()
     beyond: str = ""
+    excused: tuple[str, ...] = ()
 
     @property
     def scope(self) -> tuple[str, ...]:
@@ -131,7 +133,7 @@ class Verdict:
         left_out = (
             coded(f"{name} not checked", not_checked_code(name)) for name in self.not_checked
         )
-        return (*self.self_clearance, *left_out)
+        return (*self.self_clearance, *left_out, *self.excused)
 
     @property
     def exit_code(self) -> int:
@@ -274,6 +276,7 @@ def verdict_of(
         disputed_by=None if disputing is None else disputing.peer,
         not_checked=tuple(not_checked(record.case)),
         self_clearance=self_clearance_lines(record),
+        excused=tuple(left_out_lines(record)),
         unproven_motion=not_proven,
         broken=tuple(broken),
         beside=tuple(beside),

@@ -17,6 +17,7 @@ from clearance.report.topics.verdict import header
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
+from tests.findings.gates import load_gates
 from tests.report.made import content_of, page_of, run_of, summary_of, verdict_of, write_junit
 from tests.report.records import disagreeing, record, with_steps
 from tests.report.test_page import data_in
@@ -97,7 +98,8 @@ def test_every_answer_says_the_same(name, tmp_path):
     headline, second, *_ = printed(one)
     assert (
         headline.startswith(verdict.headline(str.upper))
-        and second.strip() == "self-collision not checked [CL531]"
+        and second.strip()
+        == "self-collision not checked [CL531]; not measured: 1 excluded link: base"
     )
     badge = header(content_of(one))
     assert "at the samples only" in badge.badge and "Self-collision not checked" in repr(badge)
@@ -170,3 +172,14 @@ def test_what_decides_beside_clearances_stands_in_the_headline(name):
     assert verdict.reasons[0] == verdict.beside[0]
     assert headline.startswith("VIOLATED")
     assert f": {verdict.beside[0]}; least clearance " in headline
+
+
+def test_pairs_that_the_case_allows_and_links_that_it_excludes_are_counted_by_name(tmp_path):
+    near = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004), "gate_c": (0.0, 0.5)}
+    allowed = cl.check(load_gates(tmp_path, near, "allow: [[box, 'gate_[ab]']]"))
+    assert allowed.verdict.scope[1:] == (
+        "not measured: 2 allowed pairs: box - gate_a, box - gate_b",
+    )
+    case = load_gates(tmp_path, near, "allow: [{between: [box, gate_a], until: 0.6}]")
+    assert cl.check(case).verdict.scope[-1] == "not measured at times: 1 allowed pair: box - gate_a"
+    assert len(cl.check(load_gates(tmp_path, near)).verdict.scope) == 1
