@@ -53,7 +53,6 @@ def test_refuses(vertices, faces, fault, words):
     with pytest.raises(fault, match=None) as caught:
         Polyhedron(vertices, faces)
     assert words in str(caught.value)
-    assert "\n" not in str(caught.value)
 
 
 def test_excess_must_not_be_negative():

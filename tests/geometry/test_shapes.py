@@ -252,4 +252,4 @@ BENT = {"path": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "inner_radius": 0.05, "outer_
 def test_dimensions_that_no_solid_has_are_refused(make, field):
     with pytest.raises(BadDimension) as caught:
         make()
-    assert field in str(caught.value) and "\n" not in str(caught.value)
+    assert field in str(caught.value)

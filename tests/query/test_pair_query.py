@@ -211,9 +211,8 @@ def test_what_is_no_pose_is_refused_and_forgotten(fault, bad):
     pose[0, 3] = 1.75
     query.distance(pose)
     for asked in ((bad, pose), (pose, bad)):
-        with pytest.raises(fault) as caught:
+        with pytest.raises(fault):
             query.distance(*asked)
-        assert "\n" not in str(caught.value)
     with pytest.raises(fault, match="worlds_from_b"):
         query.distances(pose, [pose, bad] if np.shape(bad) == (4, 4) else bad)
     assert query.distance(pose).distance == 1.0

@@ -33,7 +33,7 @@ def test_what_is_no_polyhedron(ask: str, swapped: bool, given: object) -> None:
     pair = (BOX, given) if swapped else (given, BOX)
     with pytest.raises(cl.BadInput, match="is no Polyhedron; ") as error:
         asks[ask](*pair)
-    assert str(error.value).startswith("b: " if swapped else "a: ") and "\n" not in str(error.value)
+    assert str(error.value).startswith("b: " if swapped else "a: ")
 
 
 @pytest.mark.parametrize("given", [3, None, np.eye(3), BOX], ids=lambda x: type(x).__name__)

@@ -147,7 +147,7 @@ def test_a_pcd_file_that_is_not_as_it_says_is_refused(fault):
     data, told = FAULTS[fault]
     with pytest.raises(BadInput, match=re.escape(told)) as caught:
         cloud_from_bytes(data, "a.pcd", 0.01)
-    assert str(caught.value).startswith("a.pcd: ") and "\n" not in str(caught.value)
+    assert str(caught.value).startswith("a.pcd: ")
 
 
 @pytest.mark.parametrize(
@@ -167,9 +167,8 @@ def test_a_pcd_file_that_is_not_as_it_says_is_refused(fault):
     ],
 )
 def test_a_table_that_is_no_points_is_refused(data, told):
-    with pytest.raises(BadInput, match=re.escape(told)) as caught:
+    with pytest.raises(BadInput, match=re.escape(told)):
         cloud_from_bytes(data, "a.xyz", 0.01)
-    assert "\n" not in str(caught.value)
 
 
 def test_what_was_compressed_comes_back():

@@ -75,7 +75,7 @@ def test_a_joint_that_is_called_t_is_no_time():
 def test_what_could_be_meant_otherwise_is_refused(text, fault, says):
     with pytest.raises(fault) as caught:
         read(text)
-    assert says in str(caught.value) and "\n" not in str(caught.value)
+    assert says in str(caught.value)
 
 
 LOG = (
@@ -126,7 +126,7 @@ def test_each_error_on_a_header_has_columns_that_can_be_pasted(tmp_path, header,
     )
     with pytest.raises((UnknownJoint, MissingKey)) as caught:
         load_small(tmp_path, urdf=TWO_JOINTS, trajectory=log)
-    assert f"columns: {hint} " in str(caught.value) and "\n" not in str(caught.value)
+    assert f"columns: {hint} " in str(caught.value)
     case = changed("path.csv", f"path.csv, columns: {hint}")
     asked = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=log).robots[0].trajectory
     assert sorted(asked.joint_names) == ["lift", "shoulder"] and asked.n_steps == 3
