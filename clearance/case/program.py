@@ -5,7 +5,8 @@ Not for: how joints follow (room `programs`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from clearance.case.driven_robots import ProgramCell, ProgrammedMotion, Surroundings
 from clearance.case.standing import IN_WORLD, Place
-from clearance.errors import BadProgram, at, nearest_name
+from clearance.errors import BadProgram, ClearanceError, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
 from clearance.formats.plausibility import odd_in_program
@@ -53,7 +54,8 @@ def program_motion(
     else:
         shown, read = _read(asked.program_file, cell, start, folder, files)
     given = read.program
-    with at(shown):
+    odd = odd_in_program(asked.program_file, read.own)
+    with at(shown), _suspecting(odd):
         driven = cell.driven(given)
         own = {**cell.start(driven), **given.start, **start}
         frames = _Frames(given, cell, cell.places(driven))
@@ -66,12 +68,22 @@ def program_motion(
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
         left_out=read.left_out,
-        odd=tuple(f"{shown}: {one}" for one in odd_in_program(asked.program_file, read.own)),
+        odd=tuple(f"{shown}: {one}" for one in odd),
     )
     moved = (f"it moves robot {name!r} too" for name in driven)
     notes = tuple(f"{shown}: {note}" for note in (*read.notes, *moved, *found.notes))
     trajectory, others = cell.parted(made, driven, given)
     return ProgrammedMotion(trajectory, notes, others)
+
+
+@contextmanager
+def _suspecting(odd: Sequence[str]) -> Iterator[None]:
+    """Adds to an error values that look like another unit, which may be its cause."""
+    try:
+        yield
+    except ClearanceError as fault:
+        fault.valid = "; ".join((fault.valid, *odd)).lstrip("; ")
+        raise
 
 
 def _read(
@@ -98,7 +110,7 @@ def _read(
     read = function_at(row.read)(request)
     if isinstance(read, schema.Program):
         return shown, _of_schema(read)
-    with at(shown):
+    with at(shown), _suspecting(odd_in_program(asked)):
         require_used(request, function_at(row.read), read)
         root = None if cell.own.mount else inverse(cell.own.world_from_base)
         return shown, converted(read, asked, cell.robot, start, root)

@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from clearance.formats.schema.obstacle import Obstacle
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.program import JointMove, PathMove
-from clearance.formats.schema.program_file import ProgramFile
+from clearance.formats.schema.program_file import Axis, ProgramFile
 from clearance.geometry.shapes import SHAPES
 from clearance.world.notice import Notice, Severity, listed
 
@@ -75,6 +75,12 @@ def odd_in_program(*given: BaseModel | None) -> list[str]:
         for where, one in models
         if isinstance(one, Pose)
         for odd in odd_angles(where or "the pose", one.rpy)
+    ]
+    turned += [
+        f"{where}.offset is {one.offset:g} rad"
+        for where, one in models
+        if isinstance(one, Axis) and not isinstance(one.axis, str)
+        if _looks_like_degrees(abs(one.offset))
     ]
     radii = [
         (f"{where}.zone", one.zone)

@@ -96,6 +96,11 @@ def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
     path = controller_case(tmp_path, "a.script", script(), axes=BEND, base=base)
     (odd,) = [one.text for one in notices_of(cl.load_case(path)) if one.severity == "suspect"]
     assert odd == f"CHECK UNITS: a.script: base has an angle of 360 rad in its rpy; {IN_DEGREES}"
+    bent = {"joint_2": {"offset": -90, "sign": -1}}
+    path = controller_case(tmp_path, "b.script", script(), axes=bent)
+    odd = "; axes.joint_2.offset is -90 rad; angles are in radians"
+    with pytest.raises(cl.ClearanceError, match=f"joint_2.* limit.*{odd}"):
+        cl.load_case(path)
     given = {"file": "a", "tools": {"TCP": {"rpy": [0, 0, 90]}}, "zones": {"CNT": 50.0}}
     assert odd_in_program(validated(ProgramFile, given, "program")) == [
         f"tools.TCP has an angle of 90 rad in its rpy; {IN_DEGREES}",

@@ -12,7 +12,6 @@ from clearance.formats.known_formats import Kind, names_of
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import STATE
 from clearance.formats.schema.obstacle import SHAPES
-from clearance.formats.schema.program_file import DEGREES
 from clearance.formats.schema.strict_model import StrictModel
 from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS, preset_names
 from clearance.world.notice import CODES_OF_KINDS, KINDS
@@ -51,8 +50,6 @@ def case_schema() -> dict[str, Any]:
     motion["properties"]["columns"] = {"anyOf": [motion["properties"]["columns"], names]}
     del motion["required"]
     motion["oneOf"] = [{"required": ["file"]}, {"required": ["program"]}]
-    offset = parts["Axis"]["properties"]["offset"]
-    parts["Axis"]["properties"]["offset"] = {"anyOf": [offset, DEGREES]}
     parts["TrajectoryFile"] = _or_path(
         parts["TrajectoryFile"], f"a file with the motion ({names_of(Kind.TRAJECTORY)})"
     )

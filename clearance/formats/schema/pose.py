@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from clearance.errors import Contradiction
-from clearance.formats.schema.strict_model import Name, StrictModel, Triple
+from clearance.formats.schema.strict_model import Angle, Name, StrictModel, Triple
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.timing import Window
@@ -22,12 +22,12 @@ Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
 
 class Pose(StrictModel):
     """Where something stands: a point and a rotation (quaternion xyzw, or roll, pitch, yaw about
-    fixed axes).
+    fixed axes [rad], or as text: `90deg`).
     """
 
     xyz: Triple = [0.0, 0.0, 0.0]
     quat_xyzw: Quadruple | None = None
-    rpy: Triple | None = None
+    rpy: Annotated[list[Angle], Field(min_length=3, max_length=3)] | None = None
 
     @model_validator(mode="after")
     def _is_rotation(self) -> Pose:

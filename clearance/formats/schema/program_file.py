@@ -5,33 +5,13 @@ Not for: reading the languages of controllers (`formats.program`).
 
 from __future__ import annotations
 
-import math
-import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from clearance.errors import BadInput
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.program import Frame
-from clearance.formats.schema.strict_model import Name, StrictModel
-
-DEGREES = {"type": "string", "pattern": r"^([+-]?[0-9]+(?:\.[0-9]*)?) ?deg$"}
-"""An angle as text, as JSON Schema has it."""
-
-
-def _radians(given: Any) -> Any:
-    """`-90deg` in radians; all else as it is.
-
-    Raises:
-        BadInput: another text.
-    """
-    if not isinstance(given, str):
-        return given
-    found = re.fullmatch(DEGREES["pattern"], given)
-    if not found:
-        raise BadInput(f"{given!r:.60} is given", valid="radians, metres, or degrees as in -90deg")
-    return math.radians(float(found[1]))
+from clearance.formats.schema.strict_model import Angle, Name, StrictModel
 
 
 class Axis(StrictModel):
@@ -40,7 +20,7 @@ class Axis(StrictModel):
     """
 
     axis: int | Name | None = None
-    offset: Annotated[float, BeforeValidator(_radians)] = 0.0
+    offset: Angle = 0.0
     sign: Literal[-1, 1] = 1
     plus: dict[int, float] = {}
 

@@ -4,15 +4,19 @@ object to, as one line of ours: given, where, what is valid; and the table of sh
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     ValidationError,
+    WithJsonSchema,
     create_model,
     model_validator,
 )
@@ -37,6 +41,31 @@ Name = Annotated[str, Field(min_length=1), AfterValidator(checked_name)]
 
 Level = Annotated[float, Field(ge=0)]
 """[m] A clearance or a padding."""
+
+
+_DEGREES = r"^([+-]?[0-9]+(?:\.[0-9]*)?) ?deg$"
+
+
+def _radians(given: Any) -> Any:
+    """`-90deg` in radians; all else as it is.
+
+    Raises:
+        BadInput: another text.
+    """
+    if not isinstance(given, str):
+        return given
+    found = re.fullmatch(_DEGREES, given)
+    if not found:
+        raise BadInput(f"{given!r:.60} is given", valid="a number, or degrees as in -90deg")
+    return math.radians(float(found[1]))
+
+
+Angle = Annotated[
+    float,
+    BeforeValidator(_radians),
+    WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string", "pattern": _DEGREES}]}),
+]
+"""[rad] An angle, or degrees as text."""
 
 
 class StrictModel(BaseModel):

@@ -58,10 +58,11 @@ def test_joints_follow_axes_by_sign_offset_and_other_axes():
 def test_a_pose_is_seen_from_the_controllers_base():
     target = PoseTarget(at(0.5, 0.0, 0.3), name="P1")
     line = ControllerMove(7, "lin", target, at(0.0, 0.0, 0.1), speed=0.2, zone=0.01)
-    base = {"on": "world", "xyz": [1.0, 2.0, 0.0]}
+    base = {"on": "world", "xyz": [1.0, 2.0, 0.0], "rpy": ["-90deg", 0.0, "180 deg"]}
     on = replace(line, to=PoseTarget(at(0.6, 0.0, 0.3)))
     found = made(HOME, line, on, ControllerWait(8, 0.5), line, line, base=base)
-    assert found.program.frames["controller"].model_dump(exclude_unset=True) == base
+    turned = {**base, "rpy": [-QUARTER, 0.0, math.pi]}
+    assert found.program.frames["controller"].model_dump(exclude_unset=True) == turned
     assert found.program.tool.xyz == [0.0, 0.0, 0.1] and found.program.tool.link == "tool_tip"
     lin = found.program.moves[1].lin
     assert (lin.to.frame, lin.to.xyz, lin.zone, lin.speed) == (
@@ -212,7 +213,11 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
         ([HOME], {"axes": {"joint_9": {}}}, "axes: unknown joint 'joint_9'"),
         ([HOME], {"axes": {"joint_1": {"axis": 2}, "joint_2": {"axis": 2}}}, "each of 1 to 6 once"),
         ([HOME], {"axes": {"joint_1": {"axis": "E1"}}}, "6 axes are given, and the arm has 5"),
-        ([HOME], {"axes": {"joint_2": {"offset": "90 mm"}}}, "'90 mm' is given; radians, metres"),
+        (
+            [HOME],
+            {"axes": {"joint_2": {"offset": "90 mm"}}},
+            "'90 mm' is given; a number, or degrees",
+        ),
         (
             [HOME, replace(POSE, zone=0.01), replace(POSE, tool=at(0, 0, 1))],
             {},
