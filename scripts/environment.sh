@@ -45,7 +45,7 @@ stamp_of() {
 }
 
 prepare() {
-    local extra=${1:-} python target="$root" stamp="$venv/.installed${1:+-$1}"
+    local extra=${1:-} python bytecode target="$root" stamp="$venv/.installed${1:+-$1}"
     if ! is_new_enough "$venv/bin/python"; then
         python=$(find_python)
         echo "making $venv with $("$python" --version)" >&2
@@ -55,7 +55,8 @@ prepare() {
     [ -n "$extra" ] && target="$root[$extra]"
     echo "installing into $venv; the first time this also compiles the kernels, in $(nproc 2>/dev/null || echo all) processes (some minutes)" >&2
     # tests have Python compile what they import: to compile all of 1 GB of libraries takes pip 20 s more
-    pip_install "${python:-$(find_python)}" ${extra:+--no-compile} --editable "$target" \
+    [ "$extra" = test ] && bytecode=--no-compile
+    pip_install "${python:-$(find_python)}" ${bytecode:-} --editable "$target" \
         || fail "the installation failed; the lines above say why"
     stamp_of "$extra" >"$stamp"
 }
