@@ -105,7 +105,7 @@ class Trajectory:
         given_extents: (2, k) the least and greatest position before whole turns were subtracted, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
         assumed: of a program's controller, where nothing confirms it, one line each. left_out: its instructions
-            that the case leaves out, whatever time they take. odd: of a program, what looks like another unit.
+            that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
         moves: of a program, when each is made. frames: the obstacles and links that its work frames are on.
         corners: stretches on which a controller may leave the path, and how far links may then be off.
         unproven: stretches of a program that are not proven.

@@ -28,6 +28,7 @@ from clearance.formats.table.column_units import (
     in_own_units,
     note_on_units,
     notes_on_names,
+    odd_degrees,
     with_time,
 )
 from clearance.formats.table.csv_table import (
@@ -71,11 +72,12 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
             times = choice.period * np.arange(len(times), dtype=np.float64)[:, None]
     refuse_standing_time(times[:, 0], table)
     notes = [*_notes(table, choice), *notes_on_names(header, columns), *note_on_units(columns)]
+    odd = odd_degrees(moving[0][:, [by_name[name].unit == "deg" for name in joints]])
     if turned:
         moving[0], on_angles = by_angles(moving[0], joints, turned, table)
         joints, notes = joints_by_angles(joints, turned), [*notes, *on_angles]
     velocities = moving[1] if len(moving) > 1 else None
-    trajectory = Trajectory(times[:, 0], joints, moving[0], velocities)
+    trajectory = Trajectory(times[:, 0], joints, moving[0], velocities, odd=odd)
     return ReadTrajectory(trajectory, tuple(notes))
 
 

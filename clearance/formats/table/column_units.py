@@ -151,6 +151,21 @@ def in_own_units(values: np.ndarray, columns: Sequence[Column]) -> None:
             values[:, i] /= _PARTS[column.unit]
 
 
+def odd_degrees(angles: np.ndarray) -> tuple[str, ...]:
+    """A line where angles (n, k) [rad] that were read in degrees are those that a table in radians has.
+
+    Args:
+        angles: of the columns in degrees.
+    """
+    if angles.shape[1] < 2 or not len(angles) or not np.ptp(angles, axis=0).any():
+        return ()
+    if np.abs(angles).max() > math.radians(2.0 * math.pi):
+        return ()
+    return (
+        "all angles are within 6.28 degrees of 0: is the table in radians, and no unit to be given?",
+    )
+
+
 def note_on_units(columns: Sequence[Column]) -> list[str]:
     """A line that says which columns are in which other unit."""
     parts = []

@@ -130,3 +130,14 @@ def test_a_case_says_how_its_table_is_written(tmp_path):
     assert "path.csv: read in degrees: 'shoulder'; in millimetres: 'lift'" in case.notes
     plain = as_case(tmp_path, f"time,shoulder,lift\n0,{10 * DEG!r},0.005\n0.5,{20 * DEG!r},0.007\n")
     assert (check(case).record.clearances == check(plain).record.clearances).all()
+
+
+def test_a_table_in_radians_that_is_read_in_degrees_is_odd():
+    turns, units = {"a": True, "b": True}, ("deg", "m")
+    table = "time,a,b\n0,0.3,{}\n1,1.0,-6.2\n".format
+    (told,) = read(table(-1.5), turns, units=units)[0].odd
+    assert "within 6.28 degrees of 0: is the table in radians" in told
+    assert not read(table(-1.5), turns)[0].odd  # in radians, as it says
+    assert not read(table(-6.3), turns, units=units)[0].odd
+    assert not read(table(-1.5).replace("1.0,-6.2", "0.3,-1.5"), turns, units=units)[0].odd
+    assert not read("time,a\n0,0.3\n1,1.0\n", turns, units=units)[0].odd
