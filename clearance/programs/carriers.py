@@ -54,8 +54,8 @@ def _carrier(
     chain = chain_between(robot, carrier, link)
     missing = [joint.name for joint in chain.masters if joint.name not in start]
     if missing:
-        told = f"the position of joint {missing[0]!r} below link {link!r} is not given"
-        raise BadProgram(told, where="start", valid="its position")
+        fault = f"the position of joint {missing[0]!r} below link {link!r} is not given"
+        raise BadProgram(fault, where="start", valid="its position")
     at_rest = np.array([[start[joint.name] for joint in chain.masters]])
     return carrier if carrier in above else "", chain.frames(at_rest)[0, -1]
 

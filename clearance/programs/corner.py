@@ -114,13 +114,13 @@ def _spread(
     shifts[:, 1:][:, sizes == 0.0] = 0.0
     halves[:, 1:][:, sizes == 0.0] = 0.0
     near = 0.5 * (given.before + given.after) + 0.25 * half * (given.rates[0] - given.rates[1])
-    held = follower.told.held[0] - follower.told.held[1]
-    start = near[i] + np.where(follower.free, 0.0, shifts[:, :1] * held)
+    change = follower.joints_on_path.held[0] - follower.joints_on_path.held[1]
+    start = near[i] + np.where(follower.free, 0.0, shifts[:, :1] * change)
     poses = stretch.poses(
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
     )
     solved = joints_at(follower.arm.tool, poses, start, follower.free)
-    off = np.where(follower.free, 0.0, halves[:, :1] * np.abs(held))
+    off = np.where(follower.free, 0.0, halves[:, :1] * np.abs(change))
     return Spread(solved.positions - near[i], off, shifts, halves, _hull(stretch))
 
 

@@ -14,7 +14,7 @@ from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.inverse import joints_at, least_motion
 from clearance.programs.joint_way import fastest
-from clearance.programs.tool_path import Stretch, Told
+from clearance.programs.tool_path import JointsOnPath, Stretch
 from clearance.world.cubic import cubics_of, position_on
 
 SHORTEST = 2.0**-14
@@ -43,14 +43,16 @@ class Follower:
     start: np.ndarray
 
     @property
-    def told(self) -> Told:
-        """What is said of its joints."""
-        return self.stretch.told or Told(self.arm.follows, np.zeros((2, len(self.start))))
+    def joints_on_path(self) -> JointsOnPath:
+        """Which joints follow, and how far the others go."""
+        return self.stretch.joints_on_path or JointsOnPath(
+            self.arm.follows, np.zeros((2, len(self.start)))
+        )
 
     @property
     def free(self) -> np.ndarray:
         """(k,) which joints follow the path."""
-        return self.told.free
+        return self.joints_on_path.free
 
     def rates(self, positions: np.ndarray, strokes: np.ndarray) -> np.ndarray:
         """(n, k) [1/s] how fast the joints go at positions (n, k), in the least motion.
@@ -59,7 +61,7 @@ class Follower:
             strokes: (3, n, 2) of the stretch.
         """
         _, rates = self.arm.tool.poses_and_rates(positions)
-        found = strokes[1] @ self.told.held
+        found = strokes[1] @ self.joints_on_path.held
         wanted = self.stretch.rates(strokes[0], strokes[1]) - (rates @ found[..., None])[..., 0]
         found[:, self.free] = least_motion(rates[:, :, self.free], wanted[:, :, None])[:, :, 0]
         return found
@@ -78,11 +80,11 @@ class Follower:
             ((shares - at[i]) / np.diff(at)[i])[:, None],
         )
         strokes = self._strokes(shares)[0]
-        near[:, ~self.free] = (self.start + strokes @ self.told.held)[:, ~self.free]
+        near[:, ~self.free] = (self.start + strokes @ self.joints_on_path.held)[:, ~self.free]
         poses = self.stretch.poses(strokes)
         solved = joints_at(self.arm.tool, poses, near, self.free)
-        bad = int(np.argmax(solved.left))
-        if solved.left[bad] > REACHED:
+        bad = int(np.argmax(solved.residual))
+        if solved.residual[bad] > REACHED:
             raise _stuck(self.arm, poses[bad], near[bad])
         return solved.positions
 
@@ -103,10 +105,13 @@ class Follower:
             near = found[-1] + step * rates[-1]
             share = 1.0 if shares[-1] + step > 1.0 - 1e-12 else shares[-1] + step
             strokes = self._strokes(np.array([share]))[0]
-            near[~self.free] = (self.start + strokes @ self.told.held)[0, ~self.free]
+            near[~self.free] = (self.start + strokes @ self.joints_on_path.held)[0, ~self.free]
             pose = self.stretch.poses(strokes)
             solved = joints_at(self.arm.tool, pose, near[None], self.free)
-            if solved.left[0] <= REACHED and np.abs(solved.positions[0] - near).max() <= FORESEEN:
+            if (
+                solved.residual[0] <= REACHED
+                and np.abs(solved.positions[0] - near).max() <= FORESEEN
+            ):
                 shares.append(share)
                 found.append(solved.positions[0])
                 rates.append(self.rates_at(found[-1], share))
@@ -116,33 +121,33 @@ class Follower:
         return np.array(shares), np.array(found), np.array(rates)
 
 
-def told_of(
+def joints_on_path(
     arm: Arm, hold: Mapping[str, float] | None, start: np.ndarray, free_beside: Collection[str] = ()
-) -> Told:
+) -> JointsOnPath:
     """What a line or an arc from where the joints are (k,) says of them.
 
     Args:
         hold: where joints go meanwhile, by name. free_beside: joints beside the arm that follow the path too; the
-            others go only where they are told.
+            others go only where `hold` says.
 
     Raises:
         UnknownJoint: one that is told is none of the program. BadInput: fewer than six are left.
     """
-    free, held = arm.follows.copy(), np.zeros(len(start))
+    free, change = arm.follows.copy(), np.zeros(len(start))
     free[len(arm.own) :] = False
     for name in free_beside:
         column = arm.column(name, "free")
         if column < len(arm.own) or not arm.follows[column]:
-            told = f"joint {name!r} is not between the frame of the target and the arm"
-            raise BadProgram(told, where="free", valid="a joint below a frame, beside the arm")
+            fault = f"joint {name!r} is not between the frame of the target and the arm"
+            raise BadProgram(fault, where="free", valid="a joint below a frame, beside the arm")
         free[column] = True
     for name, value in (hold or {}).items():
         column = arm.column(name, "hold")
-        free[column], held[column] = False, value - start[column]
+        free[column], change[column] = False, value - start[column]
         low, high = arm.ranges[column]
         if not low <= value <= high:
-            told = f"{value:.4g} is beyond the limit of joint {name!r}"
-            raise BadProgram(told, where="hold", valid=f"{low:.4g} to {high:.4g}")
+            fault = f"{value:.4g} is beyond the limit of joint {name!r}"
+            raise BadProgram(fault, where="hold", valid=f"{low:.4g} to {high:.4g}")
     if free.sum() < 6:
         raise BadProgram(
             f"{int(free.sum())} joints are free to follow the tool's path",
@@ -150,8 +155,8 @@ def told_of(
             if arm.seen_from
             else "six or more; an arm of fewer goes by joint moves",
         )
-    least_time = float((np.abs(held) / fastest(arm.joints)).max(initial=0.0))
-    return Told(free, np.stack([held, np.zeros_like(held)]), least_time)
+    least_time = float((np.abs(change) / fastest(arm.joints)).max(initial=0.0))
+    return JointsOnPath(free, np.stack([change, np.zeros_like(change)]), least_time)
 
 
 def _stuck(arm: Arm, pose: np.ndarray, joints: np.ndarray) -> BadProgram:

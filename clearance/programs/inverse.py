@@ -26,11 +26,11 @@ class Solved(NamedTuple):
     """What Newton's method came to.
 
     Attributes:
-        positions: (n, k) [rad or m]. left: (n,) [m or rad] what is left of each pose.
+        positions: (n, k) [rad or m]. residual: (n,) [m or rad] of each pose.
     """
 
     positions: np.ndarray
-    left: np.ndarray
+    residual: np.ndarray
 
 
 def joints_at(
@@ -113,7 +113,7 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.nda
     all_wanted = np.tile(wanted, (SEEDS, 1, 1))
     found = joints_at(arm.tool, all_wanted, starts, free, MOST_FROM_AFAR)
     within = (found.positions >= ranges[:, 0]) & (found.positions <= ranges[:, 1])
-    fits = (found.left <= 1e-9) & within.all(axis=1)
+    fits = (found.residual <= 1e-9) & within.all(axis=1)
     if not fits.any():
         raise _unreached(arm, wanted, now, ranges)
     ways = np.where(fits, np.abs(found.positions - now).max(axis=1), np.inf)

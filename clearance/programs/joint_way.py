@@ -55,8 +55,12 @@ class JointWay:
             column = arm.column(name, "within")
             row, joint = ranges[column], arm.joints[column]
             if low > row[1] or high < row[0]:
-                told = f"{range_of(joint, low, high)}, beyond its limits: {range_of(joint, *row)}"
-                raise BadProgram(f"the configuration of the target asks for {told}", valid=ANOTHER)
+                outside = (
+                    f"{range_of(joint, low, high)}, beyond its limits: {range_of(joint, *row)}"
+                )
+                raise BadProgram(
+                    f"the configuration of the target asks for {outside}", valid=ANOTHER
+                )
             row[:] = max(low, row[0]), min(high, row[1])
         ranges[stays] = np.clip(near, *ranges.T)[stays, None]
         return cls(start, nearest_joints(arm, move.pose, near, ranges))
@@ -112,8 +116,8 @@ def targets_of(arm: Arm, move: JointMove, start: np.ndarray) -> np.ndarray:
         found[arm.column(name, "joints")] = value
     missing = [joint.name for joint in arm.own if joint.name not in given]
     if missing:
-        told = f"no target of {', '.join(missing)}"
-        raise BadProgram(told, where="joints", valid="one for each joint of the arm")
+        fault = f"no target of {', '.join(missing)}"
+        raise BadProgram(fault, where="joints", valid="one for each joint of the arm")
     return found
 
 

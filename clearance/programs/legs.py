@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, at
 from clearance.programs.arm import Arm
-from clearance.programs.following import Follower, told_of
+from clearance.programs.following import Follower, joints_on_path
 from clearance.programs.joint_way import RUN_UP, JointWay, fastest, joint_law
 from clearance.programs.moves import (
     SHARE_OF_WAY,
@@ -111,11 +111,11 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
 
 def _require_same_joints(move: JointMove | PathMove, first: Stretch, second: Stretch) -> None:
     """Nothing, if the same joints follow on both sides of a corner zone at the end of a move."""
-    assert first.told is not None and second.told is not None
-    if not np.array_equal(first.told.free, second.told.free):
+    assert first.joints_on_path is not None and second.joints_on_path is not None
+    if not np.array_equal(first.joints_on_path.free, second.joints_on_path.free):
         with at(move.where):
-            told = "other joints are held after the corner zone than before it"
-            raise BadProgram(told, where="hold", valid="the same joints on both sides, or zone: 0")
+            fault = "other joints are held after the corner zone than before it"
+            raise BadProgram(fault, where="hold", valid="the same joints on both sides, or zone: 0")
 
 
 def is_none(way: Way) -> bool:
@@ -161,7 +161,7 @@ def _stretch(arm: Arm, start: np.ndarray, move: PathMove, joints: np.ndarray) ->
     found = line(start, end) if move.via is None else arc(start, move.via, end, move.along)
     if not found.length <= LONGEST:
         raise BadProgram(f"a way of {found.length:.3g} m", valid=f"{LONGEST:g} m or less")
-    return replace(found, told=told_of(arm, move.hold, joints, move.free))
+    return replace(found, joints_on_path=joints_on_path(arm, move.hold, joints, move.free))
 
 
 def _joints_after(arm: Arm, way: Stretch, joints: np.ndarray, later: Run) -> np.ndarray:
@@ -171,7 +171,7 @@ def _joints_after(arm: Arm, way: Stretch, joints: np.ndarray, later: Run) -> np.
     for one in later:
         if isinstance(one, JointMove) or (isinstance(one, PathMove) and free & {*(one.hold or {})}):
             return follower.positions(np.ones(1))[0]
-    return joints + follower.told.held[0]
+    return joints + follower.joints_on_path.held[0]
 
 
 def _cut(arm: Arm, zone: float, before: Way, after: Way) -> tuple[float, float, float]:
@@ -185,9 +185,9 @@ def _cut(arm: Arm, zone: float, before: Way, after: Way) -> tuple[float, float, 
     sides = before, after
     for side in sides:
         if is_none(side) or (isinstance(side, Stretch) and side.length < SHORTEST):
-            told = "a corner zone beside a line of no length"
+            fault = "a corner zone beside a line of no length"
             raise BadProgram(
-                told, where="zone", valid="0, or moves that the tool's point goes along"
+                fault, where="zone", valid="0, or moves that the tool's point goes along"
             )
     lengths = [_half(side) for side in sides if isinstance(side, Stretch)]
     radius = min(zone, *lengths) if len(lengths) == 2 else zone
@@ -288,7 +288,11 @@ def _rate_in_corner(arm: Arm, zone: Corner) -> float:
         bend = float(np.linalg.norm(turned)) + 2.0 * (first.bend + second.bend)
         acceleration = min(before.acceleration, after.acceleration)
         held = np.array(
-            [side.told.held[0] for side in zone.sides if isinstance(side, Stretch) and side.told]
+            [
+                side.joints_on_path.held[0]
+                for side in zone.sides
+                if isinstance(side, Stretch) and side.joints_on_path
+            ]
         )
         bends = np.abs(held[1] - held[0]) / fastest(arm.joints)
         rates.append(float(np.sqrt(0.5 / RUN_UP / max(float(bends.max()), 1e-12))))

@@ -40,22 +40,22 @@ def links_off(arm: Arm, cells: Cells) -> dict[str, Deviation]:
     at, off = np.zeros((2, len(cells.box), len(moving)))
     at[:, columns], off[:, columns] = cells.middle - cells.shifts, cells.middle
     nominal, shifted = poses_by_link(links, at), poses_by_link(links, off)
-    told: dict[str, Deviation] = {}
+    deviations: dict[str, Deviation] = {}
     for i, name in enumerate(robot.link_names):
         above = _Above.of(links, i, columns)
         if not above.driven:
             continue
         carrier = robot.link_names[above.driven[0][0]]
         if above.others == 0:
-            told[name] = _off(links, nominal, shifted, above, lengths[name], cells)
-        elif carrier in told and above.others == above.others_below:
-            held, farther = told[carrier], lengths[name] - lengths[carrier]
-            told[name] = Deviation(held.at(farther) * MORE, held.turn)
+            deviations[name] = _off(links, nominal, shifted, above, lengths[name], cells)
+        elif carrier in deviations and above.others == above.others_below:
+            of_carrier, farther = deviations[carrier], lengths[name] - lengths[carrier]
+            deviations[name] = Deviation(of_carrier.at(farther) * MORE, of_carrier.turn)
         else:
             turned, slid = above.sums(np.abs(cells.shifts) + cells.box)
             ways = lengths[name] * turned + slid
-            told[name] = Deviation(float(ways.max()) * MORE, float(turned.max()) * MORE)
-    return told
+            deviations[name] = Deviation(float(ways.max()) * MORE, float(turned.max()) * MORE)
+    return deviations
 
 
 class _Above(NamedTuple):

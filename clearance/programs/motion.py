@@ -133,9 +133,9 @@ class _Samples:
         for move, way, _ in ways:
             if isinstance(way, JointWay) and isinstance(move, JointMove) and move.pose is not None:
                 target = np.round(way.target, 9) + 0.0  # 0 but for rounding is 0, and never -0
-                told = [f"{name} {at:.4g}" for name, at in zip(names, target, strict=True)]
+                texts = [f"{name} {at:.4g}" for name, at in zip(names, target, strict=True)]
                 self.notes.append(
-                    f"{move.name}: the nearest joints found for its pose are taken [rad or m]: {', '.join(told)}"
+                    f"{move.name}: the nearest joints found for its pose are taken [rad or m]: {', '.join(texts)}"
                 )
 
     def motion(self) -> ProgramMotion:

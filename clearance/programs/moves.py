@@ -159,8 +159,8 @@ class Program:
                 run = []
             elif not isinstance(following, JointMove | PathMove):
                 with at(one.where):
-                    told = "a corner zone without a move after it"
-                    raise BadProgram(told, where="zone", valid="0, or a move next")
+                    fault = "a corner zone without a move after it"
+                    raise BadProgram(fault, where="zone", valid="0, or a move next")
 
 
 SHORTEST = 1e-9
@@ -184,11 +184,11 @@ def _seen_from(run: Run, before: str) -> str:
             continue
         if found not in (None, one.seen_from):
             with at(run[i - 1].where):
-                told = (
+                fault = (
                     f"the next target is on {one.seen_from or 'what stands'}, which moves otherwise"
                 )
                 valid = "0 (a stop), or targets on one and the same link on both sides"
-                raise BadProgram(told, where="zone", valid=valid)
+                raise BadProgram(fault, where="zone", valid=valid)
         found = one.seen_from
     return before if found is None else found
 

@@ -96,7 +96,7 @@ def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
     turned = np.linalg.norm(stretch.turns, axis=1).sum()
     length = sum(way.length for way in stretch.ways)
     turns = [joint.kind is not JointKind.PRISMATIC for joint in follower.arm.joints]
-    held = np.abs(follower.told.held).sum(axis=0) / np.where(turns, STEP_TURN, step)
+    held = np.abs(follower.joints_on_path.held).sum(axis=0) / np.where(turns, STEP_TURN, step)
     steps = share * max(length / step, turned / STEP_TURN, held.max())
     least = LEAST_IN_CORNER if stretch.is_corner else 1
     return max(least, int(np.ceil(steps - 1e-9)))  # rounding makes no step more

@@ -133,8 +133,8 @@ STILL = Straight(np.zeros(3))
 NO_TURN = np.zeros(3)
 
 
-class Told(NamedTuple):
-    """What is said of the joints on a path.
+class JointsOnPath(NamedTuple):
+    """Which joints follow a path, and how far the others go on it.
 
     Attributes:
         free: (k,) which follow it. held: (2, k) how far the others go with each stroke [rad or m].
@@ -145,7 +145,7 @@ class Told(NamedTuple):
     held: np.ndarray
     least_time: float = 0.0
 
-    def part(self, share: float) -> Told:
+    def part(self, share: float) -> JointsOnPath:
         """Of a share of the path."""
         return self._replace(held=share * self.held, least_time=share * self.least_time)
 
@@ -158,19 +158,19 @@ class Stretch:
         start: (4, 4) the tool's pose at its beginning [m].
         ways: how each stroke moves the tool's point. turns: (2, 3) rotation vectors of both [rad].
         is_corner: the strokes are those of a corner zone.
-        told: of the joints that go along; None where nobody has asked.
+        joints_on_path: None where nobody has asked.
     """
 
     start: np.ndarray
     ways: tuple[Straight | Arc, Straight | Arc]
     turns: np.ndarray
     is_corner: bool = False
-    told: Told | None = None
+    joints_on_path: JointsOnPath | None = None
 
     @property
     def least_time(self) -> float:
-        """[s] That joints take which are told where to go."""
-        return 0.0 if self.told is None else self.told.least_time
+        """[s] That joints take which go to a given place."""
+        return 0.0 if self.joints_on_path is None else self.joints_on_path.least_time
 
     @property
     def length(self) -> float:
@@ -248,17 +248,19 @@ class Stretch:
             return self
         first = self.poses(np.array([[start, 0.0]]))[0]
         way, share = self.ways[0].part(start, end), end - start
-        turns, told = share * self.turns, self.told and self.told.part(share)
-        return replace(self, start=first, ways=(way, STILL), turns=turns, told=told)
+        turns, on_path = share * self.turns, self.joints_on_path and self.joints_on_path.part(share)
+        return replace(self, start=first, ways=(way, STILL), turns=turns, joints_on_path=on_path)
 
 
 def corner(before: Stretch, after: Stretch) -> Stretch:
     """The nominal path of a corner zone that takes the place of the parts of two lines or arcs."""
     ways, turns = (before.ways[0], after.ways[0]), np.array([before.turns[0], after.turns[0]])
-    told = before.told
-    if told is not None and after.told is not None:
-        told = Told(told.free, np.array([told.held[0], after.told.held[0]]))
-    return Stretch(before.start, ways, turns, is_corner=True, told=told)
+    on_path = before.joints_on_path
+    if on_path is not None and after.joints_on_path is not None:
+        on_path = JointsOnPath(
+            on_path.free, np.array([on_path.held[0], after.joints_on_path.held[0]])
+        )
+    return Stretch(before.start, ways, turns, is_corner=True, joints_on_path=on_path)
 
 
 def line(start: np.ndarray, end: np.ndarray) -> Stretch:

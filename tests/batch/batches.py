@@ -48,7 +48,7 @@ def write_cell(folder: Path, nearest: Sequence[float]) -> Path:
     return manifest
 
 
-class Told:
+class JointsOnPath:
     """A watch that keeps what it is told."""
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ def run_here(
     manifest: Path, place: Path, *, strict: bool = False, engine=None, changes=None, **options
 ):
     """Runs a batch in this process and writes its answer; what was measured, and the answer."""
-    items, told = items_of([str(manifest)], changes or {}), Told()
+    items, told = items_of([str(manifest)], changes or {}), JointsOnPath()
     outcome = Outcome(items)
     with open_store(place) as store:
         write_list(store, items)

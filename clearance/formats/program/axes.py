@@ -49,13 +49,13 @@ class AxisMap:
         free = iter(i for i in range(1, len(own) + 1) if i not in said.values())
         numbers = {name: int(said[name]) if name in said else next(free, 0) for name in own}
         if sorted(numbers.values()) != list(range(1, len(own) + 1)):
-            told = ", ".join(f"{name}: {number}" for name, number in numbers.items())
-            raise BadProgram(f"the axes are {told}", valid=f"each of 1 to {len(own)} once")
+            text = ", ".join(f"{name}: {number}" for name, number in numbers.items())
+            raise BadProgram(f"the axes are {text}", valid=f"each of 1 to {len(own)} once")
         for joint in joints:
             if joint.kind is JointKind.PRISMATIC and joint.name in numbers:
-                told = f"joint {joint.name!r} slides, and axes are read as angles"
+                text = f"joint {joint.name!r} slides, and axes are read as angles"
                 raise BadProgram(
-                    told, valid=f"axes: {{{joint.name}: {{axis: E1}}}}, if it is external"
+                    text, valid=f"axes: {{{joint.name}: {{axis: E1}}}}, if it is external"
                 )
         if len(set(external.values())) != len(external):
             raise BadProgram("an external axis is there twice", valid="each once")
@@ -76,9 +76,9 @@ class AxisMap:
             )
         axes, offset, matrix = np.array(target.axes), *self._linear
         found = dict(zip(self.numbers, (matrix @ axes + offset).tolist(), strict=True))
-        return {**self.held(target), **found}
+        return {**self.external_values(target), **found}
 
-    def held(self, target: AxisTarget | PoseTarget) -> dict[str, float]:
+    def external_values(self, target: AxisTarget | PoseTarget) -> dict[str, float]:
         """The joints that are external axes [rad or m], by name.
 
         Raises:

@@ -80,12 +80,12 @@ class ControlledArm:
     def axes(self) -> AxisMap:
         """How joints follow axes."""
         own, asked = self.chain.masters, self.asked.axes
-        beside = (
+        further = (
             joint
             for joint in self.robot.moving_joints
             if joint not in own and joint.name in asked and isinstance(asked[joint.name].axis, str)
         )
-        joints = (*own, *beside)
+        joints = (*own, *further)
         with at("axes"):
             return AxisMap.of(
                 joints, self.asked.axes, self.convention.third if self.convention else 0.0
@@ -105,8 +105,8 @@ class ControlledArm:
         convention, said = self.convention, self.asked.axes_as is not None
         if convention is None or self.misfit is None:
             if not said and not self.asked.axes:
-                told = f"joints {', '.join(self.axes.numbers)} are taken to turn as the axes do"
-                yield f"{told}; axes_as: plain in the program says so"
+                text = f"joints {', '.join(self.axes.numbers)} are taken to turn as the axes do"
+                yield f"{text}; axes_as: plain in the program says so"
             return
         if self.misfit and said:
             valid = "axes: {joint: {sign: …, offset: …}} beside it, or another preset"
@@ -115,8 +115,8 @@ class ControlledArm:
             how = "axes in the program says how joints follow, e.g. {joint: {sign: -1}}"
             yield f"{self.misfit}; {how}"
         else:
-            told = f"joints turn as the axes of {convention.robots}"
-            self.notes.append(self.misfit or told)
+            text = f"joints turn as the axes of {convention.robots}"
+            self.notes.append(self.misfit or text)
         rules = {number: self.axes.rules[name] for name, number in self.axes.numbers.items()}
         if convention.doubt and not said and "plus" not in rules[3].model_fields_set:
             yield convention.doubt
@@ -142,8 +142,8 @@ class ControlledArm:
         Raises:
             BadProgram: its flags do not agree.
         """
-        held = {name: [value, value] for name, value in self.axes.held(to).items()}
-        found = self.axes.ranges_of(to) | held
+        external = {name: [value, value] for name, value in self.axes.external_values(to).items()}
+        found = self.axes.ranges_of(to) | external
         if self.wrist is None or to.is_behind is None or to.unit:
             return found
         assert self.root_from_base is not None
@@ -155,8 +155,8 @@ class ControlledArm:
             within = [max(other[0], limits[name][0]), min(other[1], limits[name][1])]
             both = _overlaps(ends, within)
             if not both and name in found and within[0] < within[1]:
-                told = f"{name} at {_shown(ends)}, or whole turns off, and at {_shown(other)}"
-                raise BadProgram(f"the configuration asks for {told}", valid=FLAGS)
+                ranges = f"{name} at {_shown(ends)}, or whole turns off, and at {_shown(other)}"
+                raise BadProgram(f"the configuration asks for {ranges}", valid=FLAGS)
             if len(both) > 1:
                 self._several_turns[f"turns of {name}"] = None
             else:
@@ -198,11 +198,11 @@ class ControlledArm:
         if self.doubt and link != BASE_LINK:
             valid = "where it is, as base: {on: base, xyz: [0, 0, …]}, seen from the robot's root"
             raise MissingKey(self.doubt, where="base", valid=valid)
-        told = f"poses are seen from link {link!r}, taken for the controller's base"
+        text = f"poses are seen from link {link!r}, taken for the controller's base"
         if link == BASE_LINK:
-            self.notes.append(told)
+            self.notes.append(text)
         else:
-            self.assumed = f"{told}; base: {{on: base}} in the program says that it is"
+            self.assumed = f"{text}; base: {{on: base}} in the program says that it is"
         return chain_between(self.robot, root, link).end
 
     def _root_from(self, name: str) -> np.ndarray | None:

@@ -182,9 +182,9 @@ class _Conversion:
             if isinstance(one, ControllerMove):
                 why = self._why_it_stops(before, one, other) if one.zone else ""
                 if why and isinstance(other, ControllerWait) and other.reads_on:
-                    told = "a wait follows a corner zone: the tool is taken to stop"
+                    text = "a wait follows a corner zone: the tool is taken to stop"
                     self.waits.append(
-                        f"{place_of(one)}: {told}, and the controller may cut the corner"
+                        f"{place_of(one)}: {text}, and the controller may cut the corner"
                     )
                 elif why:
                     self.notes.append(f"{place_of(one)}: the tool stops, since {why}")
@@ -288,7 +288,7 @@ class _Conversion:
             "speed": one.speed,
             "acceleration": one.acceleration,
             "turn_speed": one.turn_speed,
-            "hold": self.arm.axes.held(one.to) or None,
+            "hold": self.arm.axes.external_values(one.to) or None,
             "zone": one.zone,
         }
         made = {key: value for key, value in given.items() if value is not None}
@@ -379,8 +379,8 @@ class _Conversion:
             for pose in (one.tool, *ends):
                 away = np.abs(pose[:3, 3]).max()
                 if not away <= FARTHEST:
-                    told = f"a point {away:.3g} m away"
-                    raise BadProgram(told, where=place_of(one), valid=f"{FARTHEST:g} m or less")
+                    text = f"a point {away:.3g} m away"
+                    raise BadProgram(text, where=place_of(one), valid=f"{FARTHEST:g} m or less")
         return found
 
 

@@ -82,8 +82,8 @@ class Effects:
         """A line on each handler of a routine that moves the robot: it is not run."""
         found = dict[str, None]()
         for word, body in routine.handlers:
-            told = f"the {word} handler of {routine.name} does not run: its moves are not measured"
-            found |= {f"{call.line}: {told}": None for call in islice(self.moving(body), 1)}
+            text = f"the {word} handler of {routine.name} does not run: its moves are not measured"
+            found |= {f"{call.line}: {text}": None for call in islice(self.moving(body), 1)}
         return found
 
     def require_still(self, what: str, name: str, line: Line) -> None:
@@ -97,8 +97,8 @@ class Effects:
         else:
             culprit = None if name in self.skip else "it is in no file that is given"
         if culprit is not None:
-            told = f"{what} {name!r} moves the robot, or may: {culprit}"
-            raise BadProgram(told, where=str(line), valid="one that moves nothing")
+            fault = f"{what} {name!r} moves the robot, or may: {culprit}"
+            raise BadProgram(fault, where=str(line), valid="one that moves nothing")
 
     def read_by(self, parts: Iterable[Expression], entered: tuple[str, ...] = ()) -> Iterator[str]:
         """The variables that expressions may read, in routines that they call too."""
@@ -110,11 +110,11 @@ class Effects:
                     own = (expression for one in inner for expression in expressions_of(one))
                     yield from self.read_by(own, (*entered, name))
 
-    def beside(self, what: str, name: str) -> dict[str, Unknown]:
+    def changed_concurrently(self, what: str, name: str) -> dict[str, Unknown]:
         """The variables that a routine which runs beside the program may change at any time."""
         changed = self._changed_by(self.routines[name], (name,)) if name in self.routines else ()
-        told = f"{what} {name!r} may change it at any time"
-        return {one: Unknown(f"{told}: {one!r} at {at}") for one, at in changed}
+        why = f"{what} {name!r} may change it at any time"
+        return {one: Unknown(f"{why}: {one!r} at {at}") for one, at in changed}
 
     def changed_in(
         self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()
@@ -163,8 +163,8 @@ def unknown_word(call: Call, suffix: str, moves: bool | None = None) -> BadProgr
         suffix: of the file that may have it.
     """
     if moves:
-        told = f"{call.name} moves the robot, and has no value"
-        return BadProgram(told, where=str(call.line), valid="the move as a statement of its own")
+        fault = f"{call.name} moves the robot, and has no value"
+        return BadProgram(fault, where=str(call.line), valid="the move as a statement of its own")
     file = f"program: {{beside: [{call.name}{suffix}]}}" if suffix else "a file beside that has it"
     return BadProgram(
         f"{call.name!r} is no known instruction, and may move the robot",
@@ -176,8 +176,8 @@ def unknown_word(call: Call, suffix: str, moves: bool | None = None) -> BadProgr
 def unreadable_word(one: Unreadable) -> BadProgram:
     """The error for a statement that may do anything."""
     if one.jumps:
-        told = f"{one.word!r} is not understood, and decides which lines run"
-        return BadProgram(told, where=str(one.line), valid="a program without it")
+        fault = f"{one.word!r} is not understood, and decides which lines run"
+        return BadProgram(fault, where=str(one.line), valid="a program without it")
     return BadProgram(
         f"{one.word!r} is not understood, and may decide where the robot goes",
         where=str(one.line),
@@ -187,8 +187,8 @@ def unreadable_word(one: Unreadable) -> BadProgram:
 
 def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
     """The error for a loop whose condition only the controller knows."""
-    told, valid = f"{one.word} decides on {culprit}, and", "a condition that the file decides"
+    fault, valid = f"{one.word} decides on {culprit}, and", "a condition that the file decides"
     if culprit is None:
-        told, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
-    told = f"{told} is not known: {value.why}"
-    return BadProgram(told, where=str(one.line), valid=valid)
+        fault, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
+    fault = f"{fault} is not known: {value.why}"
+    return BadProgram(fault, where=str(one.line), valid=valid)

@@ -28,8 +28,8 @@ from clearance.formats.program.expressions import (
     value_of,
     with_passed,
 )
-from clearance.formats.program.kept import Kept
 from clearance.formats.program.language import Language
+from clearance.formats.program.persistent import PersistentValues
 from clearance.formats.program.remarks import LEFT_OUT, Remarks
 from clearance.formats.program.statements import (
     BREAK,
@@ -76,7 +76,7 @@ class Execution(Remarks):
     skip: frozenset[str]
     variables: dict[str, Any] = field(default_factory=dict)
     frames: list[dict[str, Any]] = field(init=False)
-    beside: dict[str, Unknown] = field(default_factory=dict)
+    concurrent: dict[str, Unknown] = field(default_factory=dict)
     moves: list[ControllerMove | ControllerWait] = field(default_factory=list)
     _n_run: int = 0
 
@@ -87,16 +87,16 @@ class Execution(Remarks):
         return Effects(language.moves, language.writes, self.routines, self.skip)
 
     @cached_property
-    def kept(self) -> Kept:
+    def persistent(self) -> PersistentValues:
         """What rests on values that the controller keeps between runs."""
-        return Kept(self.effects, self.frames)
+        return PersistentValues(self.effects, self.frames)
 
     def __post_init__(self) -> None:
         self.frames = [self.variables]
         for name in self.skip:
             if (culprit := self.effects.moving_in(name)) is not None:
-                told = f"{name} moves the robot, or changes how it moves{culprit}"
-                raise BadProgram(told, where="skip", valid="what moves nothing, or no skip")
+                fault = f"{name} moves the robot, or changes how it moves{culprit}"
+                raise BadProgram(fault, where="skip", valid="what moves nothing, or no skip")
 
     def pass_over(self, call: Call) -> None:
         """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
@@ -105,10 +105,10 @@ class Execution(Remarks):
             if any(one.name in self.routines for one in calls_in(part)):
                 self.evaluated(part)
 
-    def run_beside(self, what: str, name: str, line: Line) -> None:
+    def run_concurrently(self, what: str, name: str, line: Line) -> None:
         """Keeps that a routine runs beside the program: it moves nothing, and what it changes is not known."""
         self.effects.require_still(what, name, line)
-        self.beside |= self.effects.beside(what, name)
+        self.concurrent |= self.effects.changed_concurrently(what, name)
 
     def add(self, move: ControllerMove | ControllerWait) -> None:
         """A move that the robot makes.
@@ -132,8 +132,8 @@ class Execution(Remarks):
     def _count(self, line: Line) -> None:
         self._n_run += 1
         if self._n_run > MOST_STATEMENTS:
-            told = f"more than {MOST_STATEMENTS:,} statements are run"
-            raise BadProgram(told, where=str(line), valid="a loop that ends")
+            fault = f"more than {MOST_STATEMENTS:,} statements are run"
+            raise BadProgram(fault, where=str(line), valid="a loop that ends")
 
     def _step(self, one: Statement) -> Leave | None:
         match one:
@@ -161,14 +161,14 @@ class Execution(Remarks):
 
     def value_of(self, name: Name) -> Any:
         """The value of a variable; `Unknown` where no file that is given has it."""
-        for place in (self.beside, self.frames[-1], self.variables):
+        for place in (self.concurrent, self.frames[-1], self.variables):
             if name.name in place:
                 return place[name.name]
         own = self.language.value_of(name.name, self)
         if own is not None:
             return own
-        told = f"{name.name!r} is in no file that is given"
-        return Unknown(told, lambda: self._misspelt(name.name))
+        text = f"{name.name!r} is in no file that is given"
+        return Unknown(text, lambda: self._misspelt(name.name))
 
     def _misspelt(self, name: str) -> str:
         """The variable that is perhaps meant; empty if none is near."""
@@ -203,10 +203,10 @@ class Execution(Remarks):
         name = assigned(one.target)
         if name is None:
             raise BadProgram("no variable is given", where=str(one.line), valid="a variable")
-        value, origin = self.evaluated(one.value), self.kept.origin_of([one.value])
+        value, origin = self.evaluated(one.value), self.persistent.origin_of([one.value])
         is_name = isinstance(one.target, Name)
         place = self.variables if one.is_of_all else self._place(name.name, one.is_own)
-        self.kept.put(name.name, origin, place, not is_name)
+        self.persistent.put(name.name, origin, place, not is_name)
         if is_name:
             place[name.name] = value
             return
@@ -264,27 +264,33 @@ class Execution(Remarks):
             BadInput: other arguments than it has; too many routines in one another.
         """
         if len(self.frames) > MOST_CALLS:
-            told = f"more than {MOST_CALLS} routines call one another"
-            raise BadProgram(told, where=str(call.line), valid="routines that end")
+            fault = f"more than {MOST_CALLS} routines call one another"
+            raise BadProgram(fault, where=str(call.line), valid="routines that end")
         if len(call.args) > len(routine.parameters):
-            told = f"{call.name} is given {counted(len(call.args), 'argument')}"
-            raise BadProgram(told, where=str(call.line), valid=f"{len(routine.parameters)} at most")
+            fault = f"{call.name} is given {counted(len(call.args), 'argument')}"
+            raise BadProgram(
+                fault, where=str(call.line), valid=f"{len(routine.parameters)} at most"
+            )
         self.doubts |= self.effects.doubts_on_handlers(routine)
         in_order = dict(zip(routine.parameters, call.args, strict=False))
         given = {**routine.defaults, **in_order, **call.named}
         frame = {name: self.evaluated(value) for name, value in given.items()}
-        self.kept.origins.append({name: self.kept.origin_of([one]) for name, one in given.items()})
+        self.persistent.origins.append(
+            {name: self.persistent.origin_of([one]) for name, one in given.items()}
+        )
         self.frames.append(frame)
         left = self.run(routine.body)
         value = None
         if left is not None and left.what == RETURN and left.value is not None:
             value = self.evaluated(left.value)
         self.frames.pop()
-        origins = self.kept.origins.pop()
+        origins = self.persistent.origins.pop()
         for name in routine.returned & given.keys():
             if (target := assigned(given[name])) is not None:
                 self._assign(Assign(call.line, given[name], Constant(frame[name])))
-                self.kept.put(target.name, origins.get(name, ""), self._place(target.name), True)
+                self.persistent.put(
+                    target.name, origins.get(name, ""), self._place(target.name), True
+                )
         return value, left if left is not None and left.what == STOP else None
 
     def _branch(self, one: If) -> Leave | None:
@@ -300,14 +306,14 @@ class Execution(Remarks):
     def _way(self, one: If, n_asked: int, body: tuple[Statement, ...]) -> Leave | None:
         """Runs one way of a branch, of which so many conditions were looked at."""
         asked = [condition for condition, _ in one.branches[:n_asked] if condition is not None]
-        origin, left = self.kept.origin_of(asked), self.run(body)
+        origin, left = self.persistent.origin_of(asked), self.run(body)
         self._doubt(one, origin)
         return left
 
     def _doubt(self, one: If | While | For, origin: str) -> None:
         """Keeps what rests on the value that decided a branch or a loop, if the controller keeps it."""
         if origin:
-            self.doubts |= self.kept.doubts_on(one, origin)
+            self.doubts |= self.persistent.doubts_on(one, origin)
 
     def _pass_branches(self, one: If, why: Unknown) -> None:
         """Nothing but that variables are not known any more, where no branch moves the robot.
@@ -318,8 +324,8 @@ class Execution(Remarks):
         bodies = [body for _, body in one.branches]
         culprit = next((found for body in bodies for found in self.effects.deciding(body)), None)
         if culprit is not None:
-            told = f"{one.word} decides on {culprit}, and is not known: {why.why}"
-            raise BadProgram(told, where=str(one.line), valid="a condition that the file decides")
+            fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
+            raise BadProgram(fault, where=str(one.line), valid="a condition that the file decides")
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         self._forget(self.effects.changed_in(bodies))
 
@@ -328,12 +334,12 @@ class Execution(Remarks):
         endless = is_constant(one.condition)
         while (one.at_end and not n_passes) or self._goes_on(one):
             if endless and n_passes and self._state() == before:
-                told = "an endless loop: two passes are measured, each further one is the same"
-                self.note(told, f"{one.word} ({one.line})")
+                text = "an endless loop: two passes are measured, each further one is the same"
+                self.note(text, f"{one.word} ({one.line})")
                 return Leave(one.line, one.word, STOP)
             if endless and n_passes == MOST_PASSES:
-                told = "an endless loop that is never the same"
-                raise BadProgram(told, where=str(one.line), valid="variables that stay the same")
+                text = "an endless loop that is never the same"
+                raise BadProgram(text, where=str(one.line), valid="variables that stay the same")
             before = self._state() if endless and n_passes else None
             self._count(one.line)
             left = self.run(one.body)
@@ -352,7 +358,7 @@ class Execution(Remarks):
         """
         value = value_of(one.condition, self)
         if not isinstance(value, Unknown):
-            self._doubt(one, self.kept.origin_of([one.condition]))
+            self._doubt(one, self.persistent.origin_of([one.condition]))
             return bool(value) != one.at_end
         culprit = next(self.effects.deciding(one.body), None)
         if culprit is not None or one.word not in self.skip:
@@ -372,7 +378,7 @@ class Execution(Remarks):
         if step == 0.0:
             raise BadProgram("a step of 0", where=str(one.line), valid="another")
         name, at = one.name.name, first
-        origin = self.kept.origin_of(filter(None, (one.first, one.last, one.step)))
+        origin = self.persistent.origin_of(filter(None, (one.first, one.last, one.step)))
         place = self.frames[-1] if one.is_own else self._place(name)
         before = {key: place[key] for key in (name,) if key in place}
         left = None

@@ -27,17 +27,17 @@ class Unknown:
     """A value that only the controller knows.
 
     Attributes:
-        told: of what it is. hint: what may be meant, which takes long to find; empty where nothing is near.
+        what: the value that is unknown. hint: what may be meant, slow to find; empty where nothing is near.
     """
 
-    told: str
+    what: str
     hint: Callable[[], str] = field(default=str, compare=False, repr=False)
 
     @property
     def why(self) -> str:
         """Of what it is, with the hint."""
         hint = self.hint()
-        return f"{self.told} ({hint})" if hint else self.told
+        return f"{self.what} ({hint})" if hint else self.what
 
 
 @dataclass(frozen=True)
@@ -185,12 +185,12 @@ def calls_in(one: Expression) -> Iterator[Call]:
 
 def with_passed(call: Call, given: Collection[str]) -> Call:
     """A call without the arguments that it would pass on and the routine, of these arguments, is not given."""
-    kept = {
+    named = {
         key: one
         for key, one in call.named.items()
         if not isinstance(one, Passed) or one.name in given
     }
-    return call if len(kept) == len(call.named) else replace(call, named=kept)
+    return call if len(named) == len(call.named) else replace(call, named=named)
 
 
 def names_in(one: Expression) -> Iterator[str]:

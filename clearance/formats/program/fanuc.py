@@ -65,8 +65,8 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
             one.name: Routine(one.name, Line(1), _ARGUMENTS, one.body) for one in (*others, main)
         }
         if (asked.asked.entry or main.name).upper() != main.name.upper():
-            told = f"there is no program {asked.asked.entry!r}"
-            raise BadProgram(told, where="entry", valid=nearest_name("", [main.name]))
+            fault = f"there is no program {asked.asked.entry!r}"
+            raise BadProgram(fault, where="entry", valid=nearest_name("", [main.name]))
         language = _Fanuc(asked.asked)
         run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
         statements = (one for listing in (*others, main) for one in within(listing.body))
@@ -94,8 +94,8 @@ class _Fanuc:
     def notes(self) -> list[str]:
         """A line each on an assumption."""
         lines = ", ".join([*self.unsaid][:6])
-        told = f"speeds that the file does not give as such are assumed ({lines})"
-        return [told] if lines else []
+        note = f"speeds that the file does not give as such are assumed ({lines})"
+        return [note] if lines else []
 
     @property
     def state(self) -> Any:
@@ -157,11 +157,11 @@ class _Fanuc:
             )
         unread = [word for word in motion.options if not _IDLE.fullmatch(word)]
         if unread:
-            told = f"{unread[0]} is not read, and may move the target or the way"
-            raise BadProgram(told, valid="a motion without it")
+            fault = f"{unread[0]} is not read, and may move the target or the way"
+            raise BadProgram(fault, valid="a motion without it")
         if not kind or len(motion.points) != (2 if kind == "circ" else 1):
-            told = f"{call.name} with {len(motion.points)} points is not read"
-            raise BadProgram(told, valid="J and L with one, C with two")
+            fault = f"{call.name} with {len(motion.points)} points is not read"
+            raise BadProgram(fault, valid="J and L with one, C with two")
         ends = [self._target(name, one, kind, run, call.line) for name, one in motion.points]
         to, tool = ends[-1]
         return ControllerMove(
@@ -185,10 +185,10 @@ class _Fanuc:
             BadProgram: no position, or one of other frames than those in force.
         """
         if one is None:
-            told = (
+            fault = (
                 "a position register" if name.startswith("PR") else "no position of it under /POS"
             )
-            raise BadProgram(f"{name}: {told}", valid="P[…] with a position in the file")
+            raise BadProgram(f"{name}: {fault}", valid="P[…] with a position in the file")
         untaught = [key for key, value in one.values.items() if value is None]
         is_joints = "J1" in one.values
         missing = [key for key in (_JOINTS if is_joints else _POSE) if key not in one.values]
@@ -219,8 +219,8 @@ class _Fanuc:
         current = None if isinstance(chosen, Unknown) else number(chosen, line, f"{kind}_NUM")
         index = taught if current is None else current
         if taught is not None and index != taught and needed:
-            told = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
-            raise BadProgram(told, valid=f"{kind}_NUM={taught} before it")
+            fault = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
+            raise BadProgram(fault, valid=f"{kind}_NUM={taught} before it")
         if index == 0:
             return np.eye(4)
         key, word = f"{kind}[{index or 0:g}]", "frames" if kind == "UFRAME" else "tools"
@@ -234,9 +234,9 @@ class _Fanuc:
             raise BadProgram(
                 f"{name}: no {kind}_NUM is set before", valid=f"{kind}_NUM=1 before it"
             )
-        told = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
+        fault = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
         raise MissingKey(
-            f"{name}: {told}",
+            f"{name}: {fault}",
             valid=f'program: {{{word}: {{"{key}": {{xyz: […], rpy: […]}}}}}} in m and rad',
         )
 

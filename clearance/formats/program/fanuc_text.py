@@ -168,15 +168,15 @@ def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line
     """The text of each instruction without its number, and its line; remarks are left out."""
     parts, line = list[str](), Line(first, file)
     for number, row in enumerate(rows, first):
-        kept = re.sub(r"^\s*\d*\s*:", "", row).strip()
-        if not kept:
+        part = re.sub(r"^\s*\d*\s*:", "", row).strip()
+        if not part:
             continue
         own = re.match(r"\s*(\d+)\s*:", row)
         if parts and own:
             break  # the one before has no end
         line = line if parts else Line(number, file, int(own[1]) if own else 0)
-        parts.append(kept)
-        if kept.endswith(";"):
+        parts.append(part)
+        if part.endswith(";"):
             text = " ".join(parts)[:-1].strip()
             if text and not text.startswith(("!", "//", "--")):
                 yield line, text
@@ -329,8 +329,8 @@ class _Reader:
         speed = _SPEED.fullmatch(found[6])
         end = None if speed is None else _END.match(speed[3])
         if speed is None or end is None:
-            told = f"{found[0]!r:.60} has no speed and end"
-            raise BadSyntax(told, where=str(line), valid="as in L P[1] 100mm/sec FINE")
+            fault = f"{found[0]!r:.60} has no speed and end"
+            raise BadSyntax(fault, where=str(line), valid="as in L P[1] 100mm/sec FINE")
         rest, n_calls = _TIMED.subn("", speed[3][end.end() :])
         options = tuple(rest.upper().replace(",", " ").split())
         unit = (speed[2] or "").lower()

@@ -58,8 +58,8 @@ def require_used(
             except ClearanceError:
                 continue
             if _same(_plain(without), _plain(found)):
-                told = "it changes no move: the program does not use it, or says it itself"
-                raise BadProgram(told, where=f"{key}.{name}", valid=_nearest(name, words))
+                fault = "it changes no move: the program does not use it, or says it itself"
+                raise BadProgram(fault, where=f"{key}.{name}", valid=_nearest(name, words))
 
 
 def _words(request: ProgramRequest) -> Iterator[str]:

@@ -30,7 +30,7 @@ from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, S
 from clearance.formats.program.krl_files import files_of
 from clearance.formats.program.krl_settings import (
     FUNCTIONS,
-    HELD,
+    SAVED,
     Settings,
     first_variables,
     key_of,
@@ -77,7 +77,9 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         run.run(files.declared)
         for one in files.declared:
             if isinstance(one, Assign) and isinstance(one.target, Name):
-                run.kept.put(one.target.name, f"{one.target.name} ({one.line})", run.variables)
+                run.persistent.put(
+                    one.target.name, f"{one.target.name} ({one.line})", run.variables
+                )
         run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
         notes = (*run.notes, *language.notes())
         bodies = [routine.body for routine in files.routines.values()]
@@ -117,8 +119,8 @@ class _Krl:
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""
-        told = "automatic operation is assumed: $T1 and $T2 are FALSE"
-        found = [told] if self.is_automatic else []
+        note = "automatic operation is assumed: $T1 and $T2 are FALSE"
+        found = [note] if self.is_automatic else []
         if self.unsaid:
             lines = ", ".join([*self.unsaid][:6])
             found.append(f"$VEL.CP is not in the files: a speed is assumed ({lines})")
@@ -193,7 +195,7 @@ class _Krl:
             elif call.args:  # an interrupt or a trigger, and what it calls
                 (called,) = (str(run.evaluated(one)) for one in call.args)
                 if called != SYSTEM:
-                    run.run_beside(call.name, called, call.line)
+                    run.run_concurrently(call.name, called, call.line)
                 run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
             else:
                 run.pass_over(call)
@@ -204,11 +206,11 @@ class _Krl:
         first = call.args[0]
         if isinstance(first, Name) and first.name in STANDS and len(call.args) == 1:
             return
-        kept = {name: run.variables[name] for name in HELD}
+        saved = {name: run.variables[name] for name in SAVED}
         settings = Settings(run, call.line)
-        for name, held in call.named.items():
+        for name, word_value in call.named.items():
             if name.startswith("WITH"):
-                settings.hold(*held.value)  # type: ignore[union-attr]
+                settings.assign(*word_value.value)  # type: ignore[union-attr]
         kind = MOVES[call.name]
         targets = [_aggregate(run.evaluated(one)) for one in call.args]
         if len(targets) != (2 if kind == "circ" else 1) or call.name.endswith("CIRC_REL"):
@@ -228,7 +230,7 @@ class _Krl:
         move = self._made(call, kind, to, via, settings)
         run.add(move)
         self._reached(move, settings)
-        run.variables.update(kept)
+        run.variables.update(saved)
 
     def _made(
         self, call: Call, kind: str, to: Target, via: Target | None, settings: Settings
@@ -317,8 +319,8 @@ class _Krl:
         if not turns:
             placed[:3, :3] = pose[:3, :3]
         elif len(turns) < 3 and abs(pose[2, 0]) > GIMBAL:
-            told = f"only {', '.join(turns)} of the angles is given, where B is 90 degrees and the others are any"
-            raise BadProgram(told, valid="A, B and C, or none of them")
+            fault = f"only {', '.join(turns)} of the angles is given, where B is 90 degrees and the others are any"
+            raise BadProgram(fault, valid="A, B and C, or none of them")
         return placed
 
     def _reached(self, move: ControllerMove, settings: Settings) -> None:
@@ -351,8 +353,8 @@ def _configuration(given: Aggregate, settings: Settings) -> dict[str, Any]:
     if status is not None:
         is_below, is_behind = bool(status & 4), bool(status & 1)
         if signs.setdefault(5, is_below) != is_below:
-            told = f"S {status} and T {turn} do not agree on the sign of A5: that of T is taken"
-            settings.run.doubts[f"{settings.line}: {told}"] = None
+            text = f"S {status} and T {turn} do not agree on the sign of A5: that of T is taken"
+            settings.run.doubts[f"{settings.line}: {text}"] = None
         found = {"is_behind": is_behind, "is_back": None if is_behind else not status & 2}
         if is_behind:
             found["unchecked"] = f"bit 1 of S {status}"

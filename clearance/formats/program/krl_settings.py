@@ -49,7 +49,7 @@ FIRST: Mapping[str, Any] = {
 }
 """Variables that every program has."""
 
-HELD = (
+SAVED = (
     "$VEL",
     "$VEL_AXIS",
     "$ACC",
@@ -94,7 +94,7 @@ class Settings:
             whole = self.run.variables.get(name)
             self.run.variables[name] = {**(whole if isinstance(whole, Mapping) else {}), by: value}
 
-    def hold(self, target: Expression, value: Expression) -> None:
+    def assign(self, target: Expression, value: Expression) -> None:
         """Sets what `WITH` says of a move."""
         parts = []
         while not isinstance(target, Name):
@@ -102,7 +102,7 @@ class Settings:
             target = target.of  # type: ignore[union-attr]
         if target.name == "$VEL_AXIS":
             self.share(self.run.evaluated(value))
-        elif target.name in HELD:
+        elif target.name in SAVED:
             self.set(target.name, self.run.evaluated(value), *(key_of(part) for part in parts))
 
     def share(self, value: Any) -> None:
@@ -151,8 +151,8 @@ class Settings:
         if is_number(machine) and machine > 0:
             kind = _part(self.part("MACHINE_DEF", int(machine)), "MECH_TYPE")
             if kind != "#ROBOT":
-                told = f"base {index} is on machine {machine} , which may move it"
-                raise BadProgram(told, valid="a base that stands")
+                fault = f"base {index} is on machine {machine} , which may move it"
+                raise BadProgram(fault, valid="a base that stands")
         return self.numbered("BASE_DATA", index, "$WORLD")
 
     def bas(self, command: Any, value: Any) -> None:
@@ -264,9 +264,9 @@ class Settings:
         word = "C_DIS" if by_length else words[0]
         if word in zones:
             return zones[word]
-        told = "$APO.CDIS, its length, is not in the files" if by_length else "is no length"
+        lacks = "$APO.CDIS, its length, is not in the files" if by_length else "is no length"
         raise MissingKey(
-            f"{word}: {told}",
+            f"{word}: {lacks}",
             valid=f"program: {{zones: {{{word}: 0.05}}}}, the radius of such corners [m]",
         )
 

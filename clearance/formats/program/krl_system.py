@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadProgram, MissingKey
-from clearance.formats.program.krl_settings import FIRST, HELD, Settings
+from clearance.formats.program.krl_settings import FIRST, SAVED, Settings
 from clearance.formats.program.krl_values import MM, frame_of, matrix_of
 from clearance.formats.program.statements import Assign, Statement, assigned, within
 from clearance.formats.schema.program_file import ProgramFile
@@ -42,8 +42,8 @@ def require_followed(settings: Settings) -> None:
     """
     mode = settings.value("$IPO_MODE")
     if mode != "#BASE":
-        told = f"$IPO_MODE is {mode}: the tool may stand, and the robot bring the part"
-        raise BadProgram(told, valid="$IPO_MODE = #BASE")
+        fault = f"$IPO_MODE is {mode}: the tool may stand, and the robot bring the part"
+        raise BadProgram(fault, valid="$IPO_MODE = #BASE")
     if not np.array_equal(_frame(settings, "$WORLD"), _NULL):
         raise BadProgram("$WORLD is set", valid="$WORLD as it is, and $ROBROOT")
     functions = settings.value("$TECH")
@@ -51,8 +51,8 @@ def require_followed(settings: Settings) -> None:
         raise BadProgram(f"$TECH is not known: {functions}", valid="$TECH[…].MODE = #OFF")
     for number, one in functions.items():
         if not isinstance(one, Mapping) or one.get("MODE", "#OFF") != "#OFF":
-            told = f"$TECH[{number}] is on: it moves the tool beside its path, which is not read"
-            raise BadProgram(told, valid=f"$TECH[{number}].MODE = #OFF")
+            fault = f"$TECH[{number}] is on: it moves the tool beside its path, which is not read"
+            raise BadProgram(fault, valid=f"$TECH[{number}].MODE = #OFF")
 
 
 def _frame(settings: Settings, name: str) -> np.ndarray:
@@ -87,15 +87,15 @@ class RobotRoot:
         """
         if self.pose is None or np.array_equal(self.pose, _NULL):
             return
-        told = "$ROBROOT is not null: poses are seen from $WORLD, and not from the robot's foot"
+        text = "$ROBROOT is not null: poses are seen from $WORLD, and not from the robot's foot"
         if asked.base is None:
             x, y, z, a, b, c = frame_of(inverse(self.pose)).values()
             xyz = ", ".join(f"{one * MM + 0.0:.6g}" for one in (x, y, z))
             rpy = ", ".join(f"{math.radians(one) + 0.0:.6g}" for one in (c, b, a))
             world = f"base: {{on: base, xyz: [{xyz}], rpy: [{rpy}]}}"
             valid = f"where $WORLD is, as {world} where the robot's root is its foot"
-            raise MissingKey(told, where="base", valid=valid)
-        yield f"{told}; base in the program is taken for $WORLD"
+            raise MissingKey(text, where="base", valid=valid)
+        yield f"{text}; base in the program is taken for $WORLD"
 
 
 def not_followed(bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
@@ -111,4 +111,4 @@ def not_followed(bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
         yield f"system variables that are set, and not followed: {listed(unread, 6)}"
 
 
-KNOWN = QUIET | {*FIRST, *HELD}
+KNOWN = QUIET | {*FIRST, *SAVED}

@@ -34,8 +34,8 @@ def matrix_of(frame: Aggregate, shown: str) -> np.ndarray:
     for key in FRAME:
         value = frame.get(key, Unknown("it is not given"))
         if not is_number(value):
-            told = f"{key} of {shown} is not known: {why(value)}"
-            raise BadSyntax(told, valid="X, Y, Z, A, B and C as numbers")
+            fault = f"{key} of {shown} is not known: {why(value)}"
+            raise BadSyntax(fault, valid="X, Y, Z, A, B and C as numbers")
     x, y, z, a, b, c = (float(frame[key]) for key in FRAME)
     return pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(one) for one in (c, b, a)])
 

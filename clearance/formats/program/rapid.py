@@ -73,8 +73,8 @@ def _replaced(modules: Modules, given: ProgramFile) -> Iterator[str]:
         for name in poses:
             own = modules.declared.get(name.lower())
             if own is not None:
-                told = f"replaces {own.name} at {own.line}, which the file gives"
-                yield f"{key}.{name} of the case {told}"
+                text = f"replaces {own.name} at {own.line}, which the file gives"
+                yield f"{key}.{name} of the case {text}"
 
 
 def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:
@@ -105,8 +105,8 @@ def _entry(modules: Modules, asked: str | None) -> str:
         return "main" if "main" in names else names[0]
     if not names:
         raise BadProgram("no procedure that runs by itself is in it", valid="PROC main()")
-    told = f"there is no procedure main, but {', '.join(map(str, names))}"
-    raise MissingKey(told, where="entry", valid="the procedure that runs")
+    fault = f"there is no procedure main, but {', '.join(map(str, names))}"
+    raise MissingKey(fault, where="entry", valid="the procedure that runs")
 
 
 def _with_zones(

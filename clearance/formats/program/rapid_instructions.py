@@ -101,7 +101,7 @@ class Rapid:
         """Says which data of modules keep their values between runs, unless the case says them."""
         for name, one in self.modules.declared.items():
             if one.kind == "PERS" and name not in self.known_data:
-                run.kept.put(name, f"{name} ({one.line})", run.variables)
+                run.persistent.put(name, f"{name} ({one.line})", run.variables)
 
     def moves(self, name: str) -> bool | None:
         """Whether an instruction decides where the robot goes; None for one that is not known."""
@@ -180,11 +180,11 @@ class Rapid:
         elif name in ("SingArea", "CirPathMode") and {*call.named} <= {"off", "pathframe"}:
             run.pass_over(call)
         elif name in OTHER_MOVES:
-            told = f"{name} changes where the robot goes, in a way that is not read"
+            fault = f"{name} changes where the robot goes, in a way that is not read"
             is_turned = name == "SingArea"
             off = "SingArea\\Off, so that the tool keeps its orientation"
             raise BadProgram(
-                told, where=str(call.line), valid=off if is_turned else "a program without it"
+                fault, where=str(call.line), valid=off if is_turned else "a program without it"
             )
         else:
             self._set(call, run)
@@ -207,7 +207,7 @@ class Rapid:
 
     def _connect(self, call: Call, run: Execution) -> None:
         trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
-        run.run_beside("trap", trap, call.line)
+        run.run_concurrently("trap", trap, call.line)
         run.note("traps that move nothing", f"{trap} ({call.line})")
 
     def result_of(self, call: Call, run: Execution) -> Any:
@@ -303,11 +303,11 @@ def _require_plain(call: Call, rule: MoveRule) -> None:
     """
     for name in ("corr", "track", "weave", "sync"):
         if name in call.named:
-            told = f"\\{name} changes the way"
-            raise BadProgram(told, where=str(call.line), valid="no such argument")
+            fault = f"\\{name} changes the way"
+            raise BadProgram(fault, where=str(call.line), valid="no such argument")
     if len(call.args) <= rule.tool:
-        told = f"{call.name} has {len(call.args)} of its arguments"
-        raise BadProgram(told, where=str(call.line), valid="target, speed, zone and tool")
+        fault = f"{call.name} has {len(call.args)} of its arguments"
+        raise BadProgram(fault, where=str(call.line), valid="target, speed, zone and tool")
 
 
 @contextmanager

@@ -129,6 +129,6 @@ class Cursor:
         Raises:
             BadSyntax: something else than what is wanted is next.
         """
-        told = {END: "the file ends", NEWLINE: "the line ends"}
-        found = told.get(self.next.kind, f"{self.next.text!r:.60} is given")
+        ends = {END: "the file ends", NEWLINE: "the line ends"}
+        found = ends.get(self.next.kind, f"{self.next.text!r:.60} is given")
         raise BadSyntax(found, where=str(self.next.line), valid=f"{wanted} is needed")

@@ -89,18 +89,18 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
     """
     with at(asked.shown):
         script = script_of(text_of(asked.data))
-        data_beside = list[Statement]()
+        data_of_others = list[Statement]()
         for file, data in asked.beside.items():
-            beside = script_of(text_of(data, file), file)
-            for name in beside.routines.keys() & script.routines.keys():
+            another = script_of(text_of(data, file), file)
+            for name in another.routines.keys() & script.routines.keys():
                 raise DuplicateName(f"{name!r} is defined twice", where=file)
-            script.routines |= beside.routines
-            data_beside += beside.body
+            script.routines |= another.routines
+            data_of_others += another.body
         tool = asked.asked.tools.get(TCP)
         language = _UrScript(None if tool is None else tool.matrix())
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
         entry = _entry(script, asked.asked.entry)
-        run.run(_outside(data_beside, run.routines))
+        run.run(_outside(data_of_others, run.routines))
         run.run(script.body if entry is None else _outside(script.body, run.routines))
         if entry is not None:
             run.run(script.routines[entry].body)
@@ -127,8 +127,8 @@ def _entry(script: UrScript, asked: str | None) -> str | None:
     if script.body or not outer:
         return None
     if len(outer) > 1:
-        told = f"functions {', '.join(outer)} are there, and nothing calls one"
-        raise MissingKey(told, where="entry", valid="the one that is the program")
+        fault = f"functions {', '.join(outer)} are there, and nothing calls one"
+        raise MissingKey(fault, where="entry", valid="the one that is the program")
     return outer[0]
 
 
@@ -195,7 +195,7 @@ class _UrScript:
             self.tool, self.last = _placed(pose, call.line), None
         elif call.name == "run":
             name = call.args[0].value if isinstance(call.args[0], Constant) else ""
-            run.run_beside("thread", name, call.line)
+            run.run_concurrently("thread", name, call.line)
             run.note("threads that move nothing", f"{name} ({call.line})")
         elif self.moves(call.name):
             raise BadProgram(
@@ -233,13 +233,13 @@ class _UrScript:
     def _move(self, call: Call, run: Execution) -> None:
         given = _arguments(call, run)
         values = {name: run.evaluated(one) for name, one in given.items()}
-        told = {
+        options = {
             name: number(value, call.line, name)
             for name, value in values.items()
             if name in ("a", "v", "t", "r", "mode")
         }
         acceleration, speed = (
-            told.get(name, usual)
+            options.get(name, usual)
             for name, usual in zip(("a", "v"), _DEFAULTS[call.name], strict=True)
         )
         for name, value in {"a": acceleration, "v": speed}.items():
@@ -249,7 +249,7 @@ class _UrScript:
             run.note(
                 "r of movep is taken for the distance of its arc from the corner", f"{call.line}"
             )
-        if told.get("t", 0.0) > 0.0:
+        if options.get("t", 0.0) > 0.0:
             run.note("times of moves (t) are not followed, but speeds", f"{call.line}")
         ends = [key for key in _TARGETS if key in given]
         if len(ends) != (2 if call.name == "movec" else 1):
@@ -262,11 +262,11 @@ class _UrScript:
             targets[-1],
             self._tool(call.line, is_joints and isinstance(targets[-1], AxisTarget)),
             targets[0] if len(ends) == 2 else None,
-            "tangent" if told.get("mode") == 1.0 else "to",
+            "tangent" if options.get("mode") == 1.0 else "to",
             speed=None if is_joints else speed,
             acceleration=None if is_joints else acceleration,
             axis_speed=speed if is_joints else None,
-            zone=told.get("r", 0.0),
+            zone=options.get("r", 0.0),
             file=call.line.file,
         )
         run.add(move)
@@ -309,8 +309,8 @@ def _arguments(call: Call, run: Execution) -> dict[str, Expression]:
     """
     names = _PARAMETERS[call.name]
     if len(call.args) > len(names):
-        told = f"{call.name} is given {len(call.args)} arguments"
-        raise BadProgram(told, where=str(call.line), valid=f"at most {len(names)}")
+        fault = f"{call.name} is given {len(call.args)} arguments"
+        raise BadProgram(fault, where=str(call.line), valid=f"at most {len(names)}")
     for name in call.named:
         if name not in names:
             valid = nearest_name(name, names)

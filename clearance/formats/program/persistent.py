@@ -1,4 +1,4 @@
-"""Values that a controller keeps between runs (RAPID's PERS, KRL's data lists): what rests on them.
+"""Values that a controller keeps between runs (PERS of RAPID, data lists of KRL), and what rests on them.
 
 Not for: running a program (`execution`).
 """
@@ -15,7 +15,7 @@ from clearance.formats.program.statements import For, If, While
 
 
 @dataclass(eq=False)
-class Kept:
+class PersistentValues:
     """Which variables of a run rest on kept values.
 
     Attributes:
@@ -51,6 +51,6 @@ class Kept:
         for name, _ in self.effects.changed_in(bodies):
             self.origins[-1 if name in self.frames[-1] else 0][name] = origin
         other = "the way not taken is" if isinstance(one, If) else "other numbers of passes are"
-        told = f"{one.line}: {other} not measured; {origin} decides"
+        text = f"{one.line}: {other} not measured; {origin} decides"
         moves = any(True for body in bodies for _ in self.effects.deciding(body))
-        return {f"{told}, which the controller keeps between runs": None} if moves else {}
+        return {f"{text}, which the controller keeps between runs": None} if moves else {}
