@@ -100,20 +100,6 @@ def test_a_command_refuses_first_what_a_missing_library_could_not_do(
     )
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    return cl.check(CASE).save(tmp_path_factory.mktemp("report"))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("library", extras.LIBRARIES["view"])
-def test_view_says_which_extra_it_needs(hidden, report, capsys, library):
-    hidden(library)
-    assert run(["view", str(report)]) == ExitCode.BAD_INPUT
-    line = f"the live view needs {library}, which is not installed; pip install 'clearance[view]'"
-    assert capsys.readouterr().err == f"error: {line} [CL702]\n"
-
-
 def refused_by(function, *arguments) -> str:
     with pytest.raises(cl.ClearanceError) as caught:
         function(*arguments)

@@ -89,13 +89,6 @@ def test_without_the_extra_it_is_checked_and_one_line_says_what_a_report_needs(
     assert list(folder.iterdir()) == []
 
 
-def test_a_report_that_is_asked_for_needs_the_extra(folder, capsys, monkeypatch):
-    without_reports(monkeypatch)
-    code, out, err = demo(capsys, "--out", "there")
-    assert (code, out) == (2, "") and err.count("\n") == 1 and "--out needs meshcat" in err
-    assert list(folder.iterdir()) == []
-
-
 def test_the_scenes_are_listed(folder, capsys):
     code, out, err = demo(capsys, "--list")
     assert (code, err) == (0, "") and [line.split()[0] for line in out.splitlines()] == [*SCENES]
