@@ -228,6 +228,26 @@ def test_no_path_through_a_corner_takes_a_link_farther_than_is_proven_while_the_
     assert zone.links[one.link].way < 0.05 and zone.links["plate"].turn > 1e-3
 
 
+def test_a_plate_goes_on_turning_through_zones_beside_joint_moves():
+    one, to = arm("heron6"), (-0.4, 0.15, 0.45, 0.1, 1.1, 0.2)
+    joints = dict(zip((joint.name for joint in one.joints), to, strict=True)) | {"turn": 0.8}
+    end = np.linalg.inv(plate_at(0.8).astype(float)) @ one.poses(np.array([to]))[0]
+    end[:3, 3] += (0.0, 0.05, 0.02)
+    moves = [
+        line(on_plate((0.05, -0.02, 0.02)), zone=0.004, hold={"turn": 0.5}),
+        JointMove("PTP", "moves[1]", joints=joints, zone=0.005),
+        line(end, hold={"turn": 0.7}),
+    ]
+    found = motion(moves)
+    made = found.trajectory
+    own, angles = columns(found, made.positions[-1:])
+    assert np.abs(one.poses(own)[0] - plate_at(0.7) @ end).max() < 1e-9 and angles[0] == 0.7
+    assert len(made.corners) == 2 and not made.unproven
+    times = np.linspace(0.0, made.times[-1], 2001)
+    rates = np.diff(positions_along(made, times), axis=0) / np.diff(times)[:, None]
+    assert np.abs(np.diff(rates, axis=0)).max() < 0.02  # at once it would be some 0.5 rad/s
+
+
 def links_of(joints: np.ndarray, angle: float) -> dict[str, np.ndarray]:
     """(4, 4) the poses of all links, in long double."""
     found = {"plate": plate_at(angle)}
