@@ -323,6 +323,8 @@ def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():
     case = cl.Case("roof", (cl.PlacedRobot(robot, path),), (roof,), cl.Limits(fail=0.05002))
     found = gain(case, "waypoints", keep_ends=False)
     assert found.kept and found.size == pytest.approx(2.0 * 0.01, rel=0.05)
+    told = dict(lines_of(gain(case, "waypoints")))["not kept"]
+    assert told.endswith("while the ends of the path are kept (--free-ends frees them)")
 
 
 def test_a_pair_that_nothing_moves_may_be_at_its_limit_but_for_rounding():
