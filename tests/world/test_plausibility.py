@@ -9,6 +9,7 @@ from clearance import box, check
 from clearance.errors import BadDimension, BadInput, UnknownJoint
 from clearance.formats.plausibility import angle_notices
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.report.topics.worst import lines
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.mimics import followers
@@ -317,3 +318,19 @@ def test_a_turn_that_follows_out_of_the_world_is_refused():
     )
     with pytest.raises(BadDimension, match=r"joint 'j1' stands 1e\+160 rad beyond"):
         check(case)
+
+
+def test_a_pair_that_never_moves_does_not_hide_how_near_the_motion_comes():
+    """The base stands 2 mm above a table; the upper arm, half a metre above it, turns by 0.5 rad."""
+    case = case_of()
+    assert check(case_of(pose=at(0.6, 0.0, 0.5))).summary["nearest_moving"] is None
+    table = Obstacle(Body("table", box((1.0, 1.0, 0.1))), at(0.0, 0.0, -0.202))
+    run = check(replace(case, obstacles=(*case.obstacles, table)))
+    assert run.worst["clearance"] == pytest.approx(0.002) and run.worst["link"] == "base"
+    nearest = run.summary["nearest_moving"]
+    assert (
+        nearest == "448.4 mm, upper - table at 1.000 s, step 1"
+    )  # 0.5 + 0.152 - 0.15 (cos 0.5 + sin 0.5)
+    assert ("moving", f"base and table never move; nearest of what moves: {nearest}") in lines(
+        run.report
+    )

@@ -41,8 +41,23 @@ def data(model: ReportModel) -> dict[str, Any]:
         "worst": _worst(record, verdict.worst),
         "worst_sample": _worst(record, verdict.worst_sample),
         "nearest": moment_row(record, record.nearest),
+        "nearest_moving": _nearest_moving(model),
         "sensitivity": sensitivity_data(model.sensitivity),
     }
+
+
+def _nearest_moving(model: ReportModel) -> str | None:
+    """The nearest pair of which a body moves, where the most critical one is of two that stand all the time."""
+    record, worst, standing = model.record, model.verdict.worst, model.session.standing_bodies
+    if not {worst.link, worst.obstacle} <= standing:
+        return None
+    for pair in model.session.motion_minima():
+        if not {pair.link, pair.obstacle} <= standing:
+            where = f"between the steps {pair.step} and {pair.step + 1}"
+            where = where if pair.between else f"step {pair.step}"
+            at = seconds(pair.time, record.moves.at(pair.time))
+            return f"{mm(pair.clearance)} mm, {pair.link} - {pair.obstacle} at {at}, {where}"
+    return None
 
 
 def _worst(record: Record, worst: Moment) -> dict[str, Any]:
@@ -84,6 +99,11 @@ def lines(model: ReportModel) -> Iterator[Line]:
     of_steps = f"of {count(record.rows.n_rows, 'step')}"
     at = f"{seconds(worst.time, record.moves.at(worst.time))}{other_time(worst.obstacle, worst.time_b)}"
     yield "worst", f"{where} {of_steps}, {at}: {worst.link} - {worst.obstacle}"
+    if moving := _nearest_moving(model):
+        yield (
+            "moving",
+            f"{worst.link} and {worst.obstacle} never move; nearest of what moves: {moving}",
+        )
     yield "points", f"{a} {_point(worst.point_link)}, {b} {_point(worst.point_obstacle)} m"
 
 
@@ -127,6 +147,7 @@ def sections(content: PageContent) -> Iterator[Section]:
             Paragraph([first, moment_link(worst, when_of(worst)), "."]),
             *_nearest(summary),
             *_worst_sample(summary),
+            *_moving(summary),
             *([joints] if joints.rows else []),
             Table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
             *sensitivity_blocks(summary["sensitivity"], several_robots=several),
@@ -152,6 +173,12 @@ def _worst_sample(summary: dict[str, Any]) -> list[Paragraph]:
     least = "least" if len(summary["rules"]) == 1 else "worst"
     text = f"At the steps the {least} is {mm(sample['clearance'])} mm between {sample['link']} and "
     return [Paragraph([text, f"{sample['obstacle']}, ", step_link(sample["step"]), "."])]
+
+
+def _moving(summary: dict[str, Any]) -> list[Paragraph]:
+    """The nearest pair that moves, where these two never do."""
+    text = summary["nearest_moving"]
+    return [Paragraph(f"These two never move. Nearest of what moves: {text}.")] if text else []
 
 
 def _joint_row(joint: dict[str, Any], several: bool) -> JointRow:
