@@ -5,7 +5,6 @@ Not for: what may be asked (`question`), and the record that is made of it (`mad
 
 from __future__ import annotations
 
-import operator
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -89,33 +88,26 @@ def section_answers(plan: MeasurementPlan, resources: Resources) -> list[Section
     return _with_least_proven(answers, parts)
 
 
-ROUNDS = 4
-"""Proofs of the least clearance: each may see a lesser one, of which the next proves more."""
-
-
 def _with_least_proven(
-    answers: list[SectionAnswer], parts: Sequence[Resources]
+    answers: Sequence[SectionAnswer], parts: Sequence[Resources]
 ) -> list[SectionAnswer]:
     """The answers, in which the least clearance of each rule is proven to within `LEAST_GAP`."""
-    for _ in range(ROUNDS):
-        least, before = _least_by_rule(answers), answers
-        answers = [
-            _sharpened(one, least[one.section.rule], own)
-            for one, own in zip(answers, parts, strict=True)
-        ]
-        if all(map(operator.is_, before, answers)):
-            break
-    return answers
-
-
-def _least_by_rule(answers: Sequence[SectionAnswer]) -> dict[int, float]:
-    """[m] the least clearance that occurs, by rule."""
     least: dict[int, float] = defaultdict(lambda: np.inf)
     for one in answers:
-        if one.certificate is not None:
-            own = float(one.certificate.upper_bound.min()) - one.section.padding
-            least[one.section.rule] = min(own, least[one.section.rule])
-    return least
+        least[one.section.rule] = min(least[one.section.rule], _least_of(one, "upper_bound"))
+    sharpened = list(answers)
+    for i in np.argsort([_least_of(one, "lower_bound") for one in answers], kind="stable").tolist():
+        rule = answers[i].section.rule
+        sharpened[i] = _sharpened(answers[i], least[rule], parts[i])
+        least[rule] = min(least[rule], _least_of(sharpened[i], "upper_bound"))
+    return sharpened
+
+
+def _least_of(one: SectionAnswer, bound: str) -> float:
+    """[m] the least clearance of a section that is proven, or that occurs."""
+    if one.certificate is None:
+        return np.inf
+    return float(getattr(one.certificate, bound).min()) - one.section.padding
 
 
 def _sharpened(one: SectionAnswer, least: float, own: Resources) -> SectionAnswer:

@@ -6,7 +6,7 @@ Not for: the clearance at the steps (`measure`), which it starts from.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -90,19 +90,16 @@ def with_least_proven(
     resources: Resources = DEFAULT_RESOURCES,
 ) -> ProvenMotion:
     """The same proof, finer where it is more than `LEAST_GAP` below the least clearance [m] of the run."""
-    work = _Work(what, _Question.of(found, what.limits, "steps", proven.gap))
-    refinement = work.refinement(proven.gap)
-    target = least - max(LEAST_GAP, refinement.finest)
     before = IntervalBounds(proven.lower_bound, proven.upper_bound, proven.share, proven.pair)
-    steps = np.flatnonzero((before.lower[:-1] < target) & (before.upper[:-1] >= target))
-    if target <= what.limits.rounding or len(steps) == 0:
+    steps = np.flatnonzero(before.lower[:-1] < least - LEAST_GAP)
+    if least <= what.limits.rounding or len(steps) == 0:
         return proven
-    own = IntervalBounds(*(np.append(column[steps], column[-1:]) for column in before))
-    refinement = replace(refinement, prove=lambda i, *asked: work.prove(int(steps[i]), *asked))
-    counts = refinement.raise_to(own, target)
+    own = IntervalBounds(*(column[steps] for column in before))
+    work = _Work(what, _Question.of(found, what.limits, "steps", proven.gap))
+    counts = work.refinement(proven.gap).raise_to(own, steps, least)
     after = IntervalBounds(*map(partial(_copied, resources), before._fields, before))
     for column, finer in zip(after, own, strict=True):
-        column[steps] = finer[:-1]
+        column[steps] = finer
     tally = np.array([proven.tally[name] for name in COUNTERS]) + counts
     return _proven(what, found, after, proven.gap, tally, proven.notices)
 
@@ -253,12 +250,11 @@ class _Work:
     def prove(
         self, step: int, asked: np.ndarray, aim: CertificateGoal
     ) -> tuple[IntervalBounds, np.ndarray]:
-        """Proves the interval after a step again, asked about (2,) [m] at its ends."""
-        path = path_of(
-            self.what.layout.world.links, self.what.case, self.what.motions, slice(step, step + 2)
-        )
-        first = np.maximum(self.question.found.pair[step : step + 1], 0)
-        layout, steps = self.what.layout, CertifiedSteps(0, 1, first, asked)
+        """Proves the intervals after a step again, asked about (k + 1,) [m] at their ends."""
+        ends = slice(step, step + len(asked))
+        path = path_of(self.what.layout.world.links, self.what.case, self.what.motions, ends)
+        order = np.maximum(self.question.found.pair[ends][:-1], 0)
+        layout, steps = self.what.layout, CertifiedSteps(0, len(order), order, asked)
         return prove_path(layout.whole_faces, layout.world, path, steps, aim)
 
 

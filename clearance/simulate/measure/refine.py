@@ -31,11 +31,15 @@ a quarter of the searches estimated from that was measured."""
 LEAST_GAP = 1e-6
 """[m] How far the proof of the least clearance may lie below one that occurs."""
 
-LEAST_PARTS, LEAST_QUERIES = 2**9, 2**11
-"""The same two limits for that: some milliseconds. A motion that stays at its least distance may use them up."""
+LEAST_QUERIES = 2**11
+"""Most searches for that, and most parts of one interval and pair: some milliseconds. A motion that stays at its
+least distance may use them up."""
+
+LEAST_RUN = 32
+"""Most neighbouring intervals that are proven at once for that: what is far is asked about once."""
 
 Prove = Callable[[int, np.ndarray, CertificateGoal], tuple[IntervalBounds, np.ndarray]]
-"""Proves an interval, given the distance (2,) [m] that is asked about at its ends; bounds of it, and counters."""
+"""Proves intervals from a step on, asked about distances (k + 1,) [m] at their ends: bounds, and counters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +47,7 @@ class Refinement:
     """Proves intervals again for some levels.
 
     Attributes:
-        prove: an interval. gap, finest: [m] what was allowed, and the least that rounding allows.
+        prove: neighbouring intervals. gap, finest: [m] what was allowed, and the least that rounding allows.
         rounding: [m] a distance that is less than a level by no more is at it.
     """
 
@@ -66,44 +70,65 @@ class Refinement:
             if ((bounds.lower < target) & (bounds.upper >= target)).any():
                 if not bounds.lower.flags.owndata:
                     bounds = IntervalBounds(*(np.array(column) for column in bounds))
-                counts += self._decide(bounds, target, MOST_PARTS, MOST_QUERIES)
+                counts += self._decide(bounds, target)
         return bounds, counts
 
-    def raise_to(self, bounds: IntervalBounds, target: float) -> np.ndarray:
-        """Makes bounds finer where they are below a target [m] just below the least clearance; counters."""
-        return self._decide(bounds, target, LEAST_PARTS, LEAST_QUERIES)
+    def raise_to(self, bounds: IntervalBounds, steps: np.ndarray, least: float) -> np.ndarray:
+        """Makes bounds finer where they are more than `LEAST_GAP` below the least clearance; counters.
 
-    def _decide(
-        self,
-        bounds: IntervalBounds,
-        target: float,
-        most_parts: int,
-        most_queries: int,
-    ) -> np.ndarray:
+        Args:
+            bounds: of the intervals after steps (k,). least: [m] seen so far; what is seen below it counts.
+        """
+        counts, gap = np.zeros(4, dtype=np.int64), max(LEAST_GAP, self.finest)
+        aim = CertificateGoal(gap, 0.0, LEAST_QUERIES)
+        for places in _runs(bounds.lower, steps):
+            is_open = places[bounds.lower[places] < least - gap]
+            if counts[1] > LEAST_QUERIES or least <= self.rounding:
+                break
+            if len(is_open):
+                run = slice(int(is_open[0]), int(is_open[-1]) + 1)
+                asked = np.full(run.stop - run.start + 1, least)
+                counts += self._again(bounds, run, int(steps[run.start]), asked, aim)
+                least = min(least, float(bounds.upper[run].min()))
+        return counts
+
+    def _decide(self, bounds: IntervalBounds, target: float) -> np.ndarray:
         """Proves again, into `bounds`, the intervals not proven to have a clearance of `target` [m]; counters."""
         counts, gap = np.zeros(4, dtype=np.int64), self.gap
         expected = np.zeros(len(bounds.lower) - 1)  # searches until an interval is decided
         while True:
-            aim = CertificateGoal(gap, target, most_parts)
+            aim = CertificateGoal(gap, target, MOST_PARTS)
             finer = max(gap * FINER, self.finest)
             last = finer if target <= self.rounding else self.finest  # contact may still be seen
             at_level = bounds.upper[:-1] - target <= (SEEN_AT_LEVEL + 1.0) * self.rounding
             is_open = (bounds.lower[:-1] < target) & (bounds.upper[:-1] >= target)
             is_open &= ~(at_level & (expected > MOST_EXPECTED))
             for step in np.flatnonzero(is_open).tolist():
-                if counts[1] > most_queries:
+                if counts[1] > MOST_QUERIES:
                     return counts
-                own = self._again(bounds, step, aim)
+                asked = np.full(2, bounds.upper[step])
+                own = self._again(bounds, slice(step, step + 1), step, asked, aim)
                 expected[step] = own[1] * np.sqrt(gap / last)
                 counts += own
             if gap <= self.finest or not is_open.any():
                 return counts
             gap = finer
 
-    def _again(self, bounds: IntervalBounds, step: int, aim: CertificateGoal) -> np.ndarray:
-        own, counts = self.prove(step, np.full(2, bounds.upper[step]), aim)
-        bounds.lower[step] = max(bounds.lower[step], own.lower[0])
-        if own.share[0] >= 0.0 and own.upper[0] < bounds.upper[step]:
-            bounds.upper[step], bounds.share[step] = own.upper[0], own.share[0]
-            bounds.pair[step] = own.pair[0]
+    def _again(
+        self, bounds: IntervalBounds, run: slice, step: int, asked: np.ndarray, aim: CertificateGoal
+    ) -> np.ndarray:
+        """Proves the intervals from a step on again, into a run of `bounds`; counters."""
+        found, counts = self.prove(step, asked, aim)
+        own = IntervalBounds(*(column[run] for column in bounds))
+        np.maximum(own.lower, found.lower, out=own.lower)
+        nearer = (found.share >= 0.0) & (found.upper < own.upper)
+        for column, seen in zip(own[1:], found[1:], strict=True):
+            column[nearer] = seen[nearer]
         return counts
+
+
+def _runs(lower: np.ndarray, steps: np.ndarray) -> list[np.ndarray]:
+    """The places of intervals with bounds (k,) in runs of neighbours, the least bound first, and alone."""
+    begins = (np.diff(steps, prepend=-2) > 1) | (steps % LEAST_RUN == 0)
+    runs = np.split(np.arange(len(steps)), np.flatnonzero(begins)[1:])
+    return [np.array([lower.argmin()]), *sorted(runs, key=lambda run: lower[run].min())]

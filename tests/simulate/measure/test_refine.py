@@ -16,6 +16,7 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at
 from tests.simulate.measure.test_between_steps import LIMITS, THROUGH, sweeping
+from tests.simulate.measure.wandering import case_of
 
 TOP = 0.48
 """[m] How high the fore arm's lower side is, so that a post of TOP - d leaves d below it."""
@@ -70,6 +71,13 @@ def test_the_least_clearance_is_proven_to_a_thousandth_of_a_millimetre_whatever_
     lower = run.certificate.lower_bound.min()
     assert gap - 1.001 * refine.LEAST_GAP <= lower <= gap
     assert gap - 1e-12 <= run.worst["clearance"] <= gap + refine.LEAST_GAP
+
+
+def test_what_is_seen_below_the_least_clearance_is_proven_as_finely():
+    certificate = cl.check(case_of(11, 2), certify_gap=1e-2).certificate
+    seen = certificate.upper_bound.min()
+    assert seen - refine.LEAST_GAP <= certificate.lower_bound.min() <= seen
+    assert certificate.tally["queries"] < 1000
 
 
 def test_a_limit_that_takes_more_than_its_share_of_work_stays_undecided(monkeypatch):
