@@ -45,6 +45,11 @@ def lines_of(gain: Gain) -> Iterator[Line]:
 
 def _lines_of(gain: Gain) -> Iterator[Line]:
     yield "before", _worst(gain.before)
+    if gain.before.verdict.n_waivers:
+        yield (
+            "waivers",
+            "not counted: a change is sought with which waived pairs keep their limits, too",
+        )
     if gain.kept and gain.size == 0.0:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
         return

@@ -17,6 +17,8 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
+from clearance.world.waiver import Waiver
+from tests.findings.gates import load_gates
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 from tests.made_cases import at
 from tests.simulate.measure.test_refine import sliding
@@ -325,6 +327,17 @@ def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():
     assert found.kept and found.size == pytest.approx(2.0 * 0.01, rel=0.05)
     told = dict(lines_of(gain(case, "waypoints")))["not kept"]
     assert told.endswith("while the ends of the path are kept (--free-ends frees them)")
+
+
+def test_waivers_are_said_not_to_be_counted_and_before_is_of_what_fails(tmp_path):
+    """Gate a is nearer and waived; b fails, and is to be moved."""
+    case = load_gates(tmp_path, {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)})
+    waiver = Waiver(("box", "gate_a"), at_least=0.002, reason="r", by="N")
+    told = dict(lines_of(gain(replace(case, waivers=(waiver,)), "obstacle", obstacle="gate_b")))
+    assert (
+        told["before"].startswith("box and gate_b: 4.000 mm") and "with 1 waiver" in told["before"]
+    )
+    assert told["waivers"].startswith("not counted") and "box and gate_a" in told["blocked"]
 
 
 def test_a_pair_that_nothing_moves_may_be_at_its_limit_but_for_rounding():
