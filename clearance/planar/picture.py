@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.errors import BadInput, Unwritable
 from clearance.extras import importing
-from clearance.kernels.hausdorff.trim import field, kept_arcs
+from clearance.kernels.hausdorff.trim import candidate_arcs, field
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import Hausdorff
@@ -173,7 +173,7 @@ def remaining_parts(a: Curve, b: Curve, lower_bound: float) -> tuple[np.ndarray,
     shift, _ = placed(a, b)
     rows, owner = a.leaves.arcs, a.leaves.piece
     pixel = a.length / max(64, 2 * len(rows))
-    remaining = kept_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], lower_bound, pixel)
+    remaining = candidate_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], lower_bound, pixel)
     return owner[remaining], rows[remaining, :2]
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.kernels.curve.arc import EPS
-from clearance.kernels.hausdorff.paper import draw_page, greatest_depth, paper_kept
+from clearance.kernels.hausdorff.paper import draw_page, greatest_depth, paper_candidates
 from clearance.kernels.hausdorff.state import SEARCH_STATE
 from clearance.kernels.hausdorff.systems import solve_directed
 from clearance.kernels.hausdorff.witness import witness_of
@@ -106,7 +106,7 @@ def _trimmed(direction: Direction) -> tuple[np.ndarray, np.ndarray]:
     page = draw_page(two.leaves, x0, y0, pixel, rows, columns)
     deepest = greatest_depth(one.pieces, one.leaves, shift_x, shift_y, page)
     bound = max(0.0, deepest - two.leaves.arcs[:, EPS].max() - np.sqrt(2.0) * pixel)
-    remaining = paper_kept(one.leaves, two.leaves, shift_x, shift_y, page, bound)
+    remaining = paper_candidates(one.leaves, two.leaves, shift_x, shift_y, page, bound)
     state = empty_state()
     state["n_arcs"], state["n_kept"] = len(remaining), remaining.sum()
     state["n_pixels"], state["map_bound"] = page.depth.size, bound

@@ -20,9 +20,9 @@ from clearance.kernels.polytope.cut import (
     FREE,
     FULL,
     LAID_BODY,
-    LOOKED,
     N_FREE,
     N_ROWS,
+    VISITED,
     Cut,
     begin,
     cut_by_planes,
@@ -126,7 +126,7 @@ class Cutting:
         spots, mesh, work, used = self.spots, self.mesh, self.work, self.state[N_ROWS]
         self._reserve(2 * len(spots))
         self.spots[:used], self.mesh[:used] = spots[:used], mesh[:used]
-        self.mesh[:used, LOOKED] = 0  # a call that came to no end may have put vertices off
+        self.mesh[:used, VISITED] = 0  # a call that came to no end may have put vertices off
         self.work[FREE, : self.state[N_FREE]] = work[FREE, : self.state[N_FREE]]
 
     def halve(self, side: float) -> None:

@@ -70,17 +70,17 @@ def two_product(a, b):
 @inline
 def grow(terms, n_terms, value):
     """Adds `value` to the expansion in place and returns its new number of terms; zero terms are dropped."""
-    kept = 0
+    n_used = 0
     total = value
     for i in range(n_terms):
         total, rest = two_sum(total, terms[i])
         if rest != 0.0:
-            terms[kept] = rest
-            kept += 1
+            terms[n_used] = rest
+            n_used += 1
     if total != 0.0:
-        terms[kept] = total
-        kept += 1
-    return kept
+        terms[n_used] = total
+        n_used += 1
+    return n_used
 
 
 @inline

@@ -16,20 +16,20 @@ from clearance.kernels.arithmetic.double_double import size
 from clearance.kernels.arithmetic.expansion import grow, grow_product, sign_of, two_sum
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
 
-ROOM = 512
+CAPACITY = 512
 """Terms an expansion can grow to; compressed ones have at most 40 (2100 bits of 53 each)."""
 
 FILTER = 32.0 * 2.0**-53
 """Error of a plain determinant and of its posed differences, relative to products of 1-norms: 14 and 9
-roundings, with room."""
+roundings, with a margin."""
 
 
 class ExactScratch(NamedTuple):
     """Scratch of exact arithmetic.
 
     Attributes:
-        sides: (9, ROOM), lengths: (9,): three difference vectors as expansions.
-        minor, total: (ROOM,).
+        sides: (9, CAPACITY), lengths: (9,): three difference vectors as expansions.
+        minor, total: (CAPACITY,).
         count: (1,) decisions that needed exact arithmetic.
         poses: (2, 3, 3) the rotations of a and b. shift: (2, 3) origin of b minus origin of a, hi and lo.
     """
@@ -54,10 +54,10 @@ class PosedVertex(NamedTuple):
 def new_exact_scratch():
     """Scratch of one exact decision at a time."""
     return ExactScratch(
-        np.empty((9, ROOM)),
+        np.empty((9, CAPACITY)),
         np.zeros(9, dtype=np.int64),
-        np.empty(ROOM),
-        np.empty(ROOM),
+        np.empty(CAPACITY),
+        np.empty(CAPACITY),
         np.zeros(1, dtype=np.int64),
         np.empty((2, 3, 3)),
         np.empty((2, 3)),
@@ -95,7 +95,7 @@ def _add_products(out, n, e, n_e, f, n_f, sign):
     """Adds sign * e * f of two expansions to `out`."""
     for i in range(n_e):
         for j in range(n_f):
-            if n + 2 > ROOM:
+            if n + 2 > CAPACITY:
                 raise AssertionError("no room for the product")
             n = grow_product(out, n, sign * e[i], f[j])
     return compress(out, n)

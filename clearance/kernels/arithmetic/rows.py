@@ -6,8 +6,8 @@ from clearance.compile.decorators import inline
 
 
 @inline
-def with_room(rows, n, more):
-    """The array of the first `n` rows, or a larger copy where there is no room for `more`."""
+def with_capacity(rows, n, more):
+    """The array of the first `n` rows, or a larger copy if its capacity is too small for `more`."""
     if n + more <= rows.shape[0]:
         return rows
     wider = np.empty((2 * rows.shape[0], rows.shape[1]))

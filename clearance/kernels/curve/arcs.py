@@ -80,10 +80,10 @@ def _segment_and_arc(line, arc):
 def _arc_and_arc(a, b):
     """The least distance of places inside both: on the line of the centres, or 0 where they cross."""
     ux, uy = b[CX] - a[CX], b[CY] - a[CY]
-    apart = hypotenuse(ux, uy)
-    if apart == 0.0:  # about one centre: ends decide, or the radii all along
+    distance = hypotenuse(ux, uy)
+    if distance == 0.0:  # about one centre: ends decide, or the radii all along
         return np.inf
-    ux, uy = ux / apart, uy / apart
+    ux, uy = ux / distance, uy / distance
     found = np.inf
     for k in range(4):
         p = a[RADIUS] if k & 1 else -a[RADIUS]
@@ -91,8 +91,8 @@ def _arc_and_arc(a, b):
         if _in_sector(a, a[CX] + p * ux, a[CY] + p * uy) and _in_sector(
             b, b[CX] + q * ux, b[CY] + q * uy
         ):
-            found = min(found, abs(apart + q - p))
-    along = 0.5 * (apart + (a[RADIUS] - b[RADIUS]) * ((a[RADIUS] + b[RADIUS]) / apart))
+            found = min(found, abs(distance + q - p))
+    along = 0.5 * (distance + (a[RADIUS] - b[RADIUS]) * ((a[RADIUS] + b[RADIUS]) / distance))
     if abs(along) < a[RADIUS]:
         half = math.sqrt((a[RADIUS] - along) * (a[RADIUS] + along))
         for k in range(2):
@@ -104,7 +104,7 @@ def _arc_and_arc(a, b):
 
 
 @kernel
-def arcs_apart(a: Floats, b: Floats) -> tuple[float, float]:
+def arcs_distance(a: Floats, b: Floats) -> tuple[float, float]:
     """The least distance of two arcs to rounding, and a bound of that rounding.
 
     A crossing or a foot that rounding puts just beside the end of an arc is missed, but then that end is as near.
@@ -143,12 +143,12 @@ def _set_cell_arc(points, n, shift_x, shift_y, work, row):
 
 
 @inline
-def cells_apart(p, n, q, m, shift_x, shift_y, work, rows):
+def lower_bound_cells(p, n, q, m, shift_x, shift_y, work, rows):
     """A lower bound of the distance of two cells by their arcs, and how much of what it lacks is rounding.
 
     Args: p (n + 1), q (m + 1): homogeneous control points; the shift is added to p. rows (2, WIDTH) is scratch.
     """
     _set_cell_arc(p, n, shift_x, shift_y, work, rows[0])
     _set_cell_arc(q, m, 0.0, 0.0, work, rows[1])
-    least, rounding = arcs_apart(rows[0], rows[1])
+    least, rounding = arcs_distance(rows[0], rows[1])
     return least - rows[0, EPS] - rows[1, EPS] - rounding, 2.0 * rounding

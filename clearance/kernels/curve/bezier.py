@@ -241,13 +241,13 @@ class Joints(NamedTuple):
 
     Attributes:
         contour: (n,) the contour of each piece; the last piece of a contour joins its first.
-        tangent, apart: a joint is smooth where the points are within `apart` and the sine between the tangents
-            within `tangent`.
+        tangent, within: a joint is smooth where the points are at most `within` from one another, and the sine
+            between the tangents is at most `tangent`.
     """
 
     contour: Integers
     tangent: float
-    apart: float
+    within: float
 
 
 @inline
@@ -262,7 +262,7 @@ def is_rough(pieces, joints, i, side):
     before, after = (i, other) if side == 1 else (other, i)
     a, b = jet(pieces, before, 1.0), jet(pieces, after, 0.0)
     speeds = hypotenuse(a.dx, a.dy) * hypotenuse(b.dx, b.dy)
-    meets = hypotenuse(a.x - b.x, a.y - b.y) <= joints.apart
+    meets = hypotenuse(a.x - b.x, a.y - b.y) <= joints.within
     smooth = abs(a.dx * b.dy - a.dy * b.dx) <= joints.tangent * speeds
     return not (meets and smooth and a.dx * b.dx + a.dy * b.dy > 0.0)
 

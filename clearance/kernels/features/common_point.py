@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import (
-    ZERO3,
     Wide3,
     along3,
     cross3,
@@ -71,6 +70,3 @@ def common_point(faces: PosedPair, found: Meeting) -> CommonPointPair:
     z = point_of_a(frames, row(a.exact, a.face_vertices[found.k + 1]))
     common = _of_edge_and_triangle(p, q, x, y, z)
     return CommonPointPair(common.q, common.p)
-
-
-_NOWHERE = CommonPointPair(ZERO3, ZERO3)

@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import (
-    FAR,
-    ZERO3,
     Frames,
     Wide,
     Wide3,
@@ -218,11 +216,6 @@ class PointDistance(NamedTuple):
     pair: PointPair
     length: Wide
     off: Wide
-
-
-NOTHING_SIZED = PointDistance(
-    PointPair(FAR, ZERO3, ZERO3, ZERO3, Wide(0.0, 0.0), ZERO3), FAR, Wide(0.0, 0.0)
-)
 
 
 @kernel

@@ -15,10 +15,10 @@ from clearance.kernels.hausdorff.bounds import consider
 from clearance.kernels.hausdorff.queue import OpenInterval, push
 from clearance.kernels.hausdorff.roots import self_bisector, slide_from
 
-BESIDE = 1e-9  # share of an interval next to its ends where no cut beside a joint is made
+MARGIN = 1e-9  # share of an interval next to its ends where no cut beside a joint is made
 CLOSELY = 0.01  # how near a joint must be, as a share of the part of A that it cuts off
 MOST_PARTS = 32  # that an interval is cut into at once
-ROOM = MOST_PARTS + 2  # what the queue must have left
+CAPACITY = MOST_PARTS + 2  # free rows that the queue needs
 
 
 class BoundPlace(NamedTuple):
@@ -49,7 +49,7 @@ def _cut_beside_joints(pair, interval, foot, place, heap, n_open):
     curves, middle = pair.curves, 0.5 * (t0 + t1)
     forward, count = t > middle, abs(other - j)
     stride = (count + MOST_PARTS - 1) // MOST_PARTS
-    near, before = BESIDE * (t1 - t0), n_open
+    near, before = MARGIN * (t1 - t0), n_open
     last = t0 if forward else t1
     for step in range(stride // 2, count, stride):
         piece = j + step if other > j else j - step
@@ -58,11 +58,11 @@ def _cut_beside_joints(pair, interval, foot, place, heap, n_open):
         guess = middle + (t - middle) * (step + 0.5) / count
         cut_at = slide_to_foot(curves.a, i, x, y, guess, t0, t1)
         here = jet(curves.a, i, cut_at)
-        apart = hypotenuse(here.x - x, here.y - y) * count
+        off = hypotenuse(here.x - x, here.y - y) * count
         low, high = (last, t1) if forward else (t0, last)
         if not low + near < cut_at < high - near:
             continue
-        if apart < CLOSELY * hypotenuse(here.dx, here.dy) * (t1 - t0):
+        if off < CLOSELY * hypotenuse(here.dx, here.dy) * (t1 - t0):
             start, end = (last, cut_at) if forward else (cut_at, last)
             n_open = push(heap, n_open, bound, OpenInterval(i, start, end, foot.leaf, 0.0))
             last = cut_at
@@ -103,8 +103,8 @@ def cut_interval(pair, interval, foot, place, state, work, heap, n_open):
             return n_open
     i, t0, t1, chosen = interval.piece, interval.t0, interval.t1, math.nan
     # next to each other the two branches cross where B's pieces meet: there, or halving creeps up on it
-    beside = abs(seen.leaf - foot.leaf) <= 1
-    if interval.was_cut == 0.0 and (beside or bound < 2.0 * state.distance):
+    are_neighbours = abs(seen.leaf - foot.leaf) <= 1
+    if interval.was_cut == 0.0 and (are_neighbours or bound < 2.0 * state.distance):
         chosen = _root_to_cut_at(pair, interval, foot, place, state, work)
     is_root = 1.0
     if not t0 < chosen < t1:

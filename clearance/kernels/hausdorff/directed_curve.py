@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.compile.declared import Floats
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.arithmetic.rows import with_room
+from clearance.kernels.arithmetic.rows import with_capacity
 from clearance.kernels.curve.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve.bezier import hypotenuse
 from clearance.kernels.curve.distance_map import draw, lower_bound_of_map
@@ -19,7 +19,7 @@ from clearance.kernels.curve.scratch import (
     new_scratch,
     widest,
 )
-from clearance.kernels.hausdorff.cutting import ROOM
+from clearance.kernels.hausdorff.cutting import CAPACITY
 from clearance.kernels.hausdorff.interval_search import MANY, close, examine
 from clearance.kernels.hausdorff.queue import WIDTH, OpenInterval
 from clearance.kernels.hausdorff.state import SearchGoal, SearchStates
@@ -41,28 +41,28 @@ def _length_of_arcs(arcs):
 
 
 @inline
-def _search_kept(pair, leaves, aim, drawn, sparing, kept, state, work, heap):
-    """Solves the arcs kept exactly and takes them off the list; where `sparing`, only some of many.
+def _search_candidates(pair, leaves, aim, drawn, sparing, candidates, state, work, heap):
+    """Solves the candidate arcs exactly and takes them off the list; where `sparing`, only some of many.
 
-    `leaves` are those of the curve searched. Returns the queue's room, which may have grown.
+    `leaves` are those of the curve searched. Returns the queue, which may have grown.
 
     Many arguments: what belongs together is in tuples already.
     """
-    n_kept, n_met, hint, n_open = 0, 0, -1, 0
+    n_candidates, n_met, hint, n_open = 0, 0, -1, 0
     for k in range(leaves.arcs.shape[0]):
-        n_kept += kept[k]
-    step = 1 + n_kept // SAMPLES if sparing and n_kept > MANY else 1
+        n_candidates += candidates[k]
+    step = 1 + n_candidates // SAMPLES if sparing and n_candidates > MANY else 1
     for k in range(leaves.arcs.shape[0]):
-        n_met += kept[k]
-        if not kept[k] or n_met % step > 0:
+        n_met += candidates[k]
+        if not candidates[k] or n_met % step > 0:
             hint = -1
             continue
         if state.lower > aim.limit:
             break
-        kept[k] = False
+        candidates[k] = False
         state.n_kept += 1
         hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
-        heap = with_room(heap, n_open, ROOM)
+        heap = with_capacity(heap, n_open, CAPACITY)
         row = leaves.arcs[k]
         interval = OpenInterval(leaves.piece[k], row[S0], row[S1], hint, 0.0)
         hint, n_open = examine(pair, aim, interval, state, work, heap, n_open)
@@ -87,7 +87,7 @@ def directed_curve(
     """
     most = max(widest(one.pieces), widest(two.pieces))
     composed = np.empty((most + 2, 3, LARGEST_DEGREE + 1))
-    work, heap = SearchScratch(new_scratch(most, 0), composed), np.empty((4 * ROOM, WIDTH))
+    work, heap = SearchScratch(new_scratch(most, 0), composed), np.empty((4 * CAPACITY, WIDTH))
     state, la, lb, n_arcs = states[0], one.leaves, two.leaves, one.leaves.arcs.shape[0]
     pixels = min(PIXELS_AT_MOST, max(PIXELS_AT_LEAST, 2.0 * n_arcs))
     pixel = _length_of_arcs(la.arcs) / pixels
@@ -95,15 +95,17 @@ def directed_curve(
     state.piece_a, state.n_arcs, state.n_pixels = -1, n_arcs, drawn.depth.shape[0]
     state.map_bound = lower_bound_of_map(drawn, la, lb, pixel)
     pair = CurvePair(Curves(one.pieces, two.pieces, shift_x, shift_y), lb)
-    kept = np.zeros(n_arcs, np.bool_)
-    kept[drawn.deepest_leaf] = True
+    candidates = np.zeros(n_arcs, np.bool_)
+    candidates[drawn.deepest_leaf] = True
     for stage in range(3):  # the deepest arc; what trimming leaves, some of much first; the rest
-        heap = _search_kept(pair, la, aim, drawn, stage == SOME_OF_MANY, kept, state, work, heap)
+        heap = _search_candidates(
+            pair, la, aim, drawn, stage == SOME_OF_MANY, candidates, state, work, heap
+        )
         bound = max(max(state.lower, state.map_bound), aim.enough)
         if stage == THE_DEEPEST:
-            kept[:] = True
-            kept[drawn.deepest_leaf] = False
-        trim(la, lb, drawn, shift_x, shift_y, bound, kept)
+            candidates[:] = True
+            candidates[drawn.deepest_leaf] = False
+        trim(la, lb, drawn, shift_x, shift_y, bound, candidates)
     if state.lower <= aim.limit:
         state.upper = max(state.upper, max(state.lower, aim.enough))
         write_witness(pair.curves, one.joints, two.joints, state, witness)

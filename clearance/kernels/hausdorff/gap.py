@@ -12,7 +12,7 @@ from clearance.compile.declared import ArrayOf
 from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import S0, S1, WIDTH
 from clearance.kernels.curve.arc_fit import BUCKET, Leaves
-from clearance.kernels.curve.arcs import cells_apart
+from clearance.kernels.curve.arcs import lower_bound_cells
 from clearance.kernels.curve.bezier import Pieces, cut, hypotenuse, jet
 from clearance.kernels.curve.nearest import nearest, slide_to_foot
 from clearance.kernels.curve.pair import CurvePart, Curves
@@ -54,7 +54,7 @@ class LeafScratch(NamedTuple):
 
 
 @inline
-def _apart(p, n, q, m, ux, uy, shift):
+def _gap_along(p, n, q, m, ux, uy, shift):
     """The gap of two control polygons along the unit vector (ux, uy): a lower bound of their distance."""
     least, most = np.inf, -np.inf
     for k in range(n + 1):
@@ -74,14 +74,14 @@ def _extent(p, n):
 
 
 @inline
-def _boxes_apart(a, i, b, j, shift_x, shift_y):
+def _boxes_distance(a, i, b, j, shift_x, shift_y):
     dx = max(0.0, a[i, 0] + shift_x - b[j, 2], b[j, 0] - a[i, 2] - shift_x)
     dy = max(0.0, a[i, 1] + shift_y - b[j, 3], b[j, 1] - a[i, 3] - shift_y)
     return hypotenuse(dx, dy)
 
 
 @inline
-def _apart_at(curves, i, t, j, s):
+def _distance_at(curves, i, t, j, s):
     a, b = jet(curves.a, i, t), jet(curves.b, j, s)
     return hypotenuse(a.x + curves.shift_x - b.x, a.y + curves.shift_y - b.y)
 
@@ -102,7 +102,7 @@ def _closest_in(curves, part, other):
         t = slide_to_foot(curves.a, i, b.x - shift_x, b.y - shift_y, t, part.t0, part.t1)
     u, v = common_normal(curves, part, t, j, s)
     v = min(other.t1, max(other.t0, v))
-    if _apart_at(curves, i, u, j, v) < _apart_at(curves, i, t, j, s):
+    if _distance_at(curves, i, u, j, v) < _distance_at(curves, i, t, j, s):
         return u, v
     return t, s
 
@@ -113,7 +113,7 @@ def _bound_of_cell(curves, p, n, q, m, ex, ey, distance):
     if not distance > 0.0:
         return 0.0
     along = (curves.shift_x * ex + curves.shift_y * ey) / distance
-    return max(0.0, _apart(p, n, q, m, ex / distance, ey / distance, along))
+    return max(0.0, _gap_along(p, n, q, m, ex / distance, ey / distance, along))
 
 
 @inline
@@ -160,7 +160,7 @@ def _search_leaves(curves, part, other, gap, best, scratch):
         n, m = cut(curves.a, i, part.t0, part.t1, p), cut(curves.b, j, other.t0, other.t1, q)
         bound, slack = _bound_of_cell(curves, p, n, q, m, ex, ey, distance), gap
         if bound < best.distance - gap:
-            near, rounding = cells_apart(
+            near, rounding = lower_bound_cells(
                 p, n, q, m, shift_x, shift_y, scratch.planes[BENDS], scratch.arcs
             )
             bound, slack = max(bound, near), max(gap, min(rounding, WIDEST * best.distance))
@@ -232,7 +232,7 @@ def least_distance(
     while top > 0:
         top -= 1
         i, j = stack[top, 0], stack[top, 1]
-        if not _boxes_apart(la.boxes, i, lb.boxes, j, shift_x, shift_y) < best.distance - gap:
+        if not _boxes_distance(la.boxes, i, lb.boxes, j, shift_x, shift_y) < best.distance - gap:
             continue
         if i >= size_a and j >= size_b:
             first_a, first_b = (i - size_a) * BUCKET, (j - size_b) * BUCKET
@@ -242,8 +242,8 @@ def least_distance(
             one, two = (2 * i, j), (2 * i + 1, j)
         else:
             one, two = (i, 2 * j), (i, 2 * j + 1)
-        far = _boxes_apart(la.boxes, one[0], lb.boxes, one[1], shift_x, shift_y)
-        if far < _boxes_apart(la.boxes, two[0], lb.boxes, two[1], shift_x, shift_y):
+        far = _boxes_distance(la.boxes, one[0], lb.boxes, one[1], shift_x, shift_y)
+        if far < _boxes_distance(la.boxes, two[0], lb.boxes, two[1], shift_x, shift_y):
             one, two = two, one
         stack[top, 0], stack[top, 1] = one
         stack[top + 1, 0], stack[top + 1, 1] = two

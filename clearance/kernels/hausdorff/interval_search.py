@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.decorators import inline
-from clearance.kernels.arithmetic.rows import with_room
+from clearance.kernels.arithmetic.rows import with_capacity
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.follow import (
     SHARES,
@@ -22,7 +22,7 @@ from clearance.kernels.curve.follow import (
 from clearance.kernels.curve.pair import CurvePart
 from clearance.kernels.curve.scratch import FEET
 from clearance.kernels.hausdorff.bounds import chord_bound, consider, upper_bound
-from clearance.kernels.hausdorff.cutting import ROOM, BoundPlace, cut_interval
+from clearance.kernels.hausdorff.cutting import CAPACITY, BoundPlace, cut_interval
 from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop
 from clearance.kernels.hausdorff.roots import common_normal, slide_from
 from clearance.kernels.hausdorff.run import NearestRun, StraightPart, run_bound
@@ -223,6 +223,6 @@ def close(pair, aim, state, work, heap, n_open):
             break
         n_open = pop(heap, n_open)
         interval = interval_at(heap, n_open)
-        heap = with_room(heap, n_open, ROOM)
+        heap = with_capacity(heap, n_open, CAPACITY)
         _, n_open = examine(pair, aim, interval, state, work, heap, n_open)
     return heap

@@ -70,11 +70,11 @@ def _likeliest(points, candidates, arcs):
 
 
 @kernel
-def paper_kept(
+def paper_candidates(
     la: Leaves, lb: Leaves, shift_x: float, shift_y: float, page: Page, lower_bound: float
 ) -> Flags:
     """Which arcs of A (n,) equations (8) to (10) leave: one arc of B for each, epsilon 1 taken off once."""
-    kept = np.ones(la.arcs.shape[0], np.bool_)
+    candidate_arcs = np.ones(la.arcs.shape[0], np.bool_)
     points, candidates = np.empty((3, 2)), np.empty(3, np.int64)
     epsilon = 0.0
     for k in range(lb.arcs.shape[0]):
@@ -87,8 +87,8 @@ def paper_kept(
             candidates[i] = page.colour[r, c]
         facing = lb.arcs[_likeliest(points, candidates, lb.arcs)]
         reach = lower_bound - epsilon
-        kept[k] = not (reach > 0.0 and arc_covers(points, facing, reach))
-    return kept
+        candidate_arcs[k] = not (reach > 0.0 and arc_covers(points, facing, reach))
+    return candidate_arcs
 
 
 @kernel

@@ -175,8 +175,8 @@ def _solve_segment(lines, i, hint, aim, state, work):
             t = 0.5 * (span.t0 + span.t1)
         d, near = _offer(lines, i, t, span.near0, work.stack, state)
         done = bound <= max(state.lower + aim.gap, aim.enough)
-        no_room = top + 2 > MOST_OPEN or not span.t0 < t < span.t1
-        if done or state.n_cuts > aim.budget or no_room:
+        is_full = top + 2 > MOST_OPEN or not span.t0 < t < span.t1
+        if done or state.n_cuts > aim.budget or is_full:
             state.n_given_up += not done
             state.upper = max(state.upper, bound)
             continue

@@ -85,11 +85,11 @@ def _follows(pb, i, j, ends_b, smoothly):
 
 
 @inline
-def _single_in(systems, j, s0, s1, a_box, points, room, rising_only):
+def _single_in(systems, j, s0, s1, a_box, points, scratch, rising_only):
     """Whether piece `j` on [s0, s1] has one nearest point at most to every point of A's part."""
     if s0 == s1:
         return True
-    curves, union, gap = systems.pair.curves, room[:4], room[4]
+    curves, union, gap = systems.pair.curves, scratch[:4], scratch[4]
     enclose(systems.b, j, s0, s1, points, union)
     gap_box(a_box[0], union[0], curves, gap)
     slopes = foot_slopes(gap, union)
@@ -98,22 +98,22 @@ def _single_in(systems, j, s0, s1, a_box, points, room, rising_only):
 
 
 @inline
-def same_foot(systems, one, two, a_box, points, room):
+def same_foot(systems, one, two, a_box, points, scratch):
     """Whether the stretch of B from one cell to the other has provably one nearest point at most.
 
     Args:
-        one, two: the rows of two cells; room: (5, 6) scratch.
+        one, two: the rows of two cells; scratch: (5, 6).
     """
     i, j = int(one[PIECE]), int(two[PIECE])
     if i == j:
         low, high = min(one[S0], two[S0]), max(one[S1], two[S1])
-        return _single_in(systems, j, low, high, a_box, points, room, False)
+        return _single_in(systems, j, low, high, a_box, points, scratch, False)
     for turn in range(2):
         x, y = (one, two) if turn == 0 else (two, one)
         i, j = int(x[PIECE]), int(y[PIECE])
         point = (x[S0] == x[S1] and x[S0] == 1.0) or (y[S0] == y[S1] and y[S0] == 0.0)
         if _follows(systems.pair.curves.b, i, j, systems.ends_b, not point):
-            if _single_in(systems, i, x[S0], 1.0, a_box, points, room, True):
-                if _single_in(systems, j, 0.0, y[S1], a_box, points, room, True):
+            if _single_in(systems, i, x[S0], 1.0, a_box, points, scratch, True):
+                if _single_in(systems, j, 0.0, y[S1], a_box, points, scratch, True):
                     return True
     return False

@@ -63,7 +63,7 @@ class BoxScratch(NamedTuple):
 
     a: np.ndarray
     gap: np.ndarray
-    room: np.ndarray
+    scratch: np.ndarray
 
 
 @inline
@@ -108,8 +108,8 @@ def _pair_is_settled(systems, part, table, level, k, m, boxes, state, work):
     Many arguments: what belongs together is in tuples already.
     """
     one, two = table.cells[level, k], table.cells[level, m]
-    boxes_one, boxes_two, gap = table.boxes[k], table.boxes[m], boxes.room[4]
-    if same_foot(systems, one, two, boxes.a, work[SQUARES], boxes.room):
+    boxes_one, boxes_two, gap = table.boxes[k], table.boxes[m], boxes.scratch[4]
+    if same_foot(systems, one, two, boxes.a, work[SQUARES], boxes.scratch):
         return True, 0.0
     if one[PIECE] == two[PIECE] and one[S0] == two[S0] and one[S1] == two[S1]:
         return False, 0.0
@@ -167,7 +167,7 @@ def _settle_level(systems, part, table, level, boxes, state, work):
 def _solve_part(systems, b_parts, part, budget, table, boxes, state, work):
     """Finds all candidates on one part of A; see the module.
 
-    What the budget, the depth or the room leaves open is bounded.
+    What the budget, the depth or the capacity leaves open is bounded.
 
     Many arguments: what belongs together is in tuples already.
     """

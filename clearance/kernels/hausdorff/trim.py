@@ -100,16 +100,16 @@ def trim(
     shift_x: float,
     shift_y: float,
     lower_bound: float,
-    kept: Flags,
+    candidates: Flags,
 ):
-    """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance.
+    """Clears in `candidates` (n_leaves,) the arcs that cannot hold the Hausdorff distance.
 
     The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end,
     and the two beside that in the middle.
     """
     points = np.empty((3, 2))
     for k in range(leaves.arcs.shape[0]):
-        if not kept[k]:
+        if not candidates[k]:
             continue
         row = leaves.arcs[k]
         put_control_points(row, shift_x, shift_y, points)
@@ -125,11 +125,11 @@ def trim(
             if reach > 0.0 and arc_covers(points, facing, reach):
                 covered = True
                 break
-        kept[k] = not covered
+        candidates[k] = not covered
 
 
 @kernel
-def kept_arcs(
+def candidate_arcs(
     pa: Pieces,
     la: Leaves,
     lb: Leaves,
@@ -141,9 +141,9 @@ def kept_arcs(
     """Which arcs of A trimming leaves at a given lower bound (n,), for pictures and for tests."""
     stack = np.empty((96, 2))
     drawn = draw(pa, la, lb, shift_x, shift_y, pixel, stack)
-    kept = np.ones(la.arcs.shape[0], np.bool_)
-    trim(la, lb, drawn, shift_x, shift_y, lower_bound, kept)
-    return kept
+    candidates = np.ones(la.arcs.shape[0], np.bool_)
+    trim(la, lb, drawn, shift_x, shift_y, lower_bound, candidates)
+    return candidates
 
 
 @kernel

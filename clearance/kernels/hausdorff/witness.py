@@ -39,11 +39,11 @@ def write_witness(curves, joints_a, joints_b, state, out):
     out[0], out[1], out[2], out[3] = a.x, a.y, b.x, b.y
     ex, ey = a.x + curves.shift_x - b.x, a.y + curves.shift_y - b.y
     length = hypotenuse(ex, ey)
-    is_apart = length > SAME_POINT * (hypotenuse(a.x, a.y) + hypotenuse(b.x, b.y))
+    are_distinct = length > SAME_POINT * (hypotenuse(a.x, a.y) + hypotenuse(b.x, b.y))
     is_steep = abs(ex * a.dx + ey * a.dy) > STEEP * length * hypotenuse(a.dx, a.dy)
     if _is_end(curves.a, joints_a, i, state.at_a):
         out[4] = END
-    elif is_apart and is_steep:
+    elif are_distinct and is_steep:
         out[4] = SELF_BISECTOR
     else:
         out[4] = END if _is_end(curves.b, joints_b, j, state.at_b) else COMMON_NORMAL

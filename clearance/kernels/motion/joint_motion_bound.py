@@ -20,7 +20,6 @@ from clearance.kernels.arithmetic.vec3 import (
     cross,
     dot,
     rigid,
-    row,
     sub,
     turn_back,
 )
@@ -175,13 +174,3 @@ def motion_bound_of_box_along(box, direction, motion_bound):
     """[m] an upper bound on the motion of any point of a box along a unit direction, in either sense."""
     first = abs(dot(direction, velocity_at(motion_bound, box.centre)))
     return first + box_reach(box, cross(direction, motion_bound.spin)) + motion_bound.rest
-
-
-@inline
-def motion_bound_of_face_along(surface, face, direction, motion_bound):
-    """[m] an upper bound on the motion of any point of a face along a unit direction, in either sense."""
-    first = 0.0
-    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
-        x = row(surface.vertices, surface.face_vertices[c])
-        first = max(first, abs(dot(direction, velocity_at(motion_bound, x))))
-    return first + motion_bound.rest

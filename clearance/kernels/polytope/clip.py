@@ -31,7 +31,6 @@ from clearance.kernels.polytope.cut import (
     FULL,
     LATENT,
     LATER,
-    LOOKED,
     MARK,
     N_FREE,
     N_ROWS,
@@ -41,6 +40,7 @@ from clearance.kernels.polytope.cut import (
     STACK,
     STAMP,
     USED,
+    VISITED,
     close_up,
     cut_by_plane,
     cut_in,
@@ -158,7 +158,7 @@ def climb(spots, mesh, start, plane, noise, state, work):
 def is_copy(spots, mesh, v, base):
     """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
     u = v - 1
-    if mesh[u, 0] < 0 or (mesh[u, LOOKED] != base + 1 and mesh[u, LOOKED] != -1):
+    if mesh[u, 0] < 0 or (mesh[u, VISITED] != base + 1 and mesh[u, VISITED] != -1):
         return False
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
@@ -214,18 +214,18 @@ def cut_from(cut, cutter, start, turn, n_later, limits):
     while n_stack > 0:
         n_stack -= 1
         v = work[STACK, n_stack]
-        if mesh[v, 0] < 0 or (turn == 0 and mesh[v, LOOKED] == base + 1):
+        if mesh[v, 0] < 0 or (turn == 0 and mesh[v, VISITED] == base + 1):
             continue
-        mesh[v, LOOKED] = base + 1
+        mesh[v, VISITED] = base + 1
         if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
-            mesh[v, LOOKED] = mesh[v - 1, LOOKED]
+            mesh[v, VISITED] = mesh[v - 1, VISITED]
             continue
         place = place_about_centroid(cutter, spots, v)
         face = face_to_cut_by(cut, cutter, v, place, tolerance)
         if face < 0:
             continue
         if table[base + face, USED] == LATENT:
-            mesh[v, LOOKED] = -1
+            mesh[v, VISITED] = -1
             continue
         plane = plane_about(body.numbers, face, cutter.origin)
         if turn == 0 and over(spots, v, plane) <= limits.noise:
@@ -272,7 +272,7 @@ def cut_by_body(cut, cutter, limits):
             v = row if turn == 0 else work[LATER, row]
             row += 1
             if turn == 0:
-                if mesh[v, 0] < 0 or mesh[v, LOOKED] == base + 1:
+                if mesh[v, 0] < 0 or mesh[v, VISITED] == base + 1:
                     continue
                 x, y, z = place_about_centroid(cutter, spots, v)
                 if is_in_ball(cutter.body, x, y, z):

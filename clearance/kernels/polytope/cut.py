@@ -21,7 +21,7 @@ from clearance.kernels.polytope.body import N_FACES, PackedBody, face_edges, pla
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
 N_FREE, STAMP, N_ROWS, FIRST_BODY, LAID_BODY = range(5)
-ACROSS, PLANES, MARK, LOOKED = 0, 3, 6, 7
+ACROSS, PLANES, MARK, VISITED = 0, 3, 6, 7
 FIRST, SEEN, USED = 0, 1, 2
 LATENT, WHOLE = 2, 3
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
@@ -34,7 +34,7 @@ class Cut(NamedTuple):
     Attributes:
         spots: (c, 4) float64, a row a vertex: its place [m] about the origin, its last height over a plane.
         mesh: (c, 8) int32, a row a vertex: `ACROSS` + k the vertex at the other end of the edge that leaves plane
-            k (-1 first: a free row), `PLANES` + k the planes in order, `MARK` a stamp, `LOOKED` the last body it
+            k (-1 first: a free row), `PLANES` + k the planes in order, `MARK` a stamp, `VISITED` the last body it
             was held against.
         state: (5,) free rows, last stamp, rows used, the body that is cut, the one whose patch was laid.
         work: (4, c) int32 scratch, but `work[FREE]` holds the free rows.
@@ -193,9 +193,9 @@ def rim_is_one_ring(rim, n_rim, table, stamp):
 @inline
 def swap_rows(state, mesh, n_above, n_rim, work):
     """Takes the rows of the new vertices from the free ones and frees those above the plane."""
-    taken = min(n_rim, state[N_FREE])
-    state[N_FREE] -= taken
-    state[N_ROWS] += n_rim - taken
+    n_reused = min(n_rim, state[N_FREE])
+    state[N_FREE] -= n_reused
+    state[N_ROWS] += n_rim - n_reused
     for i in range(n_above):
         mesh[work[QUEUE, i], 0] = -1
         work[FREE, state[N_FREE]] = work[QUEUE, i]
@@ -208,7 +208,7 @@ def close_rim(mesh, rim, n_rim, table):
     for i in range(n_rim):
         v = rim[i, NEW]
         mesh[v, MARK] = 0
-        mesh[v, LOOKED] = 0
+        mesh[v, VISITED] = 0
         mesh[rim[i, OUTSIDE], rim[i, SLOT]] = v
         after = rim[table[rim[i, AFTER], FIRST], NEW]
         mesh[v, 1] = after
@@ -259,25 +259,25 @@ def begin(
             mesh[v, c] = form[v, c]
             mesh[v, PLANES + c] = form[v, PLANES + c] + base
         mesh[v, MARK] = 0
-        mesh[v, LOOKED] = 0
+        mesh[v, VISITED] = 0
 
 
 @inline
 def close_up(spots, mesh, state, work):
     """Moves the rows in use together, in their order, so that later bodies walk over no free ones."""
-    n_kept = 0
+    n_rows = 0
     for v in range(state[N_ROWS]):
         if mesh[v, 0] >= 0:
-            work[QUEUE, v] = n_kept
+            work[QUEUE, v] = n_rows
             for c in range(8):
-                mesh[n_kept, c] = mesh[v, c]
+                mesh[n_rows, c] = mesh[v, c]
             for c in range(3):
-                spots[n_kept, c] = spots[v, c]
-            n_kept += 1
-    for v in range(n_kept):
+                spots[n_rows, c] = spots[v, c]
+            n_rows += 1
+    for v in range(n_rows):
         for c in range(3):
             mesh[v, c] = work[QUEUE, mesh[v, c]]
-    state[N_ROWS] = n_kept
+    state[N_ROWS] = n_rows
     state[N_FREE] = 0
 
 

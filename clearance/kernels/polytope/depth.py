@@ -196,7 +196,7 @@ def centre_of(placed, origin):
 
 
 @inline
-def is_apart(basis):
+def is_separate(basis):
     """True if four faces of bodies, none of the start's walls, have t plainly below 0."""
     names = basis.names
     return basis.solution[T] < -1e-6 and min(names[0], names[1], names[2], names[3]) >= 0
@@ -260,7 +260,7 @@ def deepen_two(a, b, origin, basis, margin, begin, passes):
         one, n_one = deepen(a, origin, basis, margin)
         other, n_other = deepen(b, origin, basis, margin)
         n_entered += n_one + n_other
-        if n_one + n_other == 0 or is_apart(basis):
+        if n_one + n_other == 0 or is_separate(basis):
             return one and other, n_entered, i_pass
         n_level = 0 if before - basis.solution[T] > margin else n_level + 1
         if n_level == LEVEL:
@@ -303,7 +303,7 @@ def deepen_all(
             if m < 3:
                 return sure, n, n_passes
             begin, n_entered, settled = ON, n_entered + n, settled and sure
-            if is_apart(basis):
+            if is_separate(basis):
                 return settled, n_entered, i_round
         if n_entered == n_before:
             return settled, n_entered, i_round

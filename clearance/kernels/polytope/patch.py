@@ -15,7 +15,6 @@ from clearance.kernels.polytope.cut import (
     FIRST,
     FREE,
     LATENT,
-    LOOKED,
     MARK,
     N_FREE,
     N_ROWS,
@@ -24,6 +23,7 @@ from clearance.kernels.polytope.cut import (
     SEEN,
     STAMP,
     USED,
+    VISITED,
     WHOLE,
     Cut,
     own_corner,
@@ -78,7 +78,7 @@ def is_under_patch(mesh, v, indices, base, in_patch):
     """True for a vertex over the patch or in one of its corners."""
     if mesh[v, 0] < 0:
         return False
-    if mesh[v, LOOKED] == -1:
+    if mesh[v, VISITED] == -1:
         return True
     a = mesh[v, PLANES]
     if a < base or a >= base + indices[N_FACES]:
@@ -209,7 +209,7 @@ def lay_patch(
             mesh[v, PLANES + c] = base + form[t, PLANES + c]
             mesh[v, c] = rows[form[t, c]]
         mesh[v, MARK] = 0
-        mesh[v, LOOKED] = base + 1
+        mesh[v, VISITED] = base + 1
     for i in range(n_rim):
         v = rows[rim[i, EDGE] // 3]
         mesh[v, rim[i, EDGE] % 3] = rim[i, OUTER]

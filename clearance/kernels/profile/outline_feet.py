@@ -123,8 +123,8 @@ def nearest_places(
                 off = (x - px) ** 2 + (y - py) ** 2
                 if off > least * TIED:
                     continue
-                beside = _squareness(pieces, k, at, x - px, y - py)
-                if off * TIED < least or beside > square:
-                    best, best_share, fx, fy, square = k, at, px, py, beside
+                squareness = _squareness(pieces, k, at, x - px, y - py)
+                if off * TIED < least or squareness > square:
+                    best, best_share, fx, fy, square = k, at, px, py, squareness
                     least = min(least, off)
         piece[i], share[i], foot[i, 0], foot[i, 1] = best, best_share, fx, fy

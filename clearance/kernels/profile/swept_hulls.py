@@ -10,7 +10,7 @@ import numpy as np
 
 from clearance.compile.declared import Floats2, Floats3, Integers2, Shorts2, Signs2
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.arithmetic.rows import with_room
+from clearance.kernels.arithmetic.rows import with_capacity
 from clearance.kernels.profile.swept_cover import Raster, SweptEdges, lies_covered
 
 MOST = 16
@@ -25,7 +25,7 @@ def with_polygon(rows, n, corners, count, interval):
     """The array of `n` polygons as rows and one more; a larger copy where there was no room."""
     if CORNERS + 2 * count > rows.shape[1]:
         raise AssertionError("a polygon has more corners than its row")
-    rows = with_room(rows, n, 1)
+    rows = with_capacity(rows, n, 1)
     rows[n, COUNT], rows[n, INTERVAL] = count, interval
     for i in range(count):
         rows[n, CORNERS + 2 * i], rows[n, CORNERS + 2 * i + 1] = corners[i, 0], corners[i, 1]

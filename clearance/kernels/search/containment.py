@@ -50,7 +50,7 @@ ON_IT = 1e-9
 
 
 @inline
-def _room(box, d, far):
+def _rounding_of_box(box, d, far):
     """[m] what rounding can move a point at `d` from the centre of a box, against its sides."""
     return LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half))
 
@@ -60,10 +60,10 @@ def in_box(surface, node, x, far):
     """True unless `x` is outside the node's box by more than rounding."""
     box = box_of(surface, node)
     d = sub(x, box.centre)
-    room = _room(box, d, far)
-    if abs(dot(box.x, d)) > box.half.x + room or abs(dot(box.y, d)) > box.half.y + room:
+    allowance = _rounding_of_box(box, d, far)
+    if abs(dot(box.x, d)) > box.half.x + allowance or abs(dot(box.y, d)) > box.half.y + allowance:
         return False
-    return abs(dot(box.z, d)) <= box.half.z + room
+    return abs(dot(box.z, d)) <= box.half.z + allowance
 
 
 @inline
@@ -87,7 +87,7 @@ def _crossing(a, b, c, x, exact):
 
 
 @inline
-def _beside(exact, a, b, c, x):
+def _is_clear_of_ray(exact, a, b, c, x):
     """True if the triangle is clearly beside or below the ray: decided by the boxes of rounded coordinates."""
     for axis in range(3):
         turn_x, turn_a = row(exact.poses[x.body], axis), row(exact.poses[a.body], axis)
@@ -105,15 +105,15 @@ def _ray_may_meet(surface, node, x, along_ray, far):
     """False only if the node's box is beside or behind the ray by more than rounding."""
     box = box_of(surface, node)
     d = sub(box.centre, x)
-    room = 8.0 * _room(box, d, far)
+    allowance = 8.0 * _rounding_of_box(box, d, far)
     p = Vec3(dot(box.x, d), dot(box.y, d), dot(box.z, d))
     t = Vec3(dot(box.x, along_ray), dot(box.y, along_ray), dot(box.z, along_ray))
     h, u, v, w = box.half, abs(t.x), abs(t.y), abs(t.z)
     return (
-        dot(p, t) + h.x * u + h.y * v + h.z * w >= -room
-        and abs(p.y * t.z - p.z * t.y) <= h.y * w + h.z * v + room
-        and abs(p.z * t.x - p.x * t.z) <= h.z * u + h.x * w + room
-        and abs(p.x * t.y - p.y * t.x) <= h.x * v + h.y * u + room
+        dot(p, t) + h.x * u + h.y * v + h.z * w >= -allowance
+        and abs(p.y * t.z - p.z * t.y) <= h.y * w + h.z * v + allowance
+        and abs(p.z * t.x - p.x * t.z) <= h.z * u + h.x * w + allowance
+        and abs(p.x * t.y - p.y * t.x) <= h.x * v + h.y * u + allowance
     )
 
 
@@ -126,7 +126,7 @@ def _crossings(surface, face, side, x, exact):
     for k in range(start + 2, surface.face_starts[face + 1]):
         second = PosedVertex(row(surface.exact, surface.face_vertices[k - 1]), side)
         third = PosedVertex(row(surface.exact, surface.face_vertices[k]), side)
-        if not _beside(exact, first, second, third, x):
+        if not _is_clear_of_ray(exact, first, second, third, x):
             number += _crossing(first, second, third, x, exact)
     return number
 
@@ -177,7 +177,7 @@ def _gained_by_caps(surface, body, side, probe, exact):
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
         a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
         one, two, three = PosedVertex(a, side), PosedVertex(b, side), PosedVertex(c, side)
-        if not _beside(exact, one, two, three, vertex):
+        if not _is_clear_of_ray(exact, one, two, three, vertex):
             number += _crossing(one, two, three, vertex, exact)
         angle = abs(solid_angle(sub(a, probe.x), sub(b, probe.x), sub(c, probe.x)))
         angles += angle if orient_posed(one, two, three, vertex, exact) > 0 else -angle

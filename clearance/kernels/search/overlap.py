@@ -38,7 +38,6 @@ class Overlap(NamedTuple):
 
 
 NO_HIT = Hit(np.inf, 2**62, 2**62, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
-NO_OVERLAP = Overlap(NO_MEETING, NO_HIT, -1, -1, 0, 0)
 
 
 @kernel

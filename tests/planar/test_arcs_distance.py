@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.kernels.curve.arc import RADIUS, WIDTH, Chord, set_arc, set_segment
-from clearance.kernels.curve.arcs import arcs_apart
+from clearance.kernels.curve.arcs import arcs_distance
 from tests.examples import examples
 
 
@@ -55,14 +55,14 @@ def drawn(rng, grid):
 def test_the_distance_of_two_arcs_is_that_of_many_points_on_them(seed, grid):
     rng = np.random.default_rng(seed)
     a, b = drawn(rng, grid), drawn(rng, grid)
-    least, rounding = arcs_apart(a, b)
+    least, rounding = arcs_distance(a, b)
     p, q = points_on(a), points_on(b)
     from scipy.spatial import cKDTree
 
     seen, _ = cKDTree(q).query(p)
     step = max(np.hypot(*np.diff(c, axis=0).T).max() for c in (p, q))
     assert least - rounding <= seen.min() <= least + step
-    assert arcs_apart(b, a)[0] == pytest.approx(least, abs=rounding)
+    assert arcs_distance(b, a)[0] == pytest.approx(least, abs=rounding)
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-16, 1e-12, 1e-6, 0.05])
