@@ -20,9 +20,7 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
             page.open(f"file://{out}/gain.html", "document.readyState === 'complete'", width)
             assert page.run("document.documentElement.scrollWidth") <= width
             assert page.run("document.querySelectorAll('svg .curve').length") == 2
-        assert "kept, 1 joint changed" in page.run(
-            "document.querySelector('.verdict').textContent"
-        )
+        assert "kept, 1 joint changed" in page.run("document.querySelector('.verdict').textContent")
         links = page.run("[...document.querySelectorAll('a')].map(a => a.href)")
         assert len(links) == 2
         for link in links:

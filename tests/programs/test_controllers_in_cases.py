@@ -123,7 +123,7 @@ def test_points_beside_a_program_are_read_along_and_listed(tmp_path):
     points = f"DEFDAT a\nDECL E6AXIS XP1={{{', '.join(axes)}}}\nENDDAT\n"
     (tmp_path / "a.dat").write_text(points)
     body = f"BAS(#BASE,0)\nBAS(#TOOL,0)\n$VEL.CP=0.1\nPTP XP1\nLIN {{X {x!r}, Y {y + 100!r}, Z {z!r}, {turn}}}\n"
-    path = controller_case(tmp_path, "a.src", f"DEF a()\n{body}END\n")
+    path = controller_case(tmp_path, "a.src", f"DEF a()\n{body}END\n", axes_as="plain")
     found = cl.load_case(path)
     move = {
         "lin": {"to": {"frame": "base", "xyz": [x / 1e3, y / 1e3 + 0.1, z / 1e3]}, "speed": 0.1}

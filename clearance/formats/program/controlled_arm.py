@@ -100,7 +100,7 @@ class ControlledArm:
         """A line each on what is assumed of axes, where the case does not say it.
 
         Raises:
-            BadProgram: the joints are not those of `axes_as`.
+            BadProgram: the joints are not those of `axes_as`, or of the maker, and nobody says how they follow.
         """
         convention, said = self.convention, self.asked.axes_as is not None
         if convention is None or self.misfit is None:
@@ -112,8 +112,8 @@ class ControlledArm:
             valid = "axes: {joint: {sign: …, offset: …}} beside it, or another preset"
             raise BadProgram(self.misfit, where="axes_as", valid=valid)
         if self.misfit and not self.asked.axes:
-            how = "axes in the program says how joints follow, e.g. {joint: {sign: -1}}"
-            yield f"{self.misfit}; {how}"
+            how = "axes: {joint: {sign: -1}} says how joints follow, or axes_as: plain that they are the axes"
+            raise BadProgram(self.misfit, where="axes", valid=how)
         else:
             text = f"joints turn as the axes of {convention.robots}"
             self.notes.append(self.misfit or text)
