@@ -43,6 +43,7 @@ A_B = link("", "a") + link("", "b")
         (robot(link("<colision/>", "a")), BadInput, "link 'a': <colision> is not read; did you mean <collision>?"),
         (robot(A_B, joint("j", "a", "b", inner="<orign/>")), BadInput, "joint 'j': <orign> is not read"),
         (robot(A_B, joint("j", "a", "b", inner="<Axis/>")), BadInput, "did you mean <axis>?"),
+        (robot(link(collision('<sphere radius="1" diameter="2"/>'))), BadInput, "='2' is not read; radius"),
         (robot("<jont/>", A_B), BadInput, "robot 'r': <jont> is not read; did you mean <joint>?"),
         (robot(A_B, joint("j", "a", "b", inner='<origin RPY="0 0 1"/>')), BadInput, "RPY='0 0 1' is not read"),
         (robot(A_B, joint("j", "a", "b", inner='<origin quat_xyzw="0 0 0 1"/>')), BadInput, "rpy=… is needed"),

@@ -216,11 +216,10 @@ def _require_known(element: Element, where: str) -> None:
     read = _ATTRIBUTES.get(element.tag, ())
     for given in element.attrib:
         meant = "rpy" if given == "quat_xyzw" else meant_name(given, read)
-        if meant:
+        if meant or (element.tag in _PRIMITIVES and given not in read):
+            valid = f"{meant}=… is needed" if meant else f"{', '.join(sorted(read))}, and no other"
             raise BadRobot(
-                f"{given}={element.get(given)!r:.60} is not read",
-                where=where,
-                valid=f"{meant}=… is needed",
+                f"{given}={element.get(given)!r:.60} is not read", where=where, valid=valid
             )
 
 
