@@ -118,7 +118,11 @@ def _withdraw(place: Path, error: Exception | None = None) -> None:
     "--shard", type=_ShardParamType(), help="Measure every n-th case only, from the i-th on."
 )
 @click.option("--fresh", is_flag=True, help="Measure all again, whatever the store has.")
-@click.option("--rehash", is_flag=True, help="Read every input file, whatever its times say.")
+@click.option(
+    "--rehash",
+    is_flag=True,
+    help="Read every input file, even if its size and times are unchanged.",
+)
 @click.option("--strict", is_flag=True, help="Exit with 2, not 1, if a case cannot be read.")
 @asked_options(CheckOptions, USUAL)
 @click.option(

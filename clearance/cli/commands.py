@@ -38,7 +38,7 @@ def clearance() -> None:
     is_flag=False,
     flag_value="summary",
     type=click.Choice(["summary", "findings", "gain"]),
-    help="Print that of summary.json, findings.json or gain.json, in place of case files.",
+    help="Print the schema of summary.json, findings.json or gain.json instead.",
 )
 def schema(results: str | None) -> None:
     """Prints the JSON Schema of case or result files.

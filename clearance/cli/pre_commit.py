@@ -30,9 +30,9 @@ USUAL = {"need": "limit"}
 def pre_commit(files: tuple[Path, ...], **given: Any) -> int:
     """Checks the cases among the files of a commit.
 
-    Cases that a file lists are checked too, each as far as its limits.
+    Cases that a file lists are checked too, each against its limits.
 
-    Says what is broken and nothing else. Exit code: the greatest of `clearance check` on each.
+    Prints only what is broken. Exit code: the greatest of `clearance check` on each.
     """
     asked = USUAL | said(CheckOptions, given)
     options = made(CheckOptions, asked, spelled_by(CheckOptions))

@@ -187,7 +187,7 @@ def fit(
 ) -> None:
     """Fits a sketch to an outline.
 
-    Changes the free dimensions of SKETCH.yaml, and its place if nothing holds it, to suit PROFILE.
+    Changes the free dimensions of SKETCH.yaml, and its place unless it is fixed, to suit PROFILE.
 
     PROFILE is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf).
     """
@@ -291,10 +291,10 @@ def sweep(
 ) -> None:
     """Writes the outline that links sweep in a plane.
 
-    Nothing that the links of CASE.yaml sweep lies outside it.
+    It contains all that the links of CASE.yaml sweep.
 
-    The motion between the samples is included, joints moving linearly, or on cubics where the
-    trajectory has velocities; the outline exceeds what is swept by at most the tolerance.
+    The motion between the samples is included: joints move linearly, or on cubics if the
+    trajectory has velocities. The outline exceeds the swept area by at most the tolerance.
     """
     from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 def robots(words: tuple[str, ...]) -> int:
     """Lists the robots of installed packages.
 
-    With WORDs, those that have each in their name.
+    With WORDs, only robots with each of them in their name.
 
-    A name stands in a case file (`urdf: example-robot-data:ur5`) or after --robot. Triangles are
-    those of collision meshes, as their files state them; a file without a moving joint is no robot.
+    Use a name in a case file (`urdf: example-robot-data:ur5`) or after --robot. Triangles are
+    counted in collision meshes, as their files state them; a file without a moving joint is no robot.
     Packages that bring robots: pybullet_data, example-robot-data, robot_descriptions. Nothing is
-    fetched: robot_descriptions shows what its own loader has brought here before.
+    fetched: robot_descriptions shows what its own loader has fetched before.
     """
     from clearance.formats.files.brought import PROVIDERS
     from clearance.formats.robot.listing import brought_robots

@@ -63,10 +63,10 @@ def audit(
 ) -> int:
     """Proves that excused pairs never meet.
 
-    Joints are within the limits of ROBOT.urdf, pairs those that ROBOT.srdf excuses.
+    The pairs are those of ROBOT.srdf, at all joint positions within the limits of ROBOT.urdf.
 
-    Each is proven separate, found to meet (with the joint positions), or left undecided. Exit code: 0
-    all pairs excused as Never are proven separate, 1 one of them is not, 2 bad input.
+    Each pair is proven separate, found to meet (with the joint positions), or left undecided. Exit
+    code: 0 all pairs excused as Never are proven separate, 1 one of them is not, 2 bad input.
     """
     from clearance.cli.progress import shown_progress
     from clearance.formats.robot.srdf import load_srdf

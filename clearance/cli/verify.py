@@ -24,8 +24,8 @@ receipt_option = click.option(
     type=click.Choice(["full", "sampled"]),
     is_flag=False,
     flag_value="full",
-    help="With --out: leave a receipt of the certified bound, which `clearance verify DIR` proves again. "
-    "sampled: of one interval in 16.",
+    help="With --out: write a receipt, from which `clearance verify DIR` proves the certified bound again. "
+    "sampled: for one interval in 16 only.",
 )
 
 

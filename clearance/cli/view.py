@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 def view(folder: Path, case: str | None) -> None:
     """Shows the replay of a report in the browser.
 
-    It has robot, scene and connecting line.
+    It shows robot, scene and the line between the nearest points.
 
-    DIR is what `clearance check --out DIR` has written. A case file is checked first. ZIP is what
-    `clearance pack` made of either. With STORE, which `clearance batch` has written, and the name
-    of a CASE in it, that case's full report is written, and where it is.
+    DIR is a report that `clearance check --out DIR` has written. A case file is checked first. ZIP
+    is what `clearance pack` made of either. With STORE, which `clearance batch` has written, and
+    the name of a CASE in it, writes that case's full report and prints its place.
     """
     if case is not None:
         _write_case(folder, case)

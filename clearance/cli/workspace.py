@@ -53,7 +53,7 @@ def workspace(
 ) -> int:
     """Finds the region that robots share.
 
-    It is where more than one robot passes, whatever the timing of their trajectories.
+    More than one robot passes there, whatever the timing of their trajectories.
 
     The robots are those of one CASE.yaml, or of several cases of one cell, in one world frame.
     Carried parts belong to their robot. Space shared with a robot that it stands on is not

@@ -168,13 +168,13 @@ class Request:
     )  # fmt: skip
     most_delay: float = option(MOST_DELAY, SPAN, "Largest delay to try [s].")
     within: tuple[Range, ...] | None = option(
-        None, RANGES, "Room for a shift along x, y and z: either way, or LOW:HIGH, as 50,0:100,0.",
+        None, RANGES, "Greatest shift along x, y and z: either way, or LOW:HIGH, as 50,0:100,0.",
         of=("obstacle", "base"),
     )  # fmt: skip
     turn: Turn | None = option(
         None,
         TURN,
-        "Allow a turn about this axis of the world, beside the shift.",
+        "Allow a turn about this axis of the world too.",
         of=("obstacle", "base"),
     )
     about: tuple[float, float, float] | None = option(
