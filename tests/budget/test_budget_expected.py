@@ -43,7 +43,9 @@ def drawn(most: float, n: int, normal: bool, rng: np.random.Generator) -> np.nda
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "normal"), [(0, False), (6, True), (8, False)])
+@pytest.mark.parametrize(
+    ("seed", "normal"), [(0, False), (2, False), (6, True), (8, False), (10, True)]
+)
 def test_deviation_is_that_of_drawn_errors(seed, normal):
     """Of points that the bodies carry: the spread of how far they are apart at errors drawn at random."""
     case = random_case(seed)

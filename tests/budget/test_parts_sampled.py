@@ -87,7 +87,7 @@ def of_parts(case: Case):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(4))
 def test_no_errors_of_any_moment_come_below_what_is_proven(seed):
     case, rng = handling(seed), np.random.default_rng(seed)
     machine, n_apart = HandlingMachine(case), 0

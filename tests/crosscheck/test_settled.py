@@ -95,7 +95,7 @@ def test_points_on_needles_are_on_them() -> None:
     """In float64 their heights are off by 4e-9 m at some poses; no step disagrees for that."""
     random = np.random.default_rng(0)
     in_floats = []
-    for _ in range(20):
+    for _ in range(40):
         width = 10.0 ** random.uniform(-10, -8)
         link, obstacle = needle(random, width), needle(random, width)
         positions = np.concatenate(

@@ -171,7 +171,7 @@ def anywhere(random, reach):
 
 
 @pytest.mark.slow
-@examples(10)
+@examples(20)
 @example(0, "dented", "fan", 2.0, 0.0)
 @example(1, "crossing", "twice", 1.0, 4e-7)
 @example(2, "copied", "thin shell", 2.0, 0.0)

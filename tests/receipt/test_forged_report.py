@@ -111,11 +111,8 @@ def leaves(told, way=()) -> Iterator[tuple]:
 
 
 def forgeries(summary) -> Iterator[tuple[tuple, dict]]:
-    """The summary with each of its values changed once, of lists those of the first, and without each key."""
-    ways = {
-        tuple(key for key in way if isinstance(key, str)): way for way in [*leaves(summary)][::-1]
-    }
-    for way in ways.values():
+    """The summary with each of its values changed once, and with each key of it left out."""
+    for way in leaves(summary):
         made = copy.deepcopy(summary)
         place = made
         for key in way[:-1]:
@@ -144,7 +141,7 @@ def test_no_value_of_the_summary_can_be_changed(report_with_tolerances, tmp_path
         line = first_line(folder, loose())
         assert line.startswith("NOT PROVEN: summary.json differs from a fresh run"), way
         n += 1
-    assert n > 200
+    assert n > 500
     path.write_text(told)
     hashed(folder, path.name)
     assert first_line(folder, loose()).startswith("PROVEN: at least 48.")
@@ -156,7 +153,12 @@ def test_no_value_of_the_summary_passes_as_made_elsewhere(report, tmp_path, answ
     folder = Path(shutil.copytree(report, tmp_path / "report"))
     path = folder / "summary.json"
     maker = read_receipt(folder / FILE_NAME).head["maker"] | OTHER
-    for way, summary in forgeries(json.loads(path.read_text())):
+    told, seen = json.loads(path.read_text()), set()
+    for way, summary in forgeries(told):
+        keys = tuple(key for key in way if isinstance(key, str))
+        if keys in seen:  # of each list its first
+            continue
+        seen.add(keys)
         path.write_text(json.dumps(summary, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
         hashed(folder, path.name, maker=maker)
         line = first_line(folder)

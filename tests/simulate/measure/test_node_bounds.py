@@ -190,7 +190,7 @@ def is_at_most(bound, distance_sq):
 
 
 @pytest.mark.slow
-@examples(12)
+@examples(25)
 @example(0, "far", "needles", 1e5, True)
 @example(1, "no area", "no area", 1.0, False)
 @given(
