@@ -75,8 +75,8 @@ class ProgramCell:
             return {}
         own = self.own.robot
         own_names = (*own.link_names, *(joint.name for joint in own.joints))
-        taken = {name.partition("/")[0] for name in own_names if "/" in name}
-        names = self._bases.keys() - taken
+        prefixes = {name.partition("/")[0] for name in own_names if "/" in name}
+        names = self._bases.keys() - prefixes
         others = {one.robot.name: one for one in self.around.robots if one.trajectory is None}
         return {name: one for name, one in others.items() if name in names}
 
@@ -173,8 +173,8 @@ def require_still(placed: PlacedRobot, around: Surroundings) -> None:
     places = _places(placed.robot, made.drives, around)
     for name in made.frames:
         if places[name] is None:
-            told = f"the program of another robot moves {name!r}, which frames are on"
-            raise BadProgram(told, valid="frames on what no other program moves")
+            fault = f"the program of another robot moves {name!r}, which frames are on"
+            raise BadProgram(fault, valid="frames on what no other program moves")
 
 
 def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> dict[str, Place | None]:

@@ -190,8 +190,8 @@ class _Frames:
                 "a frame on what stands as long as the case runs, or on a link that the program moves "
                 "(hold: {turntable/turn: …}, and no trajectory of that robot)"
             )
-            told = f"{name!r} moves, so the place of a target on it may change"
-            raise BadProgram(told, valid=valid)
+            fault = f"{name!r} moves, so the place of a target on it may change"
+            raise BadProgram(fault, valid=valid)
         if found.link != name.removeprefix(f"{self._cell.own.robot.name}/"):
             self.used.add(name)
         return found
@@ -208,10 +208,10 @@ class _Frames:
         """
         to, via = self.place(move.to.frame), self.place(move.via.frame)
         if to.link != via.link:
-            told = (
+            fault = (
                 f"frame {move.via.frame!r} does not move as frame {move.to.frame!r} of its end does"
             )
-            raise BadProgram(told, where="via.frame", valid="one and the same frame")
+            raise BadProgram(fault, where="via.frame", valid="one and the same frame")
         return np.asarray(via.pose @ np.array([*move.via.xyz, 1.0]))[:3]
 
 

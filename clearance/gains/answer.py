@@ -168,8 +168,10 @@ def _refuse_programs(case: Case, request: Request) -> None:
                 valid="a program that `clearance check` proves",
             )
         if asked is not None and asked.drives and request.kind != "obstacle":
-            told = f"the program of robot {placed.robot.name!r} moves {listed([*asked.drives])} too"
-            raise BadChange(told, valid="kind obstacle, which changes neither of their motions")
+            fault = (
+                f"the program of robot {placed.robot.name!r} moves {listed([*asked.drives])} too"
+            )
+            raise BadChange(fault, valid="kind obstacle, which changes neither of their motions")
         if asked is None or not asked.moves or request.kind == "timing":
             continue
         if request.kind != "obstacle" or asked.frames:

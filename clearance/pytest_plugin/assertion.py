@@ -52,8 +52,8 @@ def _faults(run: Run, between: tuple[str, str] | None, at_least: float | None) -
     pairs = between or ("*", "*")
     faults = [*_doubts(run), *faults_of(run, pairs, at_least)]
     if left_out := left_out_of(run, pairs):
-        told = f"{pairs[0]} - {pairs[1]}: not measured are {listed(left_out)}"
-        warnings.warn(told, stacklevel=3)
+        text = f"{pairs[0]} - {pairs[1]}: not measured are {listed(left_out)}"
+        warnings.warn(text, stacklevel=3)
     return faults
 
 

@@ -64,13 +64,13 @@ _NAMES = {
 def doubt_lines(comparison: Comparison) -> list[str]:
     """What is known less, then each doubt that is new, gone, or fails the run as before, one line each."""
     lines = [f"less is known: {text}" for text in comparison.less]
-    told = [row for row in comparison.doubts if row.doubt.fails or not (row.before and row.now)]
-    notes = [row.now for row in told if row.doubt.kind == NOTE]
+    rows = [row for row in comparison.doubts if row.doubt.fails or not (row.before and row.now)]
+    notes = [row.now for row in rows if row.doubt.kind == NOTE]
     if (
         len(notes) > MOST_NOTES
     ):  # as where a file has another name, with which each of its notes begins
-        told = [row for row in told if row.doubt.kind != NOTE]
-    for row in told:
+        rows = [row for row in rows if row.doubt.kind != NOTE]
+    for row in rows:
         change = "as before" if row.before and row.now else "new" if row.now else "gone"
         lines.append(f"{change}: {doubt_text(row.doubt)}")
     if len(notes) > MOST_NOTES:

@@ -171,8 +171,8 @@ class ControlledArm:
         if self.wrist is None and any(one.is_behind is not None for one in ends):
             unchecked["whether the wrist is before axis 1 and the upper arm"] = None
         if unchecked:
-            told = f"configurations are not checked for {listed([*unchecked])}"
-            yield f"{told}: the nearest joints are taken, and the controller may take others"
+            text = f"configurations are not checked for {listed([*unchecked])}"
+            yield f"{text}: the nearest joints are taken, and the controller may take others"
 
     def base(self) -> dict[str, Any]:
         """The controller's base, as a frame of a program."""

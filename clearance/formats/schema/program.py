@@ -128,8 +128,8 @@ class Move(StrictModel):
     def _one(self) -> Move:
         given = [name for name in self.keys() if getattr(self, name) is not None]
         if len(given) != 1:
-            told = f"{' and '.join(given)} are given" if given else "nothing is given"
-            raise BadProgram(told, valid=f"one of {', '.join(self.keys())}")
+            fault = f"{' and '.join(given)} are given" if given else "nothing is given"
+            raise BadProgram(fault, valid=f"one of {', '.join(self.keys())}")
         return self
 
 
