@@ -170,7 +170,7 @@ class _Frames:
             assert mount is not None
             raise BadProgram(
                 f"the robot stands on {mount.on!r}, so the place of {name!r} seen from it may change",
-                valid="frames on base",
+                valid="put frames on base",
             )
         self.used |= self._cell.mounts(())
         return Place("", inverse(world_from_own) @ found.pose)

@@ -115,7 +115,9 @@ def _require_same_joints(move: JointMove | PathMove, first: Stretch, second: Str
     if not np.array_equal(first.joints_on_path.free, second.joints_on_path.free):
         with at(move.where):
             fault = "other joints are held after the corner zone than before it"
-            raise BadProgram(fault, where="hold", valid="the same joints on both sides, or zone: 0")
+            raise BadProgram(
+                fault, where="hold", valid="hold the same joints on both sides, or write zone: 0"
+            )
 
 
 def is_none(way: Way) -> bool:
@@ -187,7 +189,9 @@ def _cut(arm: Arm, zone: float, before: Way, after: Way) -> tuple[float, float, 
         if is_none(side) or (isinstance(side, Stretch) and side.length < SHORTEST):
             fault = "a corner zone beside a line of no length"
             raise BadProgram(
-                fault, where="zone", valid="0, or moves that the tool's point goes along"
+                fault,
+                where="zone",
+                valid="write zone: 0, or moves that the tool's point goes along",
             )
     lengths = [_half(side) for side in sides if isinstance(side, Stretch)]
     radius = min(zone, *lengths) if len(lengths) == 2 else zone

@@ -261,7 +261,7 @@ class _Samples:
             raise BadProgram(
                 "a joint changes its speed at once where a corner zone begins or ends",
                 where="hold",
-                valid="the same joints held on both sides of a zone, where they are",
+                valid="hold the same joints on both sides of a zone, where they are",
             )
         return float(np.abs(samples.positions[0] - self.at).max() + samples.times[1] * rates)
 
@@ -282,7 +282,7 @@ class _Samples:
         self.now += float(times[-1])
         if sum(map(len, self.times)) > MOST_SAMPLES:
             raise BadDimension(
-                f"more than {MOST_SAMPLES:,} samples", where="step", valid="a larger step"
+                f"more than {MOST_SAMPLES:,} samples", where="step", valid="write a larger step"
             )
 
     def _require_limits(self, positions: np.ndarray) -> None:

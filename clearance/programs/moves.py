@@ -160,7 +160,7 @@ class Program:
             elif not isinstance(following, JointMove | PathMove):
                 with at(one.where):
                     fault = "a corner zone without a move after it"
-                    raise BadProgram(fault, where="zone", valid="0, or a move next")
+                    raise BadProgram(fault, where="zone", valid="write zone: 0, or a move after it")
 
 
 SHORTEST = 1e-9
@@ -187,7 +187,7 @@ def _seen_from(run: Run, before: str) -> str:
                 fault = (
                     f"the next target is on {one.seen_from or 'what stands'}, which moves otherwise"
                 )
-                valid = "0 (a stop), or targets on one and the same link on both sides"
+                valid = "write zone: 0 (the tool stops), or targets on one and the same link on both sides"
                 raise BadProgram(fault, where="zone", valid=valid)
         found = one.seen_from
     return before if found is None else found

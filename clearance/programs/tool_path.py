@@ -322,7 +322,9 @@ def _turn_of(rotation: np.ndarray) -> np.ndarray:
     """
     found = rotation_vector(rotation)
     if float(np.linalg.norm(found)) > np.pi - 2e-6:
-        raise BadProgram("the tool turns by half a turn", valid="less, or a move between")
+        raise BadProgram(
+            "the tool turns by half a turn", valid="turn it by less, or write a move between"
+        )
     return found
 
 

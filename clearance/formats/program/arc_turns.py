@@ -43,5 +43,7 @@ def turn_on_path(start: np.ndarray, via: np.ndarray, end: np.ndarray) -> Literal
     if np.linalg.norm(left) <= TILT:
         return "tangent"
     if abs(angle + left @ normal) >= np.pi - TILT:
-        raise BadProgram("the tool turns by half a turn or more on the arc", valid="two arcs")
+        raise BadProgram(
+            "the tool turns by half a turn or more on the arc", valid="divide it into two arcs"
+        )
     return "to"

@@ -6,9 +6,10 @@ seconds. Not for: names, loops and calls, which a language's reader resolves.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from itertools import islice
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -28,6 +29,11 @@ class AxisTarget:
     external: Mapping[str, float] = field(default_factory=dict)
     name: str = ""
     unit: ClassVar[str] = ""
+
+    @property
+    def values(self) -> list[Any]:
+        """Where it is, as numbers."""
+        return [self.axes, dict(self.external)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +59,11 @@ class PoseTarget:
     unchecked: str = ""
     name: str = ""
     unit: str = ""
+
+    @property
+    def values(self) -> list[Any]:
+        """Where it is, as numbers."""
+        return [self.pose.tolist(), dict(self.external), self.unit]
 
 
 Target = AxisTarget | PoseTarget
@@ -103,6 +114,17 @@ class ControllerWait:
     file: str = ""
     own: int = 0
     reads_on: bool = False
+
+
+def place_of(one: ControllerMove | ControllerWait) -> str:
+    """Where a move stands."""
+    return f"{one.file} line {one.line}".lstrip()
+
+
+def end_of(moves: Sequence[ControllerMove | ControllerWait]) -> list[Any]:
+    """Where the robot is after moves, as numbers; none where there are none."""
+    last = (one for one in reversed(moves) if isinstance(one, ControllerMove))
+    return [(one.to.values, one.tool.tolist()) for one in islice(last, 1)]
 
 
 @dataclass(frozen=True, eq=False)

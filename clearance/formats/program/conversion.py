@@ -23,6 +23,7 @@ from clearance.formats.program.controller_program import (
     ControllerWait,
     PoseTarget,
     Target,
+    place_of,
 )
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
@@ -208,7 +209,8 @@ class _Conversion:
             return "it begins there"
         if not np.array_equal(one.tool, other.tool):
             with at(place_of(one)):
-                raise BadProgram("a corner zone before another tool", valid="a stop there")
+                fault = f"it ends in a corner zone, and {place_of(other)} has another tool"
+                raise BadProgram(fault, valid="write it without a zone, or use the same tool")
         if self._stays(before, one) or self._stays(one, other):
             return "it does not move before or after"
         return ""
@@ -313,7 +315,9 @@ class _Conversion:
         ends = [self.arm.base_from_flange(end, one.to.unit) for end in (self._before, one)]
         via = self.arm.base_from_flange(last, one.to.unit)
         if ends[0] is None or ends[1] is None or via is None:
-            raise BadProgram("where the tool is before the arc is not known", valid="a line before")
+            raise BadProgram(
+                "where the tool is before the arc is not known", valid="write a line before it"
+            )
         start, middle, end = (pose @ one.tool for pose in (ends[0], via, ends[1]))
         return turn_on_path(start, middle[:3, 3], end)
 
@@ -382,11 +386,6 @@ class _Conversion:
                     text = f"a point {away:.3g} m away"
                     raise BadProgram(text, where=place_of(one), valid=f"{FARTHEST:g} m or less")
         return found
-
-
-def place_of(one: ControllerMove | ControllerWait) -> str:
-    """Where a move stands."""
-    return f"{one.file} line {one.line}".lstrip()
 
 
 def _names(read: ControllerProgram) -> Iterator[str]:

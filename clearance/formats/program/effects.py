@@ -5,9 +5,10 @@ Not for: running them (`execution`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from typing import Any
 
 from clearance.errors import BadProgram
 from clearance.formats.program.expressions import Call, Expression, Unknown, calls_in, names_in
@@ -24,6 +25,10 @@ from clearance.formats.program.statements import (
     within,
 )
 from clearance.formats.program.tokens import Line
+from clearance.world.notice import listed
+
+MOST_PASSES = 100
+"""Passes of an endless loop after which it has to repeat one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +103,7 @@ class Effects:
             culprit = None if name in self.skip else "it is in no file that is given"
         if culprit is not None:
             fault = f"{what} {name!r} moves the robot, or may: {culprit}"
-            raise BadProgram(fault, where=str(line), valid="one that moves nothing")
+            raise BadProgram(fault, where=str(line), valid="call one that moves nothing")
 
     def read_by(self, parts: Iterable[Expression], entered: tuple[str, ...] = ()) -> Iterator[str]:
         """The variables that expressions may read, in routines that they call too."""
@@ -164,7 +169,9 @@ def unknown_word(call: Call, suffix: str, moves: bool | None = None) -> BadProgr
     """
     if moves:
         fault = f"{call.name} moves the robot, and has no value"
-        return BadProgram(fault, where=str(call.line), valid="the move as a statement of its own")
+        return BadProgram(
+            fault, where=str(call.line), valid="write the move as a statement of its own"
+        )
     file = f"program: {{beside: [{call.name}{suffix}]}}" if suffix else "a file beside that has it"
     return BadProgram(
         f"{call.name!r} is no known instruction, and may move the robot",
@@ -177,18 +184,35 @@ def unreadable_word(one: Unreadable) -> BadProgram:
     """The error for a statement that may do anything."""
     if one.jumps:
         fault = f"{one.word!r} is not understood, and decides which lines run"
-        return BadProgram(fault, where=str(one.line), valid="a program without it")
+        return BadProgram(fault, where=str(one.line), valid="take it out of the program")
     return BadProgram(
         f"{one.word!r} is not understood, and may decide where the robot goes",
         where=str(one.line),
-        valid=f"a program without it, or skip: [{one.word}] if it does not",
+        valid=f"take it out of the program, or write skip: [{one.word}] if it does not",
     )
 
 
 def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
     """The error for a loop whose condition only the controller knows."""
-    fault, valid = f"{one.word} decides on {culprit}, and", "a condition that the file decides"
+    fault, valid = f"{one.word} decides on {culprit}, and", "let the file decide it"
     if culprit is None:
         fault, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
     fault = f"{fault} is not known: {value.why}"
     return BadProgram(fault, where=str(one.line), valid=valid)
+
+
+def require_repeating(one: While, states: Sequence[Any]) -> None:
+    """Nothing, if an endless loop may still repeat a pass.
+
+    Args:
+        states: of the program after each pass, the variables first.
+
+    Raises:
+        BadProgram: it has had its passes.
+    """
+    if len(states) == MOST_PASSES:
+        (before, *_), (now, *_) = states[-2:]
+        changed = [repr(name) for name in now if now[name] != before.get(name)]
+        fault = f"an endless loop that repeats none of its first {MOST_PASSES} passes"
+        valid = f"write a loop that ends, or set {listed(changed) or 'its variables'} back in it"
+        raise BadProgram(fault, where=str(one.line), valid=valid)

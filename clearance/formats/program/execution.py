@@ -13,8 +13,14 @@ from functools import cached_property
 from typing import Any
 
 from clearance.errors import BadProgram, nearest_name
-from clearance.formats.program.controller_program import ControllerMove, ControllerWait
-from clearance.formats.program.effects import Effects, undecided, unknown_word, unreadable_word
+from clearance.formats.program.controller_program import ControllerMove, ControllerWait, end_of
+from clearance.formats.program.effects import (
+    Effects,
+    require_repeating,
+    undecided,
+    unknown_word,
+    unreadable_word,
+)
 from clearance.formats.program.expressions import (
     Call,
     Constant,
@@ -52,9 +58,6 @@ from clearance.formats.text.notes import counted
 
 MOST_STATEMENTS = 500_000
 """Statements that a program runs; more are a loop that does not end."""
-
-MOST_PASSES = 30
-"""Passes of an endless loop after which it has to repeat itself."""
 
 MOST_MOVES = 20_000
 
@@ -96,7 +99,7 @@ class Execution(Remarks):
         for name in self.skip:
             if (culprit := self.effects.moving_in(name)) is not None:
                 fault = f"{name} moves the robot, or changes how it moves{culprit}"
-                raise BadProgram(fault, where="skip", valid="what moves nothing, or no skip")
+                raise BadProgram(fault, where="skip", valid="skip only what moves nothing")
 
     def pass_over(self, call: Call) -> None:
         """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
@@ -118,7 +121,7 @@ class Execution(Remarks):
         """
         self.moves.append(move)
         if len(self.moves) > MOST_MOVES:
-            raise BadProgram(f"more than {MOST_MOVES:,} moves", valid="a shorter program")
+            raise BadProgram(f"more than {MOST_MOVES:,} moves", valid="check it in parts")
 
     def run(self, body: Iterable[Statement]) -> Leave | None:
         """Runs statements, and what they were left by."""
@@ -133,7 +136,7 @@ class Execution(Remarks):
         self._n_run += 1
         if self._n_run > MOST_STATEMENTS:
             fault = f"more than {MOST_STATEMENTS:,} statements are run"
-            raise BadProgram(fault, where=str(line), valid="a loop that ends")
+            raise BadProgram(fault, where=str(line), valid="make the loop end")
 
     def _step(self, one: Statement) -> Leave | None:
         match one:
@@ -265,7 +268,7 @@ class Execution(Remarks):
         """
         if len(self.frames) > MOST_CALLS:
             fault = f"more than {MOST_CALLS} routines call one another"
-            raise BadProgram(fault, where=str(call.line), valid="routines that end")
+            raise BadProgram(fault, where=str(call.line), valid="end the calls")
         if len(call.args) > len(routine.parameters):
             fault = f"{call.name} is given {counted(len(call.args), 'argument')}"
             raise BadProgram(
@@ -325,22 +328,21 @@ class Execution(Remarks):
         culprit = next((found for body in bodies for found in self.effects.deciding(body)), None)
         if culprit is not None:
             fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
-            raise BadProgram(fault, where=str(one.line), valid="a condition that the file decides")
+            raise BadProgram(fault, where=str(one.line), valid="let the file decide it")
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         self._forget(self.effects.changed_in(bodies))
 
     def _while(self, one: While) -> Leave | None:
-        n_passes, before = 0, None
+        n_passes, before = 0, list[Any]()
         endless = is_constant(one.condition)
         while (one.at_end and not n_passes) or self._goes_on(one):
-            if endless and n_passes and self._state() == before:
-                text = "an endless loop: two passes are measured, each further one is the same"
-                self.note(text, f"{one.word} ({one.line})")
-                return Leave(one.line, one.word, STOP)
-            if endless and n_passes == MOST_PASSES:
-                text = "an endless loop that is never the same"
-                raise BadProgram(text, where=str(one.line), valid="variables that stay the same")
-            before = self._state() if endless and n_passes else None
+            if endless and n_passes:
+                if (state := self._state()) in before:
+                    text = f"an endless loop: {n_passes} passes are measured, each further one repeats one"
+                    self.note(text, f"{one.word} ({one.line})")
+                    return Leave(one.line, one.word, STOP)
+                before.append(state)
+                require_repeating(one, before)
             self._count(one.line)
             left = self.run(one.body)
             n_passes += 1
@@ -394,6 +396,7 @@ class Execution(Remarks):
             place |= before
         return left if left is not None and left.what in (RETURN, STOP) else None
 
-    def _state(self) -> Any:
-        """What decides how the program goes on."""
-        return copy.deepcopy((self.variables, self.frames, self.language.state))
+    def _state(self) -> tuple[Any, ...]:
+        """What decides how the program goes on: variables, settings, and where the robot is."""
+        own = self.variables, self.frames[1:], self.language.state
+        return (*copy.deepcopy(own), end_of(self.moves))

@@ -158,7 +158,7 @@ class _Fanuc:
         unread = [word for word in motion.options if not _IDLE.fullmatch(word)]
         if unread:
             fault = f"{unread[0]} is not read, and may move the target or the way"
-            raise BadProgram(fault, valid="a motion without it")
+            raise BadProgram(fault, valid="take it out of the motion")
         if not kind or len(motion.points) != (2 if kind == "circ" else 1):
             fault = f"{call.name} with {len(motion.points)} points is not read"
             raise BadProgram(fault, valid="J and L with one, C with two")
@@ -188,7 +188,7 @@ class _Fanuc:
             fault = (
                 "a position register" if name.startswith("PR") else "no position of it under /POS"
             )
-            raise BadProgram(f"{name}: {fault}", valid="P[…] with a position in the file")
+            raise BadProgram(f"{name}: {fault}", valid="use P[…] with a position in the file")
         untaught = [key for key, value in one.values.items() if value is None]
         is_joints = "J1" in one.values
         missing = [key for key in (_JOINTS if is_joints else _POSE) if key not in one.values]
@@ -220,7 +220,7 @@ class _Fanuc:
         index = taught if current is None else current
         if taught is not None and index != taught and needed:
             fault = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
-            raise BadProgram(fault, valid=f"{kind}_NUM={taught} before it")
+            raise BadProgram(fault, valid=f"write {kind}_NUM={taught} before it")
         if index == 0:
             return np.eye(4)
         key, word = f"{kind}[{index or 0:g}]", "frames" if kind == "UFRAME" else "tools"
@@ -232,7 +232,7 @@ class _Fanuc:
             return np.eye(4)
         if index is None:
             raise BadProgram(
-                f"{name}: no {kind}_NUM is set before", valid=f"{kind}_NUM=1 before it"
+                f"{name}: no {kind}_NUM is set before", valid=f"write {kind}_NUM=1 before it"
             )
         fault = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
         raise MissingKey(

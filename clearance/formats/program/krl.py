@@ -259,16 +259,18 @@ class _Krl:
             BadInput: where the robot is before is not known, or the tool is to turn.
         """
         if any(re.fullmatch("E[1-6]", key) and value != 0.0 for key, value in way.items()):
-            raise BadProgram("a relative move of external axes is not read", valid="a move to them")
+            raise BadProgram(
+                "a relative move of external axes is not read", valid="write a move to them"
+            )
         if any(key in AXES for key in way):
             if self.axes is None:
                 raise BadProgram(
-                    "the axes before this move are not known", valid="PTP to axes before it"
+                    "the axes before this move are not known", valid="write PTP to axes before it"
                 )
             return {key: self.axes[key] + _numeric(way.get(key, 0.0)) for key in AXES}
         if any(way.get(key, 0.0) != 0.0 for key in "ABC"):
             raise BadProgram(
-                "a relative move that turns the tool is not read", valid="a move to a pose"
+                "a relative move that turns the tool is not read", valid="write a move to a pose"
             )
         step = np.array([_numeric(way.get(key, 0.0)) * MM for key in "XYZ"])
         pose = self._now(settings)

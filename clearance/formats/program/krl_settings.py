@@ -152,7 +152,7 @@ class Settings:
             kind = _part(self.part("MACHINE_DEF", int(machine)), "MECH_TYPE")
             if kind != "#ROBOT":
                 fault = f"base {index} is on machine {machine} , which may move it"
-                raise BadProgram(fault, valid="a base that stands")
+                raise BadProgram(fault, valid="use a base that stands")
         return self.numbered("BASE_DATA", index, "$WORLD")
 
     def bas(self, command: Any, value: Any) -> None:

@@ -45,7 +45,7 @@ def require_followed(settings: Settings) -> None:
         fault = f"$IPO_MODE is {mode}: the tool may stand, and the robot bring the part"
         raise BadProgram(fault, valid="$IPO_MODE = #BASE")
     if not np.array_equal(_frame(settings, "$WORLD"), _NULL):
-        raise BadProgram("$WORLD is set", valid="$WORLD as it is, and $ROBROOT")
+        raise BadProgram("$WORLD is set", valid="leave $WORLD as it is, and set $ROBROOT")
     functions = settings.value("$TECH")
     if not isinstance(functions, Mapping):
         raise BadProgram(f"$TECH is not known: {functions}", valid="$TECH[…].MODE = #OFF")
@@ -58,7 +58,9 @@ def require_followed(settings: Settings) -> None:
 def _frame(settings: Settings, name: str) -> np.ndarray:
     value = settings.value(name)
     if not isinstance(value, Mapping):
-        raise BadProgram(f"{name} is not known: {value}", valid="a value that the files decide")
+        raise BadProgram(
+            f"{name} is not known: {value}", valid="give it a value that the files decide"
+        )
     return matrix_of(value, name)
 
 
@@ -76,7 +78,7 @@ class RobotRoot:
         """
         pose = _frame(settings, "$ROBROOT")
         if self.pose is not None and not np.array_equal(pose, self.pose):
-            raise BadProgram("$ROBROOT changes between moves", valid="one $ROBROOT")
+            raise BadProgram("$ROBROOT changes between moves", valid="set $ROBROOT once")
         self.pose = pose
 
     def doubts(self, asked: ProgramFile) -> Iterator[str]:

@@ -162,7 +162,7 @@ def flange_from_tool(value: list[Any]) -> np.ndarray:
     holds, frame, _ = record(value, 3, is_flagged=True)
     if not holds:
         raise BadProgram(
-            "the tool stands, and the robot holds the work", valid="a tool that the robot holds"
+            "the tool stands, and the robot holds the work", valid="use a tool that the robot holds"
         )
     return pose_of(frame)
 
@@ -185,7 +185,7 @@ def work_of(value: list[Any], units: Mapping[str, str]) -> Work:
     """
     holds, is_fixed, unit, user, frame = record(value, 5, is_flagged=True)
     if holds:
-        valid = "a work object that stands, with ufprog TRUE"
+        valid = "use a work object that stands, with ufprog TRUE"
         raise BadProgram("the robot holds the work object", valid=valid)
     if is_fixed:
         return Work("", pose_of(user) @ pose_of(frame))

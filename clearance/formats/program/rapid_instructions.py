@@ -184,7 +184,9 @@ class Rapid:
             is_turned = name == "SingArea"
             off = "SingArea\\Off, so that the tool keeps its orientation"
             raise BadProgram(
-                fault, where=str(call.line), valid=off if is_turned else "a program without it"
+                fault,
+                where=str(call.line),
+                valid=off if is_turned else "take it out of the program",
             )
         else:
             self._set(call, run)
@@ -304,7 +306,7 @@ def _require_plain(call: Call, rule: MoveRule) -> None:
     for name in ("corr", "track", "weave", "sync"):
         if name in call.named:
             fault = f"\\{name} changes the way"
-            raise BadProgram(fault, where=str(call.line), valid="no such argument")
+            raise BadProgram(fault, where=str(call.line), valid="take the argument out")
     if len(call.args) <= rule.tool:
         fault = f"{call.name} has {len(call.args)} of its arguments"
         raise BadProgram(fault, where=str(call.line), valid="target, speed, zone and tool")

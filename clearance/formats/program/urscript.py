@@ -46,11 +46,11 @@ class ToolPose(list[Any]):
     """A value `p[…]`: a point [m] and a rotation vector [rad]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Solved:
     """The axes that bring the flange to a pose (4, 4) [m], nearest to some."""
 
-    flange: np.ndarray
+    flange: list[list[float]]
     near: list[float] | None
 
 
@@ -224,7 +224,7 @@ class _UrScript:
             with_near = None if near is None else _six(near, call.line, "qnear")
             own = named.get("tcp", args[4] if len(args) > 4 else "")
             tool = self._tool(call.line, False) if isinstance(own, str) else _placed(own, call.line)
-            return Solved(_placed(pose, call.line) @ inverse(tool), with_near)
+            return Solved((_placed(pose, call.line) @ inverse(tool)).tolist(), with_near)
         elif call.name in _VALUES:
             unknown = [one for one in args if isinstance(one, Unknown)]
             return unknown[0] if unknown else _value(call, args)
@@ -294,8 +294,8 @@ def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None) ->
     name = by.name if isinstance(by, Name) else ""
     if isinstance(value, Solved):
         near = None if value.near is None else tuple(value.near)
-        pose = value.flange if tool is None else value.flange @ tool
-        return PoseTarget(pose, near=near, name=name)
+        flange = np.array(value.flange)
+        return PoseTarget(flange if tool is None else flange @ tool, near=near, name=name)
     if isinstance(value, ToolPose):
         return PoseTarget(_placed(value, line), name=name)
     return AxisTarget(tuple(_six(value, line, "the target")), name=name)

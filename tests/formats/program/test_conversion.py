@@ -221,7 +221,7 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
         (
             [HOME, replace(POSE, zone=0.01), replace(POSE, tool=at(0, 0, 1))],
             {},
-            "line 3: a corner zone before another tool",
+            "line 3: it ends in a corner zone, and line 3 has another tool; write it without",
         ),
         ([ControllerWait(3, 1.0)], {}, "nothing moves"),
         ([HOME, replace(POSE, to=PoseTarget(at(4e8, 0, 0)))], {}, "line 3: a point 4e+08 m away"),

@@ -61,7 +61,7 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert np.allclose(on.to.pose[:3, :3], np.diag([-1.0, 1.0, -1.0]), atol=1e-15)
     assert wait.seconds == 0.5 and over.tool[2, 3] == 0.1
     told = "\n".join(found.notes)
-    for what in ("set_payload (line 4)", "without moves: line 21", "endless loop", "two passes"):
+    for what in ("set_payload (line 4)", "without moves: line 21", "endless loop", "2 passes"):
         assert what in told
 
 
@@ -124,7 +124,7 @@ FAULTS = {
     "while not get_digital_in(1):\nsync()\nend": "line 1: while waits for what is not known",
     "i = 0\nwhile True:\n"
     + Q
-    + "\ni = i + 1\nend": "line 2: an endless loop that is never the same",
+    + "\ni = i + 1\nend": "repeats none of its first 100 passes; write a loop that ends, or set 'i'",
     "servoj([0,0,0,0,0,0])": "line 1: servoj moves the robot on a way",
     TOOL + "movel(p[0,0,0,1e200,0,0])": "line 2: rotation vector: a turn by inf rad",
     "grip(20)": "line 1: 'grip' is no known instruction",
@@ -139,7 +139,7 @@ FAULTS = {
     "def f():\n" + Q: "line 2: the file ends; 'end' is needed",
     "def f():\n" + Q + "\nend\ndef g():\n" + Q + "\nend": "entry: functions f, g are there",
     "def f():\nf()\nend\nf()": "more than 40 routines call one another",
-    "x = " + Q: "line 1: movej moves the robot, and has no value; the move as a statement",
+    "x = " + Q: "line 1: movej moves the robot, and has no value; write the move as a statement",
     "movej(1 / 0)": "this has no value",
     "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
     "RPC = rpc_factory(1)\nRPC.grip(20)": "line 2: 'RPC.grip' is no known instruction",
@@ -223,3 +223,24 @@ def test_a_function_is_chosen_and_files_stand_beside():
         moves_of(main, entry="h")
     with pytest.raises(cl.ClearanceError, match=r"more\.script: 'help' is defined twice"):
         read("a.script", main + "\ndef help():\nend", beside, entry="f")
+
+
+PASSES = {
+    # a pallet of three places: the way from the last back to the first is measured
+    "i = 0\nwhile True:\nmovel(p[i,0,0,0,0,0])\ni = i + 1\nif i == 3:\ni = 0\nend\nend": [
+        0,
+        1,
+        2,
+        0,
+    ],
+    # the way from 2 to 1 comes with the second pass after the first
+    "a = True\nwhile True:\nif a:\nmovel(p[9,0,0,0,0,0])\na = False\nelse:\nmovel(p[1,0,0,0,0,0])\n"
+    "movel(p[2,0,0,0,0,0])\nend\nend": [9, 1, 2, 1, 2],
+    # solved anew in each pass
+    "while True:\nq = get_inverse_kin(p[4,0,0.1,0,0,0])\nmovej(q)\nend": [4, 4],
+}
+
+
+@pytest.mark.parametrize("body", PASSES)
+def test_an_endless_loop_is_measured_until_it_repeats_itself(body):
+    assert [round(place(one)[0]) for one in moves_of(TOOL + body)] == PASSES[body]
