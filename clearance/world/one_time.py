@@ -56,6 +56,11 @@ def _time_dependent_parts(case: Case) -> Iterator[str]:
     for i, row in enumerate(case.allow):
         if row.window.ends or row.while_carried:
             yield f"allow[{i}] holds for a time, and excuses nothing"
+    for robot in case.robots:
+        n_zones = 0 if robot.trajectory is None else len(robot.trajectory.corners)
+        if n_zones:
+            zones = f"corner zones of robot {robot.robot.name!r}"
+            yield f"{zones} pad its links while they are passed, and are not counted"
     tables = [(f"robot {one.robot.name!r}", one.timing) for one in case.robots]
     tables += [(f"obstacle {o.name!r}", o.moves.timing) for o in case.obstacles if o.moves]
     for name, timing in tables:

@@ -204,6 +204,8 @@ def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
         assert ("corner zones" in told) == (zone > 0.0)
         least.append(record.worst.clearance)
     assert least[0] - 0.02 < least[1] <= least[0] + 1e-6
+    with pytest.warns(UserWarning, match="corner zones of robot 'heron6' pad its links"):
+        cl.Checker(cl.load_case(path))
 
 
 def test_another_tool_is_what_the_next_line_is_of(tmp_path):
