@@ -419,7 +419,9 @@ def _shift(case: Case, request: Request) -> tuple[Shift, str]:
         raise BadChange("the case has no obstacle", valid="kind waypoints, base or timing")
     if request.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
-        raise BadChange("there are several obstacles, and none is named", valid=f"one of {names}")
+        raise BadChange(
+            "there are several obstacles; name one with --obstacle", valid=f"one of {names}"
+        )
     who = request.obstacle or case.obstacles[0].name
     return obstacle_shift(case, who, box, request.turn), who
 
@@ -433,7 +435,7 @@ def _robot(case: Case, name: str | None) -> int:
     names = [placed.robot.name for placed in case.robots]
     if name is None and len(names) > 1:
         raise BadChange(
-            "there are several robots, and none is named", valid=f"one of {', '.join(names)}"
+            "there are several robots; name one with --robot", valid=f"one of {', '.join(names)}"
         )
     if name is not None and name not in names:
         raise UnknownRobot(f"there is no robot {name!r}", valid=nearest_name(name, names))

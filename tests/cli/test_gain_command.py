@@ -94,7 +94,7 @@ def test_a_folder_that_holds_an_input_is_refused_before_any_search(slot, capsys)
     [
         (
             ["--kind", "obstacle"],
-            "there are several obstacles, and none is named; one of left, right",
+            "there are several obstacles; name one with --obstacle; one of left, right",
         ),
         (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),

@@ -34,7 +34,7 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.statements import Do, Routine, Statement
 from clearance.formats.program.tokens import Line, text_of
-from clearance.formats.program.urscript_text import UrScript, script_of
+from clearance.formats.program.urscript_text import UrScript, labels_of, script_of
 from clearance.geometry.pose import inverse, pose_from_rotation_vector
 from clearance.geometry.quaternions import rotation_vector
 
@@ -88,7 +88,7 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
         BadInput: with the file and the line.
     """
     with at(asked.shown):
-        script = script_of(text_of(asked.data))
+        script = script_of(text := text_of(asked.data))
         data_of_others = list[Statement]()
         for file, data in asked.beside.items():
             another = script_of(text_of(data, file), file)
@@ -97,7 +97,7 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
             script.routines |= another.routines
             data_of_others += another.body
         tool = asked.asked.tools.get(TCP)
-        language = _UrScript(None if tool is None else tool.matrix())
+        language = _UrScript(None if tool is None else tool.matrix(), labels_of(text))
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
         entry = _entry(script, asked.asked.entry)
         run.run(_outside(data_of_others, run.routines))
@@ -137,11 +137,12 @@ class _UrScript:
     """What URScript's functions do.
 
     Attributes:
-        tool: (4, 4) `flange_from_tool` [m]; None until it is known. last: the target of the last move, if it
-            stops.
+        tool: (4, 4) `flange_from_tool` [m]; None until it is known. labels: of nodes, by line.
+        last: the target of the last move, if it stops.
     """
 
     tool: np.ndarray | None
+    labels: Mapping[int, str]
     last: Any = None
     suffix = ""
 
@@ -254,7 +255,8 @@ class _UrScript:
         ends = [key for key in _TARGETS if key in given]
         if len(ends) != (2 if call.name == "movec" else 1):
             raise MissingKey(f"{call.name} has no target", where=str(call.line))
-        targets = [_target(values[key], given[key], call.line, self.tool) for key in ends]
+        label = "" if call.line.file else self.labels.get(call.line.number, "")
+        targets = [_target(values[key], given[key], call.line, self.tool, label) for key in ends]
         is_joints = call.name == "movej"
         move = ControllerMove(
             call.line.number,
@@ -287,11 +289,11 @@ class _UrScript:
         )
 
 
-def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None) -> Target:
-    """The target of a tool that a value is, with the name that it has in the script."""
+def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None, label: str) -> Target:
+    """The target of a tool that a value is, with the name that it has in the script, or else its node's."""
     known(value, line, "the target")
     by = one.args[0] if isinstance(one, Call) and isinstance(value, Solved) and one.args else one
-    name = by.name if isinstance(by, Name) else ""
+    name = by.name if isinstance(by, Name) else label
     if isinstance(value, Solved):
         near = None if value.near is None else tuple(value.near)
         flange = np.array(value.flange)

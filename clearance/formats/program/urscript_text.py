@@ -45,6 +45,9 @@ WORDS = re.compile(
     re.VERBOSE,
 )
 
+_NODE = re.compile(r'[ \t]*\$[ \t]*\d+[ \t]*"([^"]*)"')
+"""A node of PolyScope with its label, above the lines that it makes."""
+
 GRAMMAR = Grammar(
     binary={
         "or": (1, lambda a, b: bool(a) or bool(b)),
@@ -84,6 +87,18 @@ class UrScript:
     routines: dict[str, Routine] = field(default_factory=dict)
     outer: list[str] = field(default_factory=list)
     body: tuple[Statement, ...] = ()
+
+
+def labels_of(text: str) -> dict[int, str]:
+    """The labels of PolyScope's nodes, each by the number of the first line below it."""
+    found, label = dict[int, str](), ""
+    for number, row in enumerate(text.split("\n"), 1):
+        node = _NODE.match(row)
+        if node:
+            label = node[1]
+        elif label and row.strip():
+            found[number], label = label, ""
+    return found
 
 
 def script_of(text: str, file: str = "") -> UrScript:

@@ -244,3 +244,9 @@ PASSES = {
 @pytest.mark.parametrize("body", PASSES)
 def test_an_endless_loop_is_measured_until_it_repeats_itself(body):
     assert [round(place(one)[0]) for one in moves_of(TOOL + body)] == PASSES[body]
+
+
+def test_labels_of_nodes_name_the_moves_that_stand_below_them():
+    nodes = '$ 2 "MoveL"\n  $ 3 "approach" "breakAfter"\n\nmovel(p[1,0,0,0,0,0])\nmovel(p[2,0,0,0,0,0])\n'
+    nodes += 'P = p[3,0,0,0,0,0]\n$ 4 "weld"\nmovel(P)\n$ 5 "home"\nmovej([0,0,0,0,0,0])\n'
+    assert [one.to.name for one in moves_of(TOOL + nodes)] == ["approach", "", "P", "home"]
