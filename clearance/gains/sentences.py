@@ -54,6 +54,8 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
         return
     yield from _kept(gain) if gain.kept else _not_kept(gain)
+    if gain.request.kind == "obstacle" and gain.size > 0.0:
+        yield from (("note", line) for line in _programs_left(gain))
     if not is_hopeless(gain):
         yield "bound", bound_text(gain)
     fast = _too_fast(gain)
@@ -64,6 +66,16 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
         )
     if gain.request.margin:
         yield "margin", "it is not written into the changed case, whose limits are as they were"
+
+
+def _programs_left(gain: Gain) -> Iterator[str]:
+    """Programs whose targets may be taught on the obstacle that is moved."""
+    for placed in gain.case.robots:
+        if placed.trajectory is not None and placed.trajectory.moves:
+            yield (
+                f"the program of robot {placed.robot.name!r} stays as it is: if it works on {gain.who}, "
+                "move its work frame as well"
+            )
 
 
 def _too_fast(gain: Gain) -> str:

@@ -17,6 +17,7 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
+from clearance.world.trajectory import MoveSpan
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
@@ -51,6 +52,22 @@ def test_an_overlap_is_parted_by_its_depth_and_the_limit():
     assert found.kept and found.size == pytest.approx(0.04, abs=FINE)
     assert found.change[1] == pytest.approx(0.04, abs=FINE)
     assert found.lower_bound == pytest.approx(0.04, rel=1e-4)
+
+
+def test_an_obstacle_moves_without_the_program_that_may_work_on_it():
+    case = slot()
+    (bar,) = case.robots
+    work = replace(bar.trajectory, moves=(MoveSpan("LIN 1", 0.0, 1.0),))
+    programmed = replace(case, robots=(replace(bar, trajectory=work),))
+    left = [
+        line
+        for one in (case, programmed)
+        for label, line in lines_of(gain(one, "obstacle", obstacle="left"))
+        if label == "note"
+    ]
+    assert left == [
+        "the program of robot 'gantry' stays as it is: if it works on left, move its work frame as well"
+    ]
 
 
 @pytest.mark.parametrize("fail", [0.02, 0.1])
