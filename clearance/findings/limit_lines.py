@@ -40,7 +40,7 @@ def moment_line(record: Record, moment: Moment) -> str:
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if limits.below(moment.clearance, limit):
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
-            return f"{padded_mm(moment)}, {below}: {where}"
+            return f"{padded_mm(moment, (limit,))}, {below}: {where}"
     return f"{padded_mm(moment)}{_judged_by(moment)}: {where}"
 
 

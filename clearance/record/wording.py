@@ -102,16 +102,21 @@ def least_text(moment: Moment, levels: Sequence[float] = ()) -> str:
 
 
 SEEN_PADDING = 1e-4
-"""[m] Less padding than this is told only where bodies are listed."""
+"""[m] Less padding than this is told only where bodies are listed, or where a limit lies between."""
+
+EQUAL = 1e-12
+"""[m] Rounding of a clearance that is equal to a limit."""
 
 
 def padded_mm(moment: Moment, levels: Sequence[float] = ()) -> str:
     """The clearance of a moment in millimetres; with padding, that and the distance of the shapes beside it."""
-    text = f"{mm(moment.clearance, levels)} mm"
-    if moment.touches or moment.padding < SEEN_PADDING:
+    text, shapes = f"{mm(moment.clearance, levels)} mm", moment.clearance + moment.padding
+    if not moment.touches and moment.padding >= SEEN_PADDING:
+        return f"{text} ({mm(shapes)} mm less {mm(moment.padding)} mm of padding)"
+    decides = any(moment.clearance < level <= shapes + EQUAL for level in levels)
+    if moment.touches or not decides:
         return text
-    shapes = mm(moment.clearance + moment.padding)
-    return f"{text} ({shapes} mm less {mm(moment.padding)} mm of padding)"
+    return f"{text} ({mm(shapes + EQUAL)} mm less {scientific_mm(moment.padding)} mm of padding)"
 
 
 def _range(greatest: str, least: str, exact: bool) -> str:
