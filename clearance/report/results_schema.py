@@ -75,7 +75,7 @@ class Summary(Keys):
     worst: CriticalMoment
     worst_sample: CriticalMoment
     nearest: Moment
-    nearest_moving: str | None = None
+    nearest_moving: str | None
     sensitivity: Sensitivity
     limits: Limits
     rules: list[Rule]
