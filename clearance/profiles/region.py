@@ -43,7 +43,7 @@ def widened(corners: np.ndarray, n_corners: np.ndarray, by: float, excess: float
     last = np.minimum(np.arange(corners.shape[1]), n_corners[:, None] - 1)
     used = np.take_along_axis(corners, last[:, :, None], axis=1)
     points = (used[:, :, None] + around).reshape(len(used), -1, 2)
-    return shapely.convex_hull(shapely.multipoints(shapely.points(points)))
+    return shapely.convex_hull(shapely.linestrings(points))
 
 
 def union(parts: Sequence[Region] | np.ndarray) -> Region:
