@@ -134,8 +134,8 @@ def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Bud
             raise BadMotion(
                 f"joint {one.joint!r} is {one.greatest:.3g} {units[one.joint]} off the commanded motion at "
                 f"{one.time:.3f} s",
-                valid=f"at most {most:g} {units[one.joint]}, of joints with the zeros and signs of the URDF; "
-                "--recorded-offset, if its clock is another",
+                valid=f"at most {most:g} {units[one.joint]}, of joints with the zeros and signs of the URDF "
+                "(`axes` of a program is not applied); --recorded-offset, if its clock is another",
             )
         joints[one.joint] = replace(joints.get(one.joint, JointTolerance()), tracking=one.greatest)
     source = f"tracking: the greatest errors of the run {found.path}"

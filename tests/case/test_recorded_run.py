@@ -25,7 +25,7 @@ PATH = "time,shoulder,lift\n0,0,0\n1,0.1,0.01\n2,0.3,0.01\n"
 APART = "it covers 5 to 6 s, and the commanded motion 0 to 1 s; --recorded-offset -5 if both begin"
 FAR_OFF = (
     "joint 'shoulder' is 0.5 rad off the commanded motion at 0.000 s; at most 0.2 rad, "
-    "of joints with the zeros and signs of the URDF; "
+    "of joints with the zeros and signs of the URDF (`axes` of a program is not applied); "
     "--recorded-offset, if its clock is another"
 )
 DRIVEN = "time,shoulder,lift\n0,0,0\n0.5,0.06,0.006\n2,0.298,0.01\n2.5,0.298,0.01\n"
