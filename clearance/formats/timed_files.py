@@ -77,7 +77,7 @@ def trajectory_of(
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
         found = (
-            _of_bag(path, files, given.choice, kinds, wrapping)
+            _of_bag(path, files, given.choice, kinds | follow, wrapping)
             if is_bag(path)
             else _read(path, files, read, Kind.TRAJECTORY)
         )
