@@ -304,11 +304,19 @@ def _level(finding: Finding) -> float | None:
 
 def _no_number(before: Finding, now: Finding) -> str:
     """Why it is not known which of two findings is worse; empty where it is."""
+    if before.status == now.status == Status.CONTACT and _contact(before) != _contact(now):
+        return "both are in contact, elsewhere or at another time, and findings do not say how deep"
     if _level(before) is not None and _level(now) is not None:
         return ""
     if before.status == now.status == Status.CLEAR or before.text == now.text:
         return ""
     return "how far it is broken is only known in words, and they differ"
+
+
+def _contact(finding: Finding) -> list[float | None]:
+    """[s] and [m] when and where two bodies touch, to a micrometre."""
+    of = (finding.time, finding.start, finding.end, *(finding.point_a or ()))
+    return [None if one is None else round(one, 6) for one in of]
 
 
 def _lost_excuse(before: Finding, now: Finding) -> str:

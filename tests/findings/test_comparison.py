@@ -65,6 +65,15 @@ def test_what_became_of_each_finding(what, before, tmp_path):
     assert sum(comparison.counts.values()) == len(comparison.rows)
 
 
+def test_another_contact_of_the_same_pair_may_be_a_deeper_one(tmp_path):
+    touching = found(tmp_path, {A: (-0.5, -0.005)})
+    assert compared(touching, touching).passed
+    comparison = compared(touching, found(tmp_path / "now", {A: (-0.5, -0.02)}))
+    (row,) = comparison.rows
+    assert row.change == FindingChange.NOT_COMPARABLE and "how deep" in row.why
+    assert not comparison.passed
+
+
 def waived_found(folder, gates) -> FindingList:
     """With a waiver of the first gate."""
     folder.mkdir()
