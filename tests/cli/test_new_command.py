@@ -116,6 +116,8 @@ def test_a_program_stays_the_file_that_it_is(capsys):
         "grip",
         "--flange",
         "tool_tip",
+        "--program-keys",
+        "axes_as: plain",
         "--scene",
         "cell/cell.scene",
     ]

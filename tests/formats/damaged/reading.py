@@ -119,7 +119,7 @@ def controller(data: bytes, folder: Path, name: str) -> object:
     from clearance.formats.schema.program import Frame
     from clearance.formats.schema.program_file import ProgramFile
 
-    asked = ProgramFile(file=name, link="tool_tip", base=Frame(on="base"))
+    asked = ProgramFile(file=name, link="tool_tip", base=Frame(on="base"), axes_as="plain")
     row = format_of(Kind.PROGRAM, name, data)
     read = function_at(row.read)(ProgramRequest(data, name, asked))
     return converted(read, asked, programmed().robot, {})
