@@ -13,7 +13,7 @@ from clearance.record.moment import Moment
 from clearance.record.names import LINK_AND_OBSTACLE
 from clearance.record.record import Record
 from clearance.record.sensitivity import Sensitivity
-from clearance.record.wording import count, joint_value, mm, other_time, seconds
+from clearance.record.wording import count, joint_value, mm, other_time, padded_mm, seconds
 from clearance.report.blocks import Paragraph, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import (
@@ -139,7 +139,7 @@ def sections(content: PageContent) -> Iterator[Section]:
         Row([f"on {worst[body]}", *(number(f"{v * 1000:.3f}") for v in worst[f"point_{body}"])])
         for body in ("link", "obstacle")
     ]
-    near = depth_of(worst) if worst["touches"] else f"{mm(worst['clearance'])} mm"
+    near = depth_of(worst) if worst["touches"] else padded_mm(content.verdict.worst)
     first = f"{near} between {worst['link']} and {worst['obstacle']} at "
     yield Section(
         "Worst moment",
