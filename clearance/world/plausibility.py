@@ -223,7 +223,7 @@ def _waits_left_out(case: Case) -> Iterator[Notice]:
         others = [name for name in moving if name not in own]
         if others:
             text = (
-                f"CHECK CLOCKS: {own[0]} takes no time for what is left out ({listed(asked.left_out)}), and "
+                f"CHECK CLOCKS: the times of {own[0]} leave out {listed(asked.left_out)}, and "
                 f"{listed(others)} moves too; clock: {{slack: seconds}} says by how much their times may be off"
             )
             yield Notice(Severity.SUSPECT, "clocks", text)

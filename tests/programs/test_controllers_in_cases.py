@@ -210,6 +210,7 @@ def test_flags_choose_the_configuration_and_tools_change(tmp_path):
     way = (last - tool_at(START))[:3, 3]
     assert np.allclose(way, 0.02 * tool_at(START)[:3, 1], atol=1e-9)
     assert "joint moves whose speed is the tool's" in "\n".join(found.notes)
+    assert trajectory.left_out == ("the speed of joint moves that is given as the tool's",)
 
 
 @pytest.mark.parametrize("is_said", [False, True])

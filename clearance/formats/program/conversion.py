@@ -44,6 +44,9 @@ FARTHEST = 1e3
 NO_WAY = 1e-9
 """[m] and sine of a turn: a move that is shorter is none."""
 
+UNTIMED = "the speed of joint moves that is given as the tool's"
+"""What the times of a program lack, beside instructions that are left out."""
+
 CONTROLLER = "controller"
 """The frame of the moves: the controller's base."""
 
@@ -57,7 +60,8 @@ class ConvertedProgram:
             assumed.
         assumed: what a verdict rests on, where nothing in the files confirms it, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
-        left_out: instructions that the case leaves out, and where. own: the program, if it is written in our form.
+        left_out: instructions that the case leaves out, and where, and `UNTIMED`: what its times lack.
+        own: the program, if it is written in our form.
     """
 
     program: schema.Program
@@ -113,7 +117,8 @@ def converted(
     if made.compared[0] >= 0.0:  # the file itself says that it is so
         notes, unproven = (*notes, *unproven), ()
     rests_on = (*unproven, *made.doubts())
-    return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on, read.left_out)
+    left_out = (*read.left_out, *([UNTIMED] if made.has_untimed_moves else []))
+    return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on, left_out)
 
 
 @dataclass(eq=False)
@@ -355,10 +360,9 @@ class _Conversion:
 
     def assumed(self) -> Iterator[str]:
         """A line each on what the moves leave open, and how that is taken."""
-        joint_moves = [one for one in self._moves if one.kind == "ptp"]
-        if any(one.share is None and one.axis_speed is None for one in joint_moves):
+        if self.has_untimed_moves:
             yield "joint moves whose speed is the tool's go at the joints' full speeds"
-        if any(one.axis_speed is not None for one in joint_moves):
+        if any(one.axis_speed is not None for one in self._joint_moves):
             yield "speeds of axes are shares of the slowest joint's greatest speed"
         needed = {"base": bool(self._poses), "axes": self.names_axes, "axes_as": self.names_axes}
         idle = [key for key in needed if not needed[key] and getattr(self.arm.asked, key)]
@@ -367,6 +371,15 @@ class _Conversion:
         if self.compared[0] >= 0.0:
             way, turn = self.compared[0] * 1e3, np.degrees(self.compared[1])
             yield f"poses with axes beside them agree with the robot within {way:.2g} mm and {turn:.2g} degrees"
+
+    @property
+    def _joint_moves(self) -> list[ControllerMove]:
+        return [one for one in self._moves if one.kind == "ptp"]
+
+    @property
+    def has_untimed_moves(self) -> bool:
+        """Whether a joint move has the speed of the tool, which says no time."""
+        return any(one.share is None and one.axis_speed is None for one in self._joint_moves)
 
     @cached_property
     def _moves(self) -> list[ControllerMove]:
