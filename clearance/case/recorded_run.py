@@ -159,7 +159,7 @@ def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
             raise BadMotion(
                 f"it is {span} {asked}; in the rest joint {one.joint!r} was to move by {one.greatest:.3g} "
                 f"{units[one.joint]}",
-                valid=f"all of the motion but {most:g} {units[one.joint]}",
+                valid=f"a recording that misses at most {most:g} {units[one.joint]} of it",
             )
     if not left_out:
         return []

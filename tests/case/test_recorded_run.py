@@ -163,7 +163,7 @@ def test_a_recording_that_leaves_out_much_of_the_motion_is_refused(tmp_path):
     with pytest.raises(BadInput) as caught:
         with_recorded(case(tmp_path, short), tmp_path / "run.csv")
     assert "in the rest joint 'shoulder' was to move by 0.25 rad" in str(caught.value)
-    assert "all of the motion but 0.2 rad" in str(caught.value)
+    assert "a recording that misses at most 0.2 rad of it" in str(caught.value)
 
 
 def test_time_in_which_nothing_was_to_move_may_be_left_out():

@@ -119,7 +119,7 @@ def source_lines(record: Record, one: RuleBudget, worst: BudgetMoment) -> Iterat
     """What takes most at a moment of a rule, and what of it may be how great at most."""
     moment = worst.moment
     where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
-    yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
+    yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven at this moment: {where}"
     causes = [
         f"{source_text(record, source)} {depth_mm(source.proven)} mm ({given_text(source)})"
         for source in worst.sources[:MOST_SOURCES]
