@@ -38,7 +38,7 @@ def home(cell, tmp_path):
 def test_the_receipt_of_a_run_is_proven(home, capsys):
     assert run(["verify", str(home / "out")]) == ExitCode.CLEAR
     told = capsys.readouterr().out
-    assert told.startswith("PROVEN: at least 34.978 mm (default) between all 1 pairs over 300 ")
+    assert told.startswith("PROVEN: at least 34.977 mm (default) between all 1 pairs over 300 ")
     assert (
         "; verdict clear; self-collision not checked [CL531]; every byte of the report matches a fresh run; "
         "3 inputs of ../scenes/" in told
@@ -72,7 +72,7 @@ def test_the_bound_is_proven_where_no_report_can_be_written(home, capsys, monkey
         "a fresh report needs pyarrow, which is not installed; pip install 'clearance[report]')"
         in told
     )
-    assert "at least 34.978 mm (default) between all 1 pairs" in told and "every byte" not in told
+    assert "at least 34.977 mm (default) between all 1 pairs" in told and "every byte" not in told
     summary = home / "out" / "summary.json"
     summary.write_text(summary.read_text().replace('"verdict": "clear"', '"verdict": "near"'))
     hashed(home / "out", "summary.json")
