@@ -91,7 +91,8 @@ def contact(
         bounded: False leaves the lower bound of the depth at 0 where it is not known anyway: half the work.
 
     Raises:
-        BadPose: not a rigid motion. BadInput: a body without any extent in space. BadShape: a cloud of points.
+        BadPose: not a rigid motion. BadInput: a body without extent in space, or that may be inside another one
+            whose surface has holes. BadShape: a cloud of points.
 
     Exactness: for two convex bodies, exact to rounding. Otherwise `penetration` and `volume` are upper bounds
         and `_at_least` lower ones; the translation has then been confirmed by the distance of the bodies
@@ -101,6 +102,11 @@ def contact(
     world_from_a = validated_pose(np.eye(4) if pose_a is None else pose_a)
     world_from_b = validated_pose(np.eye(4) if pose_b is None else pose_b)
     near = distance(a, b, pose_a=world_from_a, pose_b=world_from_b)
+    if near.inside == "undecided":
+        raise BadInput(
+            "it is open whether one body is inside the other: a surface has holes or cracks",
+            valid="closed meshes",
+        )
     if not near.contact:
         return None
     b_from_a = inverse(world_from_b) @ world_from_a

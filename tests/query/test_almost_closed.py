@@ -12,6 +12,7 @@ from scipy.spatial import ConvexHull
 from clearance import Polyhedron, Query, box, contact, distance
 from clearance.crosscheck.containment import winding_number
 from clearance.crosscheck.triangles import triangle_soup
+from clearance.errors import BadInput
 from clearance.geometry.closing import FEW, SOME, closing_of
 from tests import oracle
 from tests.made_cases import at, ball, dented, faces_of
@@ -86,6 +87,8 @@ def test_what_is_in_the_hole_is_undecided_by_name() -> None:
     for share, expected in ((0.6, "yes"), (0.98, "undecided"), (1.0, "undecided"), (1.3, "no")):
         near = distance(outer, box((0.01, 0.01, 0.01)), pose_b=at(*(share * middle)))
         assert (near.inside, near.contact) == (expected, expected == "yes"), share
+    with pytest.raises(BadInput, match="open whether one body is inside the other"):
+        contact(outer, box((0.01, 0.01, 0.01)), pose_b=at(*(0.98 * middle)))
     many = Query(outer, box((0.01, 0.01, 0.01))).distances(
         None, [at(*(s * middle)) for s in (0.6, 0.98, 1.3)]
     )

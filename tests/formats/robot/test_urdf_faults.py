@@ -44,6 +44,8 @@ A_B = link("", "a") + link("", "b")
         (robot(A_B, joint("j", "a", "b", inner="<orign/>")), BadInput, "joint 'j': <orign> is not read"),
         (robot(A_B, joint("j", "a", "b", inner="<Axis/>")), BadInput, "did you mean <axis>?"),
         (robot(link(collision('<sphere radius="1" diameter="2"/>'))), BadInput, "='2' is not read; radius"),
+        (robot(A_B, joint("j", "a", "b", inner='<origin xzy="1 0 0"/>')), BadInput, "xzy='1 0 0' is not read"),
+        (robot(A_B, joint("j", "a", "b", inner='<origin pos="1 0 0"/>')), BadInput, "is not read; rpy, xyz"),
         (robot("<jont/>", A_B), BadInput, "robot 'r': <jont> is not read; did you mean <joint>?"),
         (robot(A_B, joint("j", "a", "b", inner='<origin RPY="0 0 1"/>')), BadInput, "RPY='0 0 1' is not read"),
         (robot(A_B, joint("j", "a", "b", inner='<origin quat_xyzw="0 0 0 1"/>')), BadInput, "rpy=… is needed"),

@@ -62,6 +62,9 @@ _REQUIRED = {
 
 _SHAPES = (*_PRIMITIVES, "mesh")
 
+_PLAIN = {*_PRIMITIVES, "origin", "mimic", "parent", "child"}
+"""Elements that public files give no attributes but those that are read."""
+
 _SINGLE = ("origin", "axis", "limit", "mimic")
 """Elements that stand once in another one."""
 
@@ -216,7 +219,7 @@ def _require_known(element: Element, where: str) -> None:
     read = _ATTRIBUTES.get(element.tag, ())
     for given in element.attrib:
         meant = "rpy" if given == "quat_xyzw" else meant_name(given, read)
-        if meant or (element.tag in _PRIMITIVES and given not in read):
+        if meant or (element.tag in _PLAIN and given not in read):
             valid = f"{meant}=… is needed" if meant else f"{', '.join(sorted(read))}, and no other"
             raise BadRobot(
                 f"{given}={element.get(given)!r:.60} is not read", where=where, valid=valid
