@@ -178,7 +178,7 @@ def work_of(value: list[Any], units: Mapping[str, str]) -> Work:
     """A work object: user frame times object frame; a unit that moves it has the user frame itself.
 
     Args:
-        units: those of which the case says the frame, by their names in small letters.
+        units: mechanical units whose frames the case gives, by name in small letters.
 
     Raises:
         BadProgram: one that the robot holds, or that moves with an unknown unit.
