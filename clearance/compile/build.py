@@ -134,8 +134,8 @@ def _alone() -> AbstractContextManager:
     try:
         return lock.acquire(timeout=LONGEST)
     except Timeout:
-        held = f"another process has held {lock.lock_file} for {LONGEST} s"
-        raise BuildFailed(held) from None
+        busy = f"another process has held {lock.lock_file} for {LONGEST} s"
+        raise BuildFailed(busy) from None
 
 
 def _files(unit: Unit, levels: Sequence[str]) -> list[Path]:
@@ -162,7 +162,7 @@ def _compile_all(missing: Sequence[Unit], levels: Sequence[str]) -> None:
 
 
 def _n_workers() -> int:
-    """As many as there are cores, and as the machine's memory has room for."""
+    """As many as there are cores, and as fit into the machine's memory."""
     if not hasattr(os, "sched_getaffinity"):
         return os.cpu_count() or 1
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
@@ -233,8 +233,8 @@ def _finish(everything: Sequence[Unit], sources: str, levels: Sequence[str]) -> 
         library = library_file(level, is_linked)
         _replace(library, make)
         sizes[library.name] = library.stat().st_size
-    told = Manifest(sources, is_linked, sizes)
-    manifest = json.dumps(told._asdict(), indent=1) + "\n"
+    built = Manifest(sources, is_linked, sizes)
+    manifest = json.dumps(built._asdict(), indent=1) + "\n"
     _replace(FOLDER / "manifest.json", lambda draft: draft.write_text(manifest))
 
 

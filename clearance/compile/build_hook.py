@@ -48,9 +48,9 @@ class KernelBuild(BuildHookInterface):
         build_data["pure_python"] = False
         files = {folder / name: name for name in manifest["sizes"]}
         build_data["tag"] = f"py3-none-{_platform(file.read_bytes() for file in files)}"
-        told = folder / "manifest-of-wheel.json"
-        told.write_text(json.dumps({**manifest, "is_checked": False}))
-        files[told] = "manifest.json"
+        of_wheel = folder / "manifest-of-wheel.json"
+        of_wheel.write_text(json.dumps({**manifest, "is_checked": False}))
+        files[of_wheel] = "manifest.json"
         build_data["force_include"] |= {
             str(file): f"{BUILT}/{name}" for file, name in files.items()
         }

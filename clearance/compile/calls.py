@@ -43,19 +43,19 @@ class Written:
     stand, the value itself is given instead.
     """
 
-    __slots__ = ("_held", "address", "value")
+    __slots__ = ("_referenced", "address", "value")
 
     def __new__(cls, value: Any, kind: Any) -> Any:
         return value if DISABLED else super().__new__(cls)
 
     def __init__(self, value: Any, kind: Any) -> None:
         words: list[Any] = []
-        held: list[Any] = [value]
+        referenced: list[Any] = [value]
         write, pack = _tuple_writer(kind)
-        write(value, words, held)
+        write(value, words, referenced)
         block = pack(*words)
-        self._held = (held, ctypes.create_string_buffer(block, len(block)))
-        self.value, self.address = value, ctypes.addressof(self._held[1])
+        self._referenced = (referenced, ctypes.create_string_buffer(block, len(block)))
+        self.value, self.address = value, ctypes.addressof(self._referenced[1])
 
 
 @functools.cache
@@ -81,25 +81,27 @@ def _argument_writer(kind: Any) -> _Writer:
     return functools.partial(_write_address, kind) if is_lent(kind) else _writer_of(kind)
 
 
-def _write_number(value: Any, words: list[Any], held: list[Any]) -> None:
+def _write_number(value: Any, words: list[Any], referenced: list[Any]) -> None:
     words.append(value)
 
 
-def _write_items(writers: Sequence[_Writer], value: Any, words: list[Any], held: list[Any]) -> None:
+def _write_items(
+    writers: Sequence[_Writer], value: Any, words: list[Any], referenced: list[Any]
+) -> None:
     if len(value) != len(writers):
         raise TypeError(f"{len(value)} values are given where {len(writers)} are declared")
     for write, item in zip(writers, value, strict=True):
-        write(item, words, held)
+        write(item, words, referenced)
 
 
-def _write_address(kind: Any, value: Any, words: list[Any], held: list[Any]) -> None:
+def _write_address(kind: Any, value: Any, words: list[Any], referenced: list[Any]) -> None:
     written = value if isinstance(value, Written) else Written(value, kind)
-    held.append(written)
+    referenced.append(written)
     words.append(written.address)
 
 
 def _array_writer(number: np.dtype, n_axes: int) -> _Writer:
-    def write(value: np.ndarray, words: list[Any], held: list[Any]) -> None:
+    def write(value: np.ndarray, words: list[Any], referenced: list[Any]) -> None:
         flags = value.flags
         if not (
             (value.dtype is number or value.dtype == number)
@@ -116,7 +118,7 @@ def _array_writer(number: np.dtype, n_axes: int) -> _Writer:
         else:
             address = value.ctypes.data
         words.extend((0, 0, size, item, address, *value.shape, *value.strides))
-        held.append(value)
+        referenced.append(value)
 
     addressof, character = ctypes.addressof, ctypes.c_char
     return write
@@ -129,13 +131,13 @@ def entry_of(kernel: Declaration) -> _Call:
 
 def prepared(call: _Call, arguments: tuple) -> Callable:
     """What calls a kernel with these arguments, however often."""
-    held: list[Any] = []
-    block = call.written(arguments, held)
+    referenced: list[Any] = []
+    block = call.written(arguments, referenced)
     words = ctypes.create_string_buffer(block, len(block))
-    held.append(words)
+    referenced.append(words)
     at, address = call.at, ctypes.addressof(words)
 
-    def ask(held: list[Any] = held) -> Any:
+    def ask(referenced: list[Any] = referenced) -> Any:
         return at(address)
 
     return ask
@@ -155,8 +157,8 @@ class _Call:
         )
 
     def __call__(self, *arguments: Any) -> Any:
-        held: list[Any] = []
-        return self.at(self.written(arguments, held))
+        referenced: list[Any] = []
+        return self.at(self.written(arguments, referenced))
 
     def at(self, words: Any) -> Any:
         """The result of the call with arguments that lie there."""
@@ -170,15 +172,15 @@ class _Call:
             self._stop()
         return read(out)
 
-    def written(self, arguments: tuple, held: list[Any]) -> bytes:
-        """The arguments, written down; `held` keeps what they point to."""
+    def written(self, arguments: tuple, referenced: list[Any]) -> bytes:
+        """The arguments, written down; `referenced` keeps what they point to."""
         if len(arguments) != len(self._writers):
             raise TypeError(
                 f"{self._kernel.symbol} is given {len(arguments)} arguments and takes {len(self._writers)}"
             )
         words: list[Any] = []
         for write, value in zip(self._writers, arguments, strict=True):
-            write(value, words, held)
+            write(value, words, referenced)
         return self._pack(*words)
 
     def _stop(self) -> None:

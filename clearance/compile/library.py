@@ -193,8 +193,8 @@ def _flags() -> set[str]:
     if not sys.platform.startswith("linux"):
         return set()
     try:
-        told = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
+        cpuinfo = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
     except OSError:  # no /proc: the lowest level runs everywhere
         return set()
-    flags = (line for line in told.splitlines() if line.startswith("flags"))
+    flags = (line for line in cpuinfo.splitlines() if line.startswith("flags"))
     return set(next(flags, ":").split(":", 1)[1].split())

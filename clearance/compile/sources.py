@@ -1,4 +1,4 @@
-"""Hashes of what kernels are made of: their sources, the compiler's versions, and this room.
+"""Hashes of what kernels are made of: their sources, the compiler's versions, and what compiles them.
 
 Each object file is named by the hash of the sources that its kernel imports, so that an edit builds only what it
 touches. Not for: the fingerprint of a run.
@@ -17,11 +17,11 @@ PACKAGE = Path(__file__).parents[1]
 
 @functools.cache
 def digest_of(module: str) -> str:
-    """The hash of a module of kernels with all that it imports of kernels, and of this room."""
-    told = hashlib.sha256(_compilers().encode())
-    for name in sorted({*_closure(module), *_room()}):
-        told.update(name.encode() + b"\0" + _file(name).read_bytes() + b"\0")
-    return told.hexdigest()
+    """The hash of a module of kernels with all that it imports of kernels, and of what compiles it."""
+    digest = hashlib.sha256(_compilers().encode())
+    for name in sorted({*_closure(module), *_compiling_modules()}):
+        digest.update(name.encode() + b"\0" + _file(name).read_bytes() + b"\0")
+    return digest.hexdigest()
 
 
 def _compilers() -> str:
@@ -32,17 +32,17 @@ def _compilers() -> str:
 
 def digest_of_sources() -> str:
     """The hash of all that a library is made of: all kernels, and what compiles and links them."""
-    told = hashlib.sha256()
-    room = [
+    digest = hashlib.sha256()
+    compiling = [
         _file(name)
         for name in (
-            *_room(),
+            *_compiling_modules(),
             *map("clearance.compile.{}".format, ("build", "in_process", "linking")),
         )
     ]
-    for file in sorted((*(PACKAGE / "kernels").rglob("*.py"), *room)):
-        told.update(str(file.relative_to(PACKAGE)).encode() + b"\0" + file.read_bytes() + b"\0")
-    return told.hexdigest()
+    for file in sorted((*(PACKAGE / "kernels").rglob("*.py"), *compiling)):
+        digest.update(str(file.relative_to(PACKAGE)).encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
 
 
 @functools.cache
@@ -61,8 +61,8 @@ def modules() -> list[str]:
     ]
 
 
-def _room() -> list[str]:
-    """What the code of a kernel depends on beside its own sources."""
+def _compiling_modules() -> list[str]:
+    """What the code of a kernel depends on besides its own sources."""
     names = (
         "compiler",
         "decorators",
