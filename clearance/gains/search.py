@@ -38,6 +38,9 @@ PATIENCE, LESS = 6, 0.9
 BLIND = 8
 """Steps from contact to contact that are taken whatever comes of them: depths jump where their vectors do."""
 
+BENDS = 8
+"""Most times that a step is aimed again, with the rows that need no measuring as they are where it leads."""
+
 MOST_PROOFS = 12
 """Times that the motion between the steps may ask for more."""
 
@@ -229,7 +232,7 @@ class Search:
     def _mended(self, state: State, reach: np.ndarray) -> State:
         """The state that steps from one that misses little lead to, whatever they cost."""
         for _ in range(MENDING):
-            x = self._aim(state, state.rows(self.change.gradient), reach)
+            x, _ = self._aim_with_bends(state, state.rows(self.change.gradient), reach)
             tried = self._state(x, reach)
             if tried.worst > 0.5 * state.worst:
                 return state
@@ -248,8 +251,8 @@ class Search:
             late = missing[-PATIENCE:]
             if len(missing) > PATIENCE and min(late) > FINE and late[-1] > LESS * late[0]:
                 return state
-            x = self._aim(state, rows, reach)
-            foretold = _foretold(rows, x - state.x)
+            x, bent = self._aim_with_bends(state, rows, reach)
+            foretold = _foretold(bent, x - state.x)
             gain = self._merit(state.x, state.worst) - self._merit(x, foretold)
             if gain <= 0.0 and state.worst - foretold > FINE:
                 self._raise_price(state, x, foretold)
@@ -320,6 +323,29 @@ class Search:
             x = self.change.least(relaxed, state.x, box)
             x = nearest if x is None else x
         return np.clip(x, box.low, box.high)
+
+    def _aim_with_bends(
+        self, state: State, rows: Rows, reach: np.ndarray
+    ) -> tuple[np.ndarray, Rows]:
+        """Where the next step goes, and the rows that say so.
+
+        Rows that need no measuring bend with the joints: they are taken again where the step leads, until it keeps
+        them (cutting planes).
+        """
+        x = self._aim(state, rows, reach)
+        if state.other_rows is None:
+            return x, rows
+        measured = Rows(*(one[: len(one) - len(state.other_rows.missing)] for one in rows))
+        cuts: list[Rows] = []
+        for _ in range(BENDS):
+            there = self.change.other_rows(x, self.wanted.beyond)
+            if there is None or there.missing.max(initial=0.0) <= FINE:
+                break
+            missing = there.missing + there.gradients @ (x - state.x)
+            cuts.append(there._replace(missing=missing))
+            rows = Rows(*map(np.concatenate, zip(measured, *cuts, strict=True)))
+            x = self._aim(state, rows, reach)
+        return x, rows
 
     def _merit(self, x: np.ndarray, missing: float) -> float:
         """What a step is to lower: the size of the change, and what is missing at its price."""

@@ -199,6 +199,22 @@ def test_a_tolerance_that_holds_the_violation_is_said_at_once(far, turn, n):
     assert n == 2 or "that moment is to be kept" in str(found.blocked)
 
 
+def test_a_small_turn_of_the_tool_is_found_where_it_may_hardly_move():
+    case, fingertip = (
+        arm(),
+        np.array([0.0675, 0.0, 0.14]),
+    )  # the ball is 7.5 mm from the finger's side
+    placed = case.robots[0]
+    finger = replace(placed.robot, bodies=(cl.Body("l5", cl.box((0.02, 0.02, 0.3))),))
+    world_from_tool = link_poses(placed, placed.given_trajectory.positions)[10, -1]
+    centre = world_from_tool[:3, :3] @ fingertip + world_from_tool[:3, 3]
+    ball = standing("ball", cl.PointCloud([[0.0, 0.0, 0.0]], 0.05), tuple(centre))
+    case = cl.Case("arm", (replace(placed, robot=finger),), (ball,), cl.Limits(fail=0.01))
+    found = cl.gain(case, keep_tool=[(0.5, 0.0002, np.radians(1.0))])
+    (move,) = found.tool_moves
+    assert found.kept and move.far <= 0.0002 and 0.9 < np.degrees(move.turn) <= 1.0
+
+
 def chain():
     """Joints of all sorts, one that follows, out of plane."""
     rng = np.random.default_rng(5)
