@@ -123,6 +123,7 @@ class _Answer:
             measured=conditions_in(row["conditions"]),
             doubts=tuple(Doubt(**one) for one in row["doubts"]),
             findings=findings,
+            duration=row["end"] - row["start"],
         )
 
 

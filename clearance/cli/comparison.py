@@ -31,7 +31,7 @@ def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
 
     Lists findings that are new, worse, unchanged, better, gone, or not comparable and why.
     Exit code: 1 if B is worse: it breaks a rule more than A did, without a waiver; its input has
-    a suspicion, a warning or an unchecked part that A had not; or less is proven or measured.
+    a suspicion, a warning or an unchecked part that A had not; or less is proven, measured or asked for.
     Else 0; 2 bad input; 4 if the run into A or B was interrupted. Two stores are compared case by
     case, by name; a case that only A has counts as worse.
     """

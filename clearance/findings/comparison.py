@@ -17,14 +17,12 @@ from typing import Any
 from clearance.findings.doubts import NOT_CHECKED, WARNING, Doubt
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
+from clearance.findings.known_less import known_less, motion_shorter, slack_text
 from clearance.findings.measurement_conditions import MeasurementConditions
 from clearance.record.status import Status
 
 TOLERANCE = 1e-4
 """[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""
-
-MOST_NAMED = 3
-"""Pairs that are named of those that are not measured any more."""
 
 _ALIKE = frozenset({"steps", "pairs", "limit"})
 """What can be asked for without a change of what is found."""
@@ -74,18 +72,31 @@ class ComparedDoubt:
     """A doubt of one or both of two runs.
 
     Attributes:
-        before, now: whether each has it.
+        before, now: None where that run has none.
     """
 
-    doubt: Doubt
-    before: bool
-    now: bool
+    before: Doubt | None
+    now: Doubt | None
+
+    @property
+    def doubt(self) -> Doubt:
+        """That of now, or of before where it is gone."""
+        found = self.now or self.before
+        assert found is not None
+        return found
+
+    @property
+    def change(self) -> str:
+        """What became of it: new, gone, as before, or changed in names of files or figures."""
+        if self.before is None or self.now is None:
+            return "new" if self.before is None else "gone"
+        return "as before" if self.before == self.now else "changed"
 
     @property
     def alarms(self) -> bool:
         """True if it is new and no mere note: nobody has accepted it, and it was not known before."""
         alarming = self.doubt.fails or self.doubt.kind in (NOT_CHECKED, WARNING)
-        return self.now and not self.before and alarming
+        return self.change == "new" and alarming
 
 
 @dataclass(frozen=True)
@@ -97,6 +108,7 @@ class Comparison:
         whole: why nothing is comparable, where that is so.
         doubts: what stands beside the findings of either run, what alarms first.
         less: what is not known any more that was known before, one line each.
+        shorter: how the motion is shorter than before, one line each; that alone fails nothing.
     """
 
     before: str
@@ -105,6 +117,7 @@ class Comparison:
     whole: str = ""
     doubts: tuple[ComparedDoubt, ...] = ()
     less: tuple[str, ...] = ()
+    shorter: tuple[str, ...] = ()
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -182,7 +195,8 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
     order = list(FindingChange)
     rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
     doubts, less = doubts_compared(before, now), known_less(before, now)
-    return Comparison(before.case, now.case, tuple(rows), whole, doubts, less)
+    shorter = tuple(motion_shorter(before, now))
+    return Comparison(before.case, now.case, tuple(rows), whole, doubts, less, shorter)
 
 
 def _measured_otherwise(before: MeasurementConditions, now: MeasurementConditions) -> str:
@@ -339,60 +353,16 @@ def _key(finding: Finding) -> _Key:
 
 
 def doubts_compared(before: FindingList, now: FindingList) -> tuple[ComparedDoubt, ...]:
-    """The doubts of both, compared by their words: those that alarm first, then those of now, then the others."""
-    known = {one: None for one in (*now.doubts, *before.doubts)}
-    rows = [ComparedDoubt(one, one in before.doubts, one in now.doubts) for one in known]
-    return tuple(sorted(rows, key=lambda row: (not row.alarms, not row.now)))
+    """The doubts of both: those that alarm first, then those of now, then the others.
 
-
-def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
-    """What is not known of now as it was before, one line each: the proof, its method, clocks, pairs, findings."""
-    old, new = before.measured, now.measured
-    return tuple([*_proven_less(old, new), *_measured_less(old, new), *_listed_less(before, now)])
-
-
-def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
-    if (old.basis, new.basis) == ("motion", "samples"):
-        yield "the motion was proven, and now only the samples are measured"
-    if old.basis != "pose" == new.basis:
-        yield "a motion was checked, and now only a single pose is"
-    if (old.method, new.method) == ("exact", "paper"):
-        yield "the method was exact, and is paper, without guarantee"
-    if _slack(new) < _slack(old):
-        yield f"clock slack was {slack_text(old)}, and is {slack_text(new)}: other clocks are not covered"
-
-
-def _measured_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
-    """Pairs that were measured and are left out, for some time at least."""
-    known = {tuple(sorted(pair)) for block in old.unmeasured for pair in block}
-    lost = [
-        f"{a} - {b}"
-        for block in new.unmeasured
-        for a, b in block
-        if tuple(sorted((a, b))) not in known
-        and (old.has_body(a) if b == "*" else old.has_pair(a, b))
-    ]
-    if lost:
-        more = f" and {len(lost) - MOST_NAMED} more" if len(lost) > MOST_NAMED else ""
-        yield f"not measured as before: {', '.join(lost[:MOST_NAMED])}{more}"
-
-
-def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:
-    """That findings may be missing, where they were not; a run that passes is missing none that fails it."""
-    if not any(finding.fails for finding in now.findings):
-        return
-    if now.incomplete and not before.incomplete:
-        yield f"findings may be missing: {now.incomplete}"
-    if now.not_listed > before.not_listed:
-        yield f"{now.not_listed:,} findings are not listed"
-
-
-def _slack(conditions: MeasurementConditions) -> float:
-    """[s]"""
-    return float("inf") if conditions.clock_slack == "not tied" else float(conditions.clock_slack)
-
-
-def slack_text(conditions: MeasurementConditions) -> str:
-    """How far clocks may be apart."""
-    slack = conditions.clock_slack
-    return slack if isinstance(slack, str) else f"{slack:g} s"
+    A doubt of each is the same one if they differ in names of files and in figures alone.
+    """
+    left = [one for one in before.doubts if one not in now.doubts]
+    rows = []
+    for one in now.doubts:
+        was = one if one in before.doubts else next((o for o in left if o.is_like(one)), None)
+        if was in left:
+            left.remove(was)
+        rows.append(ComparedDoubt(was, one))
+    rows += [ComparedDoubt(one, None) for one in left]
+    return tuple(sorted(rows, key=lambda row: (not row.alarms, row.now is None)))

@@ -36,6 +36,11 @@ SELF_COLLISION = "self-collision"
 OWN_FLOOR = "floor and walls of the robot's own file"
 """What is not measured either then, where there are some."""
 
+_VARIES = re.compile(
+    r"""[^\s'",;:()]*\w\.[A-Za-z]\w*|\blines? \d+|-?\d+(\.\d+)?(e-?\d+)?(?= ?(s|ms|m|mm|rad|deg|°|%|times)\b)"""
+)
+"""Parts of a doubt's text that change with the input, and leave the doubt the same."""
+
 
 @dataclass(frozen=True)
 class Doubt:
@@ -60,6 +65,11 @@ class Doubt:
     def fails(self) -> bool:
         """True if the run is not passed by it."""
         return self.kind in FAILING
+
+    def is_like(self, other: Doubt) -> bool:
+        """True if both say the same but for names of files, line numbers and figures with a unit."""
+        same = (self.kind, self.about) == (other.kind, other.about)
+        return same and _VARIES.sub("", self.text) == _VARIES.sub("", other.text)
 
 
 def doubts_of(record: Record, judgement: Judgement | None) -> tuple[Doubt, ...]:

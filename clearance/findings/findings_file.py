@@ -20,6 +20,7 @@ from clearance.findings.of_record import why_incomplete
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.schema.strict_model import place
 from clearance.record.session import Session
+from clearance.world.made_moves import MadeMoves
 
 FILE_NAME = "findings.json"
 
@@ -48,6 +49,7 @@ class FindingList:
         not_listed: how many findings are left out, none worse than those that are there.
         doubts: what a reader must know beside the findings, those that fail the run first.
         findings: the worst first.
+        duration: [s] of the motion. n_moves: of all programs, those that take time.
     """
 
     case: str
@@ -57,6 +59,8 @@ class FindingList:
     doubts: tuple[Doubt, ...]
     findings: tuple[Finding, ...]
     format: int = FORMAT
+    duration: float = 0.0
+    n_moves: int = 0
 
 
 def finding_list_of(
@@ -64,6 +68,7 @@ def finding_list_of(
 ) -> FindingList:
     """The list of a run with these findings."""
     record = session.record
+    times = record.motions[0].times
     return FindingList(
         case=record.case.name,
         incomplete=why_incomplete(session),
@@ -71,6 +76,8 @@ def finding_list_of(
         measured=conditions_of(record),
         doubts=doubts_of(record, judgement),
         findings=findings[:MOST_LISTED],
+        duration=float(times[-1] - times[0]),
+        n_moves=sum(len(one.names) for one in MadeMoves.of(record.case).robots),
     )
 
 

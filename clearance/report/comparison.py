@@ -99,7 +99,7 @@ def comparison_page(
 def _badge(comparison: Comparison) -> tuple[str, str]:
     """The outcome in a few words, and the status whose colour it has: nothing is green that is worse."""
     if not comparison.passed:
-        return "new or worse", "violated"
+        return "new, worse or less known", "violated"
     watched = (FindingChange.NEW, FindingChange.WORSE, FindingChange.NOT_COMPARABLE)
     counts = [f"{n} {what}" for what, n in comparison.counts.items() if what in watched]
     if counts:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from clearance.codes import coded
 from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
@@ -62,19 +64,17 @@ _NAMES = {
 
 
 def doubt_lines(comparison: Comparison) -> list[str]:
-    """What is known less, then each doubt that is new, gone, or fails the run as before, one line each."""
+    """Lines: what is known less, a shorter motion, and each doubt that changed or fails the run as before."""
     lines = [f"less is known: {text}" for text in comparison.less]
-    rows = [row for row in comparison.doubts if row.doubt.fails or not (row.before and row.now)]
-    notes = [row.now for row in rows if row.doubt.kind == NOTE]
-    if (
-        len(notes) > MOST_NOTES
-    ):  # as where a file has another name, with which each of its notes begins
-        rows = [row for row in rows if row.doubt.kind != NOTE]
+    lines += [f"shorter: {text}" for text in comparison.shorter]
+    rows = [row for row in comparison.doubts if row.doubt.fails or row.change != "as before"]
+    notes = Counter(row.change for row in rows if row.doubt.kind == NOTE)
+    only_counted = notes["new"] + notes["gone"] > MOST_NOTES
     for row in rows:
-        change = "as before" if row.before and row.now else "new" if row.now else "gone"
-        lines.append(f"{change}: {doubt_text(row.doubt)}")
-    if len(notes) > MOST_NOTES:
-        lines.append(f"notes: {sum(notes)} new, {len(notes) - sum(notes)} gone")
+        if row.doubt.kind != NOTE or not (only_counted or row.change == "changed"):
+            lines.append(f"{row.change}: {doubt_text(row.doubt)}")
+    if only_counted:
+        lines.append(f"notes: {notes['new']} new, {notes['gone']} gone")
     return lines
 
 

@@ -130,6 +130,8 @@ _WRITTEN_TOO: dict[str, dict[str, Any]] = {
     "FindingList": {
         "$schema": {"const": findings_file.SCHEMA},
         "format": {"const": findings_file.FORMAT},
+        "duration": {"type": "number"},
+        "n_moves": {"type": "integer"},
     },
 }
 """Keys that are written beside the fields of a dataclass."""

@@ -48,7 +48,9 @@ TABLE = {
     "a new near miss": ({A: (-0.5, 0.003), B: (0.5, 0.012)}, [("new", B), ("unchanged", A)], True),
     "moved along": ({A: (0.3, 0.003), B: (0.5, 0.1)}, [("unchanged", A)], True),
     "a new gate": (BEFORE | {"c": (0.7, 0.001)}, [("not comparable", "c"), ("unchanged", A)], False),
-    "a gate less": ({B: (0.5, 0.1)}, [("not comparable", A)], True),
+    "a gate less": ({B: (0.5, 0.1)}, [("not comparable", A)], False),
+    "a gate less that was clear": ({A: (-0.5, 0.003)}, [("unchanged", A)], False),
+    "a clear gate more": (BEFORE | {"c": (0.7, 0.2)}, [("unchanged", A)], True),
 }  # fmt: skip
 
 
@@ -60,7 +62,7 @@ def test_what_became_of_each_finding(what, before, tmp_path):
     assert told == rows
     assert comparison.passed is passed and not comparison.whole
     page = comparison_page(comparison, [], ("before", "now"))
-    is_watched = any(change in ("new", "worse", "not comparable") for change, _ in rows)
+    is_watched = not passed or any(one in ("new", "worse", "not comparable") for one, _ in rows)
     assert ("nothing is new or worse" in page) is not is_watched
     assert sum(comparison.counts.values()) == len(comparison.rows)
 

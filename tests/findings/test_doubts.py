@@ -17,8 +17,10 @@ from clearance.findings.findings_file import (
 )
 from clearance.report.comparison_text import comparison_text, doubt_lines
 from clearance.run import Question, Run, answer
-from clearance.world.case import Clock
+from clearance.world.case import Clock, Limits
 from clearance.world.notice import Notice, Severity
+from clearance.world.rules import Rule
+from clearance.world.timing import Window
 from tests.findings.gates import load_gates
 from tests.findings.test_waivers import TODAY, waiver
 
@@ -29,6 +31,18 @@ BROKEN = {A: (-0.5, 0.003), "gate_b": (0.5, 0.05)}
 SUSPECT = Notice(Severity.SUSPECT, "units", "CHECK UNITS: gate_a is 1000 m long")
 OTHER = Notice(Severity.SUSPECT, "units", "CHECK UNITS: gate_b is 1000 m long")
 WARNING = Notice(Severity.WARNING, "geometry", "2 solids are left out")
+
+
+def dropped(file: str) -> Notice:
+    return Notice(Severity.WARNING, "geometry", f"{file}: 2 solids are left out")
+
+
+def far(distance: str) -> Notice:
+    return Notice(Severity.WARNING, "units", f"gate_a stays {distance} and more away")
+
+
+def ruled(between=("box", "gate_b"), **rule) -> Limits:
+    return Limits(0.005, 0.02, rules=(Rule(between, name="r", **rule),))
 
 
 def run_of(folder, gates=CLEAR, *extra: str, certify=True, method="exact", **changes) -> Run:
@@ -79,6 +93,37 @@ TABLE = {
         {}, {"extra": "allow: [[box, gate_b]]"}, False, "LESS IS KNOWN",
         "not measured as before: box - gate_b",
     ),
+    "limits are softer": (
+        {}, {"limits": Limits(0.001, 0.02)}, False, "LESS IS KNOWN",
+        "fail limit of box - gate_a and 1 more: now 1 mm, and was 5 mm",
+    ),
+    "less is called near": ({}, {"limits": Limits(0.005, 0.01)}, True, "", ""),
+    "limits are stricter": ({}, {"limits": Limits(0.006, 0.03)}, True, "", ""),
+    "a softer rule": (
+        {}, {"limits": ruled(fail=0.0)}, False, "LESS IS KNOWN", "fail limit of box - gate_b: now 0 mm",
+    ),
+    "a stricter rule": ({}, {"limits": ruled(fail=0.01)}, True, "", ""),
+    "a stricter rule is gone": (
+        {"limits": ruled(fail=0.01)}, {}, False, "LESS IS KNOWN", "now 5 mm, and was 10 mm",
+    ),
+    "a softer rule holds longer": (
+        {"limits": ruled(fail=0.0, window=Window(0.0, 0.5))},
+        {"limits": ruled(fail=0.0, window=Window(0.0, 1.5))},
+        False, "LESS IS KNOWN",
+        "now 0 mm from 0 s until 1.5 s, else 5 mm, and was 0 mm from 0 s until 0.5 s, else 5 mm",
+    ),
+    "a rule of the same limit": ({}, {"limits": ruled(between=("gate_?", "box"), fail=0.005)}, True, "", ""),
+    "a file has another name": (
+        {"notices": (dropped("a.stl"),)}, {"notices": (dropped("parts/a_v2.STL"),)}, True, "",
+        "changed: warning geometry: parts/a_v2.STL: 2 solids",
+    ),
+    "a second file": (
+        {"notices": (dropped("a.stl"),)}, {"notices": (dropped("a.stl"), dropped("b.stl"))}, False, "NEW warning;",
+        "new: warning geometry: b.stl",
+    ),
+    "a figure is another": (
+        {"notices": (far("7.34 m"),)}, {"notices": (far("8 m"),)}, True, "", "changed: warning units",
+    ),
     "a waiver is unused or expired": ({}, {"waivers": (waiver(),)}, False, "NEW unused waiver", "is not needed"),
     "a waiver is as stale": (
         {"waivers": (waiver(),)}, {"waivers": (waiver(),)}, True, "unused waiver as before", "is not needed",
@@ -114,6 +159,31 @@ def test_a_dispute_and_a_part_that_is_not_checked_are_new_once(tmp_path):
         now = dataclasses.replace(before, doubts=(doubt, *before.doubts))
         assert not compared(before, now).passed and word in comparison_text(compared(before, now))
         assert compared(now, before).passed and compared(now, now).passed
+
+
+def test_a_shorter_run_and_fewer_moves_are_told_and_fail_nothing(tmp_path):
+    before = dataclasses.replace(listed(tmp_path), duration=20.6, n_moves=6)
+    now = dataclasses.replace(before, duration=12.25, n_moves=4)
+    assert compared(before, now).passed and doubt_lines(compared(now, before)) == []
+    assert doubt_lines(compared(before, now)) == [
+        "shorter: the run takes 12.250 s, and took 20.600 s",
+        "shorter: programs make 4 moves, and made 6",
+    ]
+    assert listed(tmp_path).duration == 2.0
+
+
+@pytest.mark.parametrize("lost", ["profile", "tolerances"])
+def test_a_check_that_is_asked_no_more_is_less(lost, tmp_path):
+    now = listed(tmp_path)
+    measured = dataclasses.replace(now.measured, tolerances="c0ffee")
+    outline = dataclasses.replace(now.findings[0], kind="profile", rule="door", status="clear")
+    before = {
+        "profile": dataclasses.replace(now, findings=(*now.findings, outline)),
+        "tolerances": dataclasses.replace(now, measured=measured),
+    }[lost]
+    assert not compared(before, now).passed and compared(before, before).passed
+    (line,) = doubt_lines(compared(before, now))
+    assert lost in line and line.startswith("less is known")
 
 
 def test_what_is_not_listed_hides_what_is_broken(tmp_path):

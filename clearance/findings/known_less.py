@@ -1,0 +1,175 @@
+"""What was known of a run, and is not of another: its proof, bodies, pairs, limits, outlines, findings.
+
+Not for: the findings and doubts that both can have (`comparison`).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from clearance.findings.finding import PROFILE
+from clearance.findings.findings_file import FindingList
+from clearance.findings.measurement_conditions import (
+    MeasuredPairs,
+    MeasuredRule,
+    MeasurementConditions,
+)
+from clearance.record.wording import count, limit_mm, seconds
+from clearance.world.notice import listed
+from clearance.world.rules import matches
+
+_Limits = tuple[tuple[str, float], ...]
+"""The fail limits [m] of a pair, each with when it holds; the last one holds otherwise."""
+
+
+def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
+    """What is not known of now as it was before, one line each."""
+    old, new = before.measured, now.measured
+    lines = _proven_less(old, new), _measured_less(old, new), _asked_less(old, new)
+    return tuple(itertools.chain(*lines, _listed_less(before, now)))
+
+
+def motion_shorter(before: FindingList, now: FindingList) -> Iterator[str]:
+    """How the motion is shorter than before, one line each: it may be another motion, and yet nothing is lost."""
+    if now.duration < before.duration:
+        yield f"the run takes {seconds(now.duration)}, and took {seconds(before.duration)}"
+    if now.n_moves < before.n_moves:
+        yield f"programs make {count(now.n_moves, 'move')}, and made {before.n_moves:,}"
+
+
+def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
+    if (old.basis, new.basis) == ("motion", "samples"):
+        yield "the motion was proven, and now only the samples are measured"
+    if old.basis != "pose" == new.basis:
+        yield "a motion was checked, and now only a single pose is"
+    if (old.method, new.method) == ("exact", "paper"):
+        yield "the method was exact, and is paper, without guarantee"
+    if _slack(new) < _slack(old):
+        yield f"clock slack was {slack_text(old)}, and is {slack_text(new)}: other clocks are not covered"
+    if old.tolerances and not new.tolerances:
+        yield "tolerances were counted, and are not given any more"
+
+
+def _measured_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
+    """Bodies that are gone, and pairs that were measured and are left out, for some time at least."""
+    there = {*_bodies(new.pairs), *_bodies(new.unmeasured)}
+    gone = sorted({*_bodies(old.pairs)} - there)
+    if gone:
+        yield f"not measured any more: {listed(gone)}"
+    known = _pairs(old.unmeasured)
+    lost = {
+        pair: None
+        for pair in itertools.chain.from_iterable(new.unmeasured)
+        if tuple(sorted(pair)) not in known
+        and (old.has_body(pair[0]) if pair[1] == "*" else old.has_pair(*pair))
+    }
+    left_out = {*gone, *(a for a, b in lost if b == "*")}
+    told = {tuple(sorted(pair)) for pair in lost}
+    missing = _pairs(old.pairs) - _pairs(new.pairs) - told
+    pairs = [*lost, *sorted(pair for pair in missing if not left_out & {*pair})]
+    if pairs:
+        yield f"not measured as before: {listed([f'{a} - {b}' for a, b in pairs])}"
+
+
+def _asked_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
+    """Pairs that may come nearer than before, by their fail limits."""
+    if old.rules == new.rules:
+        return
+    of_old, of_new = _Judge(old), _Judge(new)
+    softer: dict[tuple[_Limits, _Limits], list[str]] = {}
+    for a, b in sorted(_pairs(old.pairs) & _pairs(new.pairs)):
+        was, is_now = of_old.limits(a, b), of_new.limits(a, b)
+        if _is_softer(was, is_now):
+            softer.setdefault((was, is_now), []).append(f"{a} - {b}")
+    for (was, is_now), pairs in softer.items():
+        yield f"fail limit of {listed(pairs, 1)}: now {_limits_text(is_now)}, and was {_limits_text(was)}"
+
+
+class _Judge:
+    """Which fail limits a run has for a pair."""
+
+    def __init__(self, conditions: MeasurementConditions) -> None:
+        self._rules = conditions.rules
+        self._prefixes = [f"{robot.name}/" for robot in conditions.robots]
+        self._sides = cache(self._sides_of)
+        self._limits = cache(self._limits_of)
+
+    def limits(self, a: str, b: str) -> _Limits:
+        """Those of a pair."""
+        return self._limits(self._sides(a), self._sides(b))
+
+    def _sides_of(self, body: str) -> frozenset[tuple[int, int]]:
+        """The patterns that are of a body: the number of each one's rule, and its place there."""
+        names = [body, *(body.removeprefix(one) for one in self._prefixes)]
+        return frozenset(
+            (i, side)
+            for i, rule in enumerate(self._rules)
+            for side, pattern in enumerate(rule.between)
+            if any(matches(name, pattern) for name in names)
+        )
+
+    def _limits_of(self, a: frozenset[tuple[int, int]], b: frozenset[tuple[int, int]]) -> _Limits:
+        """The last rule counts, as long as it holds, then the one before it."""
+        found = []
+        for i, rule in reversed([*enumerate(self._rules)]):
+            if _is_of(rule, i, a, b):
+                found.append((rule.when, rule.fail))
+                if not rule.when:
+                    break
+        return tuple(found)
+
+
+def _is_of(
+    rule: MeasuredRule, i: int, a: frozenset[tuple[int, int]], b: frozenset[tuple[int, int]]
+) -> bool:
+    orders = ((a, b), (b, a))
+    return not rule.between or any((i, 0) in one and (i, 1) in two for one, two in orders)
+
+
+def _is_softer(old: _Limits, new: _Limits) -> bool:
+    """True if a limit is below the one before; where they hold at other times, unless none can be."""
+    if [when for when, _ in old] == [when for when, _ in new]:
+        return any(is_now < was for (_, was), (_, is_now) in zip(old, new, strict=True))
+    return min(fail for _, fail in new) < max(fail for _, fail in old)
+
+
+def _limits_text(limits: _Limits) -> str:
+    return ", else ".join(f"{limit_mm(fail)} mm {when}".strip() for when, fail in limits)
+
+
+def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:
+    """Outlines that are not checked, and findings that may be missing, where they were not before.
+
+    A run that passes is missing none that fails it.
+    """
+    outlines = {one.rule for one in before.findings if one.kind == PROFILE}
+    lost = sorted(outlines - {one.rule for one in now.findings if one.kind == PROFILE})
+    if lost and not now.not_listed:
+        yield f"profile not checked as before: {listed(lost)}"
+    if not any(finding.fails for finding in now.findings):
+        return
+    if now.incomplete and not before.incomplete:
+        yield f"findings may be missing: {now.incomplete}"
+    if now.not_listed > before.not_listed:
+        yield f"{now.not_listed:,} findings are not listed"
+
+
+def _bodies(blocks: Iterable[MeasuredPairs]) -> Iterator[str]:
+    return (name for block in blocks for name in (*block.a, *block.b))
+
+
+def _pairs(blocks: Iterable[MeasuredPairs]) -> set[tuple[str, ...]]:
+    return {tuple(sorted(pair)) for block in blocks for pair in block}
+
+
+def _slack(conditions: MeasurementConditions) -> float:
+    """[s]"""
+    return float("inf") if conditions.clock_slack == "not tied" else float(conditions.clock_slack)
+
+
+def slack_text(conditions: MeasurementConditions) -> str:
+    """How far clocks may be apart."""
+    slack = conditions.clock_slack
+    return slack if isinstance(slack, str) else f"{slack:g} s"
