@@ -8,32 +8,28 @@ from __future__ import annotations
 
 import threading
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, NotFinite, SuspectInput, at
+from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.progress import never_silent
 from clearance.record.names import pair_names
 from clearance.simulate.measure.asked_pairs import AskedPairs, nearest_of_many
+from clearance.simulate.measure.asked_positions import AskedPositions
 from clearance.simulate.measure.inside import DoubtfulPairs
 from clearance.tolerance import REACH
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.joint_limits import far_beyond, notices_on_joints
-from clearance.world.joint_positions import joint_extents
 from clearance.world.kinematics import moving_positions
-from clearance.world.mimics import followers
 from clearance.world.motion import Motion
-from clearance.world.notice import Notice, Severity, accepted_kind, worst_first
+from clearance.world.notice import worst_first
 from clearance.world.one_time import phase_at, time_dependent_parts
 from clearance.world.pairs import Selection, measured_selection, nothing_to_measure, selected_pairs
 from clearance.world.plausibility import notices_of
-from clearance.world.plausible_motion import largest_usual, notices_on_positions
 from clearance.world.reach import require_within_reach
-from clearance.world.trajectory import Trajectory
 
 _BY_CLEARANCE = itemgetter(0, 1)
 """Contact first, then the least clearance, the first of those alike."""
@@ -282,113 +278,3 @@ def _at_rest(placed: PlacedRobot) -> Motion:
     return Motion(
         replace(placed, trajectory=None), np.zeros(1), np.zeros((1, n_joints)), np.zeros(1)
     )
-
-
-class AskedPositions:
-    """Checks the configurations for which a clearance is asked.
-
-    Args:
-        names: of the joints that a configuration gives, robot by robot. accept: kinds of suspect input that are
-            meant, with those that the case accepts.
-
-    Raises:
-        BadInput: neither a kind of suspect input nor the code of one.
-    """
-
-    def __init__(
-        self, case: Case, names: Sequence[tuple[str, ...]], accept: Collection[str]
-    ) -> None:
-        self._case, self._names = case, names
-        with at("accept"):
-            self._accept = frozenset((*case.accept, *map(accepted_kind, accept)))
-        self._least, self._greatest = self._bounds(far=False)
-
-    def are_usual(self, given: np.ndarray) -> bool:
-        """True if all configurations (..., k) are finite and within limits."""
-        is_usual = (given >= self._least) & (given <= self._greatest)
-        return np.count_nonzero(is_usual) == is_usual.size  # half the time of `all`
-
-    def at_rest(self) -> list[Notice]:
-        """The notices on joints that no configuration gives; a case with motion has these notices itself."""
-        moves = [placed.trajectory is not None for placed in self._case.robots]
-        if any(moves) or any(obstacle.moves is not None for obstacle in self._case.obstacles):
-            return []
-        return list(self._notices(np.clip(0.0, self._least, self._greatest)[None]))
-
-    def require_not_suspect(self, notices: Collection[Notice]) -> None:
-        """Checks that each kind of suspect input among the notices is accepted.
-
-        Raises:
-            SuspectInput: the first that is not.
-        """
-        for one in notices:
-            if one.severity is Severity.SUSPECT and one.kind not in self._accept:
-                raise SuspectInput(one.text, valid=f"correct it, or accept=[{one.kind!r}]")
-
-    def require_decided(self, undecided: Sequence[tuple[str, str]]) -> None:
-        """Checks that no pair may be one inside the other, or that this is accepted.
-
-        Raises:
-            SuspectInput: the first that may be.
-        """
-        if "inside" not in self._accept:
-            link, obstacle = undecided[0]
-            raise SuspectInput(
-                f"link {link} may be inside obstacle {obstacle}, or round it: the surface has holes, cracks or "
-                "two sides, and the distance is that of the surfaces alone",
-                where="configuration",
-                valid="close the mesh, or accept=['inside'], and read `undecided`",
-            )
-
-    def judge(self, given: np.ndarray) -> None:
-        """Warns, once, of configurations (n, k) beyond the limits of joints.
-
-        Raises:
-            SuspectInput: one is far beyond, as in another unit, and that is not accepted.
-        """
-        notices = list(self._notices(given))
-        self.require_not_suspect(notices)
-        texts = [one.line for one in notices if one.severity is not Severity.SUSPECT]
-        if texts and "limits" not in self._accept:
-            self._least, self._greatest = self._bounds(far=True)
-            warnings.warn(f"{texts[0]}; further ones are not reported", stacklevel=4)
-
-    def _notices(self, given: np.ndarray) -> Iterator[Notice]:
-        """The notices of `check` on a trajectory with these rows as samples."""
-        first, rule = 0, self._case.limits.joints
-        times = np.arange(len(given), dtype=np.float64)
-        for placed, names in zip(self._case.robots, self._names, strict=True):
-            positions = given[:, first : first + len(names)]
-            first += len(names)
-            asked = replace(placed, trajectory=Trajectory(times, names, positions))
-            before, extents = self._case.prefix_of(placed), joint_extents(asked)
-            yield from notices_on_positions(extents, before)
-            yield from notices_on_joints(asked, rule, before, extents)
-
-    def _bounds(self, *, far: bool) -> tuple[np.ndarray, np.ndarray]:
-        """(k,) least and greatest positions without any notice; with `far`, without suspect input."""
-        pairs = zip(self._case.robots, self._names, strict=True)
-        ranges = [self._ranges(placed, names, far) for placed, names in pairs]
-        least, greatest = np.concatenate(ranges).T
-        return np.ascontiguousarray(least), np.ascontiguousarray(greatest)
-
-    def _ranges(self, placed: PlacedRobot, names: Sequence[str], far: bool) -> np.ndarray:
-        """(k, 2) the usual range of each joint and of all that follow it."""
-        ranges = np.tile([-REACH, REACH], (len(names), 1))
-        place = {name: i for i, name in enumerate(names)}
-        for joint, master, factor, offset in followers(placed.robot):
-            if master not in place or factor == 0.0:
-                continue
-            least, greatest = -REACH, REACH
-            if "units" not in self._accept:
-                least, greatest = -largest_usual(joint), largest_usual(joint)
-            if "limits" not in self._accept:
-                beyond = far_beyond(joint) if far else 0.0
-                least, greatest = (
-                    max(least, joint.lower - beyond),
-                    min(greatest, joint.upper + beyond),
-                )
-            ends = sorted(((least - offset) / factor, (greatest - offset) / factor))
-            row = ranges[place[master]]
-            row[:] = max(row[0], ends[0]), min(row[1], ends[1])
-        return ranges

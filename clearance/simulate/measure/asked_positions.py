@@ -1,0 +1,129 @@
+"""Configurations that are asked about: usual, suspect or beyond limits. Not for: clearances (`checker`)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from clearance.errors import SuspectInput, at
+from clearance.tolerance import REACH
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.joint_limits import far_beyond, notices_on_joints
+from clearance.world.joint_positions import joint_extents
+from clearance.world.mimics import followers
+from clearance.world.notice import Notice, Severity, accepted_kind
+from clearance.world.plausible_motion import largest_usual, notices_on_positions
+from clearance.world.trajectory import Trajectory
+
+
+class AskedPositions:
+    """Checks the configurations for which a clearance is asked.
+
+    Args:
+        names: of the joints that a configuration gives, robot by robot. accept: kinds of suspect input that are
+            meant, with those that the case accepts.
+
+    Raises:
+        BadInput: neither a kind of suspect input nor the code of one.
+    """
+
+    def __init__(
+        self, case: Case, names: Sequence[tuple[str, ...]], accept: Collection[str]
+    ) -> None:
+        self._case, self._names = case, names
+        with at("accept"):
+            self._accept = frozenset((*case.accept, *map(accepted_kind, accept)))
+        self._least, self._greatest = self._bounds(far=False)
+
+    def are_usual(self, given: np.ndarray) -> bool:
+        """True if all configurations (..., k) are finite and within limits."""
+        is_usual = (given >= self._least) & (given <= self._greatest)
+        return np.count_nonzero(is_usual) == is_usual.size  # half the time of `all`
+
+    def at_rest(self) -> list[Notice]:
+        """The notices on joints that no configuration gives; a case with motion has these notices itself."""
+        moves = [placed.trajectory is not None for placed in self._case.robots]
+        if any(moves) or any(obstacle.moves is not None for obstacle in self._case.obstacles):
+            return []
+        return list(self._notices(np.clip(0.0, self._least, self._greatest)[None]))
+
+    def require_not_suspect(self, notices: Collection[Notice]) -> None:
+        """Checks that each kind of suspect input among the notices is accepted.
+
+        Raises:
+            SuspectInput: the first that is not.
+        """
+        for one in notices:
+            if one.severity is Severity.SUSPECT and one.kind not in self._accept:
+                raise SuspectInput(one.text, valid=f"correct it, or accept=[{one.kind!r}]")
+
+    def require_decided(self, undecided: Sequence[tuple[str, str]]) -> None:
+        """Checks that no pair may be one inside the other, or that this is accepted.
+
+        Raises:
+            SuspectInput: the first that may be.
+        """
+        if "inside" not in self._accept:
+            link, obstacle = undecided[0]
+            raise SuspectInput(
+                f"link {link} may be inside obstacle {obstacle}, or round it: the surface has holes, cracks or "
+                "two sides, and the distance is that of the surfaces alone",
+                where="configuration",
+                valid="close the mesh, or accept=['inside'], and read `undecided`",
+            )
+
+    def judge(self, given: np.ndarray) -> None:
+        """Warns, once, of configurations (n, k) beyond the limits of joints.
+
+        Raises:
+            SuspectInput: one is far beyond, as in another unit, and that is not accepted.
+        """
+        notices = list(self._notices(given))
+        self.require_not_suspect(notices)
+        texts = [one.line for one in notices if one.severity is not Severity.SUSPECT]
+        if texts and "limits" not in self._accept:
+            self._least, self._greatest = self._bounds(far=True)
+            warnings.warn(f"{texts[0]}; further ones are not reported", stacklevel=4)
+
+    def _notices(self, given: np.ndarray) -> Iterator[Notice]:
+        """The notices of `check` on a trajectory with these rows as samples."""
+        first, rule = 0, self._case.limits.joints
+        times = np.arange(len(given), dtype=np.float64)
+        for placed, names in zip(self._case.robots, self._names, strict=True):
+            positions = given[:, first : first + len(names)]
+            first += len(names)
+            asked = replace(placed, trajectory=Trajectory(times, names, positions))
+            before, extents = self._case.prefix_of(placed), joint_extents(asked)
+            yield from notices_on_positions(extents, before)
+            yield from notices_on_joints(asked, rule, before, extents)
+
+    def _bounds(self, *, far: bool) -> tuple[np.ndarray, np.ndarray]:
+        """(k,) least and greatest positions without any notice; with `far`, without suspect input."""
+        pairs = zip(self._case.robots, self._names, strict=True)
+        ranges = [self._ranges(placed, names, far) for placed, names in pairs]
+        least, greatest = np.concatenate(ranges).T
+        return np.ascontiguousarray(least), np.ascontiguousarray(greatest)
+
+    def _ranges(self, placed: PlacedRobot, names: Sequence[str], far: bool) -> np.ndarray:
+        """(k, 2) the usual range of each joint and of all that follow it."""
+        ranges = np.tile([-REACH, REACH], (len(names), 1))
+        place = {name: i for i, name in enumerate(names)}
+        for joint, master, factor, offset in followers(placed.robot):
+            if master not in place or factor == 0.0:
+                continue
+            least, greatest = -REACH, REACH
+            if "units" not in self._accept:
+                least, greatest = -largest_usual(joint), largest_usual(joint)
+            if "limits" not in self._accept:
+                beyond = far_beyond(joint) if far else 0.0
+                least, greatest = (
+                    max(least, joint.lower - beyond),
+                    min(greatest, joint.upper + beyond),
+                )
+            ends = sorted(((least - offset) / factor, (greatest - offset) / factor))
+            row = ranges[place[master]]
+            row[:] = max(row[0], ends[0]), min(row[1], ends[1])
+        return ranges
