@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import SuspectInput, at
+from clearance.simulate.measure.asked_neighbours import AskedNeighbours
 from clearance.tolerance import REACH
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.joint_limits import far_beyond, notices_on_joints
@@ -36,19 +37,22 @@ class AskedPositions:
         self._case, self._names = case, names
         with at("accept"):
             self._accept = frozenset((*case.accept, *map(accepted_kind, accept)))
-        self._least, self._greatest = self._bounds(far=False)
+        self._neighbours = AskedNeighbours(case, names)
+        self._far = False
+        self._set_usual()
 
     def are_usual(self, given: np.ndarray) -> bool:
-        """True if all configurations (..., k) are finite and within limits."""
+        """True if all configurations (..., k) are finite, within limits, and where neighbours are apart."""
         is_usual = (given >= self._least) & (given <= self._greatest)
         return np.count_nonzero(is_usual) == is_usual.size  # half the time of `all`
 
     def at_rest(self) -> list[Notice]:
-        """The notices on joints that no configuration gives; a case with motion has these notices itself."""
+        """The notices on joints that no configuration gives; a case with motion has most of these itself."""
         moves = [placed.trajectory is not None for placed in self._case.robots]
         if any(moves) or any(obstacle.moves is not None for obstacle in self._case.obstacles):
-            return []
-        return list(self._notices(np.clip(0.0, self._least, self._greatest)[None]))
+            return self._neighbours.at_rest
+        usual = np.clip(0.0, self._least, self._greatest)
+        return [*self._notices(usual[None]), *self._neighbours.at_rest]
 
     def require_not_suspect(self, notices: Collection[Notice]) -> None:
         """Checks that each kind of suspect input among the notices is accepted.
@@ -76,7 +80,7 @@ class AskedPositions:
             )
 
     def judge(self, given: np.ndarray) -> None:
-        """Warns, once, of configurations (n, k) beyond the limits of joints.
+        """Warns, once, of configurations (n, k) beyond the limits of joints, or in which neighbours meet.
 
         Raises:
             SuspectInput: one is far beyond, as in another unit, and that is not accepted.
@@ -85,8 +89,11 @@ class AskedPositions:
         self.require_not_suspect(notices)
         texts = [one.line for one in notices if one.severity is not Severity.SUSPECT]
         if texts and "limits" not in self._accept:
-            self._least, self._greatest = self._bounds(far=True)
+            self._far = True
             warnings.warn(f"{texts[0]}; further ones are not reported", stacklevel=4)
+        for one in self._neighbours.meeting_at(given):
+            warnings.warn(one.line, stacklevel=4)
+        self._set_usual()
 
     def _notices(self, given: np.ndarray) -> Iterator[Notice]:
         """The notices of `check` on a trajectory with these rows as samples."""
@@ -100,14 +107,15 @@ class AskedPositions:
             yield from notices_on_positions(extents, before)
             yield from notices_on_joints(asked, rule, before, extents)
 
-    def _bounds(self, *, far: bool) -> tuple[np.ndarray, np.ndarray]:
-        """(k,) least and greatest positions without any notice; with `far`, without suspect input."""
+    def _set_usual(self) -> None:
+        """Sets (k,) least and greatest positions without any notice that was not given before."""
         pairs = zip(self._case.robots, self._names, strict=True)
-        ranges = [self._ranges(placed, names, far) for placed, names in pairs]
-        least, greatest = np.concatenate(ranges).T
-        return np.ascontiguousarray(least), np.ascontiguousarray(greatest)
+        ranges = np.concatenate([self._ranges(placed, names) for placed, names in pairs])
+        free = self._neighbours.free
+        self._least = np.maximum(ranges[:, 0], free[:, 0])
+        self._greatest = np.minimum(ranges[:, 1], free[:, 1])
 
-    def _ranges(self, placed: PlacedRobot, names: Sequence[str], far: bool) -> np.ndarray:
+    def _ranges(self, placed: PlacedRobot, names: Sequence[str]) -> np.ndarray:
         """(k, 2) the usual range of each joint and of all that follow it."""
         ranges = np.tile([-REACH, REACH], (len(names), 1))
         place = {name: i for i, name in enumerate(names)}
@@ -118,7 +126,7 @@ class AskedPositions:
             if "units" not in self._accept:
                 least, greatest = -largest_usual(joint), largest_usual(joint)
             if "limits" not in self._accept:
-                beyond = far_beyond(joint) if far else 0.0
+                beyond = far_beyond(joint) if self._far else 0.0
                 least, greatest = (
                     max(least, joint.lower - beyond),
                     min(greatest, joint.upper + beyond),

@@ -156,7 +156,8 @@ class Checker:
                 one whose surface has holes; unless that is accepted.
 
         Warns:
-            UserWarning: a joint is slightly beyond its limits; once for each checker.
+            UserWarning: a joint is slightly beyond its limits; once for each checker. Neighbours, which are not
+                measured, are apart at home and meet; once for each pair.
 
         Exactness, Ties: as `check`, method exact.
         """

@@ -1,45 +1,155 @@
-"""Links that one joint joins, apart at first, that meet later: they are excused, since most touch all the time.
+"""Links that one joint joins and that meet, apart at home or at first: such are excused, since most touch always.
 
-Not for: pairs that are measured, and pairs that an SRDF excuses.
+How two such links lie depends on the position of their joint alone. From a position at which they are separate the
+joint goes on by their distance over the farthest point's arm, as often as they are farther apart than `GAP`. So no
+position passed meets, and the way between samples counts too. A joint of several degrees of freedom is checked at
+the steps only. Not for: pairs that are measured, and pairs that an SRDF excuses.
+
+Source of the advancement: Mirtich 1996.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 
 import numpy as np
 
 from clearance.query.pair_query import Query
-from clearance.world.case import PlacedRobot
+from clearance.tolerance import REACH
+from clearance.world.body import Body
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.cubic import Cubics, cubics_of, extremes_between
 from clearance.world.extents import metres
-from clearance.world.forest import link_poses_at
+from clearance.world.kinematic_chain import chain_between
+from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import BodyIndex, names_of
 from clearance.world.phase import Phase
+from clearance.world.robot import JointKind, Robot
 from clearance.world.self_pairs import neighbours
 
 APART = 5e-3
-"""[m] Links that are nearer than this at first are joined there: they may touch as the joint turns."""
+"""[m] Links that are nearer than this at home and at first are joined there: they may touch as the joint turns."""
+
+GAP = 1e-5
+"""[m] Links that come as near are taken to touch."""
+
+REMEDY = (
+    "such pairs are not measured; an SRDF that does not excuse them has them measured, "
+    "and an `allow` row says that it is meant"
+)
 
 
-def neighbours_that_meet(phases: Sequence[Phase]) -> Iterator[Notice]:
-    """A warning on each pair of neighbours that are apart at the first step, and touch at a later one."""
-    for i, placed in enumerate(phases[0].case.robots):
-        for a, b in _excused(placed):
-            pair = BodyIndex(i, a), BodyIndex(i, b)
-            first = float(_distances(phases[0], pair, slice(0, 1))[0])
-            time = _first_contact(phases, pair) if first > APART else None
-            if time is not None:
-                names = " - ".join(body.name_in(phases[0].case) for body in pair)
-                text = (
-                    f"neighbours {names}, {metres(first)} m apart at first, touch at {time:.3f} s: such pairs are "
-                    "not measured; an SRDF that does not excuse them has them measured"
-                )
-                yield Notice(Severity.WARNING, "neighbours", text)
+class Neighbours:
+    """Two links that one joint joins, at any positions of it.
+
+    Args:
+        a, b: the one above and the one below. names: of both, as warnings have them.
+
+    Attributes:
+        joints: the names of what moves one against the other: one, or the parts of a joint of several degrees of
+            freedom; a joint that follows another counts as the one that it follows.
+        home: (k,) [rad or m] where the robot's own file has these, else 0, within their limits.
+    """
+
+    def __init__(self, robot: Robot, a: Body, b: Body, names: str) -> None:
+        self._names = names
+        self._chain = chain_between(robot, a.name, b.name)
+        self._query = Query(a.shape, b.shape)
+        self.joints = tuple(joint.name for joint in self._chain.masters)
+        given = [robot.reference.get(name, 0.0) for name in self.joints]
+        self.home = np.clip(given, *self._chain.ranges.T)
+        self._corners = np.array([*itertools.product(*b.shape.bounds.T)])
+
+    def gaps(self, positions: np.ndarray) -> np.ndarray:
+        """(n,) [m] the distances of the links at positions (n, k) of the joints [rad or m]."""
+        frames = self._chain.frames(positions)
+        return np.asarray(self._query.distances(None, frames[:, -1]).distances)
+
+    @cached_property
+    def gap_at_home(self) -> float:
+        """[m]"""
+        return float(self.gaps(self.home[None])[0])
+
+    @property
+    def is_apart_at_home(self) -> bool:
+        """False for two that are joined there: they may touch as the joint turns."""
+        return self.gap_at_home > APART
+
+    def meets_at(self, positions: np.ndarray) -> Notice | None:
+        """A warning if two that are apart at home meet at one of the positions (n, k) [rad or m]."""
+        touching = np.flatnonzero(self.gaps(positions) <= GAP)
+        if not len(touching):
+            return None
+        return self.notice(f"{self.at_home}, touch at {self.in_words(positions[touching[0]])}")
+
+    def notice(self, text: str) -> Notice:
+        """A warning of where they are apart and where they meet."""
+        return Notice(Severity.WARNING, "neighbours", f"neighbours {self._names}, {text}: {REMEDY}")
+
+    @property
+    def at_home(self) -> str:
+        """How far they are apart there, in words."""
+        return f"{metres(self.gap_at_home)} m apart at home ({self.in_words(self.home)})"
+
+    def in_words(self, positions: np.ndarray) -> str:
+        """Positions (k,) of the joints."""
+        kinds = [joint.kind for joint in self._chain.masters]
+        units = ["m" if kind is JointKind.PRISMATIC else "rad" for kind in kinds]
+        found = zip(self.joints, positions, units, strict=True)
+        return ", ".join(f"{name} = {value:.4g} {unit}" for name, value, unit in found)
+
+    def free_until(self, start: float, end: float) -> float:
+        """The position up to which the links of one joint stay apart, on its way from start to end.
+
+        Exactness: no position before it meets. It is `end`, or the links are no farther apart there than `GAP`.
+        """
+        at, way, arm = start, np.sign(end - start), self._arm()
+        while (end - at) * way > 0.0:
+            gap = float(self.gaps(np.array([[at]]))[0])
+            if gap <= GAP:
+                return at
+            at += way * min((gap - 0.5 * GAP) / arm, 2.0 * REACH)
+        return end
+
+    def free_range(self) -> tuple[float, float]:
+        """From where to where one joint can go from home within its limits so that the links stay apart.
+
+        It is infinite where nothing limits it, the links included.
+        """
+        (joint,), (only,) = self._chain.masters, self._chain.joints
+        turn = 2.0 * np.pi / max(abs(only.factor), 1e-9)
+        farthest = REACH if joint.kind is JointKind.PRISMATIC else turn
+        home, found = float(self.home[0]), []
+        for limit, way in zip(self._chain.ranges[0].tolist(), (-1.0, 1.0), strict=True):
+            end = limit if abs(limit - home) < farthest else home + way * farthest
+            free = self.free_until(home, end)
+            found.append(limit if free == end else free)
+        return found[0], found[1]
+
+    def _arm(self) -> float:
+        """[m per rad, or -] How far no point of the second link goes at most for each unit of one joint."""
+        (joint,) = self._chain.joints
+        corners = self._corners @ self._chain.end[:3, :3].T + self._chain.end[:3, 3]
+        away = np.linalg.norm(np.cross(corners, joint.axis), axis=1).max() if joint.turns else 1.0
+        return max(abs(joint.factor) * float(away) * (1.0 + 1e-9), 1e-12)
+
+
+def excused_neighbours(case: Case, i_robot: int) -> Iterator[Neighbours]:
+    """The pairs of bodies that are excused as neighbours, and by nothing else."""
+    placed = case.robots[i_robot]
+    for a, b in _excused(placed):
+        pair = BodyIndex(i_robot, a), BodyIndex(i_robot, b)
+        names = [names_of(case, body) for body in pair]
+        if not any(row.matches(*names) for row in case.allow if not row.when):
+            a_body, b_body = (body.body_in(case) for body in pair)
+            text = " - ".join(body.name_in(case) for body in pair)
+            yield Neighbours(placed.robot, a_body, b_body, text)
 
 
 def _excused(placed: PlacedRobot) -> Iterator[tuple[int, int]]:
-    """The pairs of bodies that are excused as neighbours, and by nothing else."""
     asked = placed.self_clearance
     if asked is None or asked.matrix is not None or placed.robot.own_matrix is not None:
         return
@@ -50,18 +160,94 @@ def _excused(placed: PlacedRobot) -> Iterator[tuple[int, int]]:
             yield a, b
 
 
-def _distances(phase: Phase, pair: tuple[BodyIndex, BodyIndex], steps: slice) -> np.ndarray:
-    """(n,) [m] at steps of a phase."""
-    poses = link_poses_at(phase.case, phase.motions, steps)
-    a, b = (np.array(body.poses_in(phase.case, poses)) for body in pair)
-    query = Query(*(body.shape_in(phase.case) for body in pair))
-    return np.asarray(query.distances(a, b).distances)
+def neighbours_that_meet(phases: Sequence[Phase]) -> Iterator[Notice]:
+    """A warning on each pair of neighbours that are apart at home or at the first step, and meet in the run."""
+    case = phases[0].case
+    for i in range(len(case.robots)):
+        motions = [phase.motions[i] for phase in phases if i not in phase.absent_robots]
+        for pair in excused_neighbours(case, i) if motions else ():
+            text = _meeting(pair, motions)
+            if text:
+                yield pair.notice(text)
 
 
-def _first_contact(phases: Sequence[Phase], pair: tuple[BodyIndex, BodyIndex]) -> float | None:
-    """[s] The first step at which a pair touches."""
-    for phase in phases:
-        touching = np.flatnonzero(_distances(phase, pair, slice(0, phase.n_steps)) <= 0.0)
-        if len(touching):
-            return float(phase.times[touching[0]])
+def _meeting(pair: Neighbours, motions: Sequence[Motion]) -> str:
+    """Where two neighbours are apart and where they meet, in words; empty if they are not, or do not."""
+    first = _positions(pair, motions[0])[0]
+    at_first = float(pair.gaps(first[None])[0])
+    if at_first <= APART and not pair.is_apart_at_home:
+        return ""
+    apart = f"{metres(at_first)} m apart at first" if at_first > APART else pair.at_home
+    if at_first <= GAP:
+        return f"{apart}, touch at the first step already, at {pair.in_words(first)}"
+    found = _first_contact(pair, motions, first)
+    if found is None:
+        return ""
+    position, time, how = found
+    return f"{apart}, touch{how} at {pair.in_words(position)}, at {time:.3f} s"
+
+
+def _positions(pair: Neighbours, motion: Motion) -> np.ndarray:
+    """(n, k) of the joints between two neighbours at the steps."""
+    return motion.positions[:, [motion.joint_names.index(name) for name in pair.joints]]
+
+
+def _first_contact(
+    pair: Neighbours, motions: Sequence[Motion], first: np.ndarray
+) -> tuple[np.ndarray, float, str] | None:
+    """Where, when [s] and how well known two neighbours that are apart at first meet."""
+    if len(pair.joints) > 1:
+        for motion in motions:
+            positions = _positions(pair, motion)
+            touching = np.flatnonzero(pair.gaps(positions) <= GAP)
+            if len(touching):
+                return positions[touching[0]], float(motion.times[touching[0]]), " at a step,"
+        return None
+    i_joint = motions[0].joint_names.index(pair.joints[0])
+    ends = [_ends_between(motion, i_joint) for motion in motions]
+    low, high = min(one.min() for one, _ in ends), max(one.max() for _, one in ends)
+    start = float(first[0])
+    free = pair.free_until(start, float(low)), pair.free_until(start, float(high))
+    for motion, (least, greatest) in zip(motions, ends, strict=True):
+        leaves = np.flatnonzero((least < free[0]) | (greatest > free[1]))
+        if len(leaves):
+            time, position = _leaving(motion, i_joint, int(leaves[0]), free)
+            return np.array([position]), time, f" (to {GAP * 1e3:g} mm)"
     return None
+
+
+def _ends_between(motion: Motion, i_joint: int) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) least and greatest position of a joint from each step to the next, and at the last."""
+    column = motion.positions[:, i_joint : i_joint + 1]
+    after = np.vstack([column[1:], column[-1:]])
+    ends = np.minimum(column, after), np.maximum(column, after)
+    if motion.velocities is not None and len(column) > 1:
+        between = extremes_between(
+            motion.times, column, motion.velocities[:, i_joint : i_joint + 1]
+        )
+        ends[0][:-1], ends[1][:-1] = between
+    return ends[0][:, 0], ends[1][:, 0]
+
+
+def _leaving(
+    motion: Motion, i_joint: int, step: int, span: tuple[float, float]
+) -> tuple[float, float]:
+    """[s] and [rad or m] when and where a joint leaves a span at or after a step, before the next one."""
+    position = float(motion.positions[step, i_joint])
+    if not span[0] <= position <= span[1]:
+        return float(motion.times[step]), position
+    ends = slice(step, step + 2)
+    times, positions = motion.times[ends], motion.positions[ends]
+    cubics = Cubics(
+        positions[:-1], np.diff(positions, axis=0), *np.zeros((2, 1, positions.shape[1]))
+    )
+    if motion.velocities is not None:
+        cubics = cubics_of(times, positions, motion.velocities[ends])
+    start, way, e0, e1 = (float(part[0, i_joint]) for part in cubics)
+    found = []
+    for level in span:
+        roots = np.roots([e0 + e1, -2.0 * e0 - e1, way + e0, start - level])
+        real = roots.real[np.abs(roots.imag) < 1e-6]
+        found += [(share, level) for share in real.tolist() if 0.0 < share <= 1.0]
+    share, level = min(found, default=(1.0, float(positions[1, i_joint])))
+    return float(times[0] + share * (times[1] - times[0])), level

@@ -137,23 +137,3 @@ def test_a_wrist_that_flies_through_the_cell_has_moved_nowhere_against_its_tool(
     assert len(set(run.record.clearances.tolist())) == 1
     assert (run.certificate.lower_bound >= run.record.clearances - 1e-5).all()
     assert run.record.tally["queries"] <= n_pairs
-
-
-@pytest.mark.parametrize(("turn", "n_told"), [(2.9, 1), (1.5, 0)])
-def test_neighbours_that_are_apart_at_first_and_meet_stand_in_the_headline(turn, n_told):
-    """A hand of 0.5 m, 0.1 m before the end of an arm, is folded back onto it; the base is far from both."""
-    joints = (
-        joint("prismatic", "base", "arm"),
-        joint("revolute", "arm", "hand", (0.65, 0.0, 0.0), Z),
-    )
-    bar = (0.5, 0.05, 0.05)
-    shapes = {
-        "base": ((0.1, 0.1, 0.1), (0, 0, 3)),
-        "arm": (bar, (0.35, 0, 0)),
-        "hand": (bar, (0.3, 0, 0)),
-    }
-    run = run_of(joints, shapes, {"base_arm": 0.0, "arm_hand": turn})
-    told = [one for one in run.verdict.warnings if one.startswith("neighbours")]
-    assert len(told) == n_told
-    for one in told:
-        assert one.startswith("neighbours arm - hand, 0.1 m apart at first, touch at 2.000 s")
