@@ -14,12 +14,14 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.motion.kinematics import FIXED, NO_PARENT
 from clearance.query.distance import distance
 from clearance.record.record import Record
 from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
 from clearance.world.carry import Carry
+from clearance.world.case import Case
 from clearance.world.extents import metres
-from clearance.world.forest import link_poses_at, owner_of
+from clearance.world.forest import WORLD, carried_by, forest_of, link_poses_at, owner_of
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
@@ -103,24 +105,42 @@ def far_grasps(phases: Sequence[Phase]) -> Iterator[Notice]:
 def _grasp_gap(phase: Phase, carry: Carry) -> float:
     """[m] From a part to the nearest body of what carries it, as it is picked up; infinite if that has no body."""
     case = phase.case
-    owner = owner_of(case, Mount(carry.by))
-    names = [one.name for one in case.obstacles]
-    part = BodyIndex(OBSTACLE, names.index(carry.part))
-    others = [
-        BodyIndex(OBSTACLE, i)
-        for i, one in enumerate(case.obstacles)
-        if one.mount and one.name != carry.part and owner_of(case, one.mount) == owner
-    ]
-    if owner[0]:
-        others.append(BodyIndex(OBSTACLE, owner[1]))
-    else:
-        others += [BodyIndex(owner[1], k) for k in range(len(case.robots[owner[1]].robot.bodies))]
+    part = BodyIndex(OBSTACLE, [one.name for one in case.obstacles].index(carry.part))
     poses = link_poses_at(case, phase.motions, slice(0, 1))
     placed = part.shape_in(case), part.poses_in(case, poses)[0]
     gaps = (
-        gap_between(*placed, one.shape_in(case), one.poses_in(case, poses)[0]) for one in others
+        gap_between(*placed, one.shape_in(case), one.poses_in(case, poses)[0])
+        for one in _gripping(case, carry.by, part)
     )
     return min(gaps, default=np.inf)
+
+
+def _gripping(case: Case, name: str, part: BodyIndex) -> list[BodyIndex]:
+    """The bodies beside the part of what is called so: all that fixed joints join to it, and all below that.
+
+    Where none of this has a shape, it is what that hangs on. An obstacle that stands has what stands on it.
+    """
+    bodies = [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
+    for i, placed in enumerate(case.robots):
+        bodies += [BodyIndex(i, k) for k in range(len(placed.robot.bodies))]
+    bodies.remove(part)
+    forest = forest_of(case)
+    frames = [(one, one.frame_in(case)) for one in bodies]
+    above = {one: {*carried_by(forest, frame)} for one, frame in frames if frame != WORLD}
+    link = forest.link_called(case, name)
+    for top in carried_by(forest, link) if link != WORLD else ():
+        is_rigid = forest.links.kinds[top] == FIXED and forest.links.parents[top] != NO_PARENT
+        found = [] if is_rigid else [one for one, links in above.items() if top in links]
+        if found:
+            return found
+    return [one for one in bodies if one.is_obstacle and _is_on(case, one.i_body, name)]
+
+
+def _is_on(case: Case, i_obstacle: int, name: str) -> bool:
+    """True for an obstacle that is, or stands on, one that stands and is called so."""
+    mount = case.obstacles[i_obstacle].mount
+    owner = (True, i_obstacle) if mount is None else owner_of(case, mount)
+    return owner == owner_of(case, Mount(name))
 
 
 def _changes(record: Record) -> list[tuple[float, Carry, str]]:
