@@ -19,6 +19,10 @@ from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, ro
 A_B = link("", "a") + link("", "b")
 
 
+def in_joint(inner: str) -> str:
+    return robot(A_B, joint("j", "a", "b", inner=inner))
+
+
 @pytest.mark.parametrize(
     ("urdf", "fault", "says"),
     [
@@ -35,21 +39,33 @@ A_B = link("", "a") + link("", "b")
         (robot(A_B, joint("j", "base", "b")), UnknownLink, "joint 'j': unknown parent link 'base'"),
         (robot(A_B, '<joint name="j" type="fixed"><parent link="a"/></joint>'), MissingKey, "0 <child>"),
         (robot(A_B, joint("j", "a", "b", "ball")), BadInput, "joint 'j': type 'ball'"),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 0 0"/>')), BadInput, "axis is 0 0 0"),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1"/>')), BadShape, "joint 'j' axis: xyz='0 1'"),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1 nan"/>')), NotFinite, "xyz="),
-        (robot(A_B, joint("j", "a", "b", inner='<limit lower="2" upper="1"/>')), BadInput, "lower limit 2"),
-        (robot(A_B, joint("j", "a", "b", inner='<mimic joint="k"/>')), UnknownJoint, "unknown joint 'k'"),
+        (in_joint('<axis xyz="0 0 0"/>'), BadInput, "axis is 0 0 0"),
+        (in_joint('<axis xyz="0 1"/>'), BadShape, "joint 'j' axis: xyz='0 1'"),
+        (in_joint('<axis xyz="0 1 nan"/>'), NotFinite, "xyz="),
+        (in_joint('<limit lower="2" upper="1"/>'), BadInput, "lower limit 2"),
+        (in_joint('<mimic joint="k"/>'), UnknownJoint, "unknown joint 'k'"),
         (robot(link("<colision/>", "a")), BadInput, "link 'a': <colision> is not read; did you mean <collision>?"),
-        (robot(A_B, joint("j", "a", "b", inner="<orign/>")), BadInput, "joint 'j': <orign> is not read"),
-        (robot(A_B, joint("j", "a", "b", inner="<Axis/>")), BadInput, "did you mean <axis>?"),
-        (robot(link(collision('<sphere radius="1" diameter="2"/>'))), BadInput, "='2' is not read; radius"),
-        (robot(A_B, joint("j", "a", "b", inner='<origin xzy="1 0 0"/>')), BadInput, "xzy='1 0 0' is not read"),
-        (robot(A_B, joint("j", "a", "b", inner='<origin pos="1 0 0"/>')), BadInput, "is not read; rpy, xyz"),
+        (in_joint("<orign/>"), BadInput, "joint 'j': <orign> is not read"),
+        (in_joint("<Axis/>"), BadInput, "did you mean <axis>?"),
+        (robot(link(collision('<sphere radius="1" diameter="2"/>'))), BadInput, "='2' is not read; radius="),
+        (in_joint('<origin xzy="1 0 0"/>'), BadInput, "xzy='1 0 0' is not read"),
+        (in_joint('<origin pos="1 0 0"/>'), BadInput, "is not read; rpy=, xyz="),
         (robot("<jont/>", A_B), BadInput, "robot 'r': <jont> is not read; did you mean <joint>?"),
-        (robot(A_B, joint("j", "a", "b", inner='<origin RPY="0 0 1"/>')), BadInput, "RPY='0 0 1' is not read"),
-        (robot(A_B, joint("j", "a", "b", inner='<origin quat_xyzw="0 0 0 1"/>')), BadInput, "rpy=… is needed"),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 0 1"/><axis xyz="0 1 0"/>')), BadInput, "two <axis>"),
+        (in_joint('<origin RPY="0 0 1"/>'), BadInput, "RPY='0 0 1' is not read"),
+        (in_joint('<origin quat_xyzw="0 0 0 1"/>'), BadInput, "is not read; rpy=, xyz=, and no other"),
+        (in_joint('<axis xyz="0 0 1"/><axis xyz="0 1 0"/>'), BadInput, "two <axis>"),
+        (in_joint("<origin>1 0 0</origin>"), BadInput, "origin: the text '1 0 0' is not"),
+        (in_joint('<origin parent="x"/>'), BadInput, "parent='x' is not read"),
+        (in_joint('<limit min="-1" max="1"/>'), BadInput, "min='-1' is not read; lower="),
+        (in_joint('<mimic joint="k" ratio="3"/>'), BadInput, "ratio='3' is not read; joint="),
+        (in_joint("<pose>1 0 0 0 0 0</pose>"), BadInput, "joint 'j': <pose> is not read"),
+        (robot(link(collision("<box/>", "<pose>1 0 0 0 0 0</pose>"))), BadInput, "collision: <pose> is not read"),
+        (robot(link('<origin xyz="1 0 0"/>' + BOX)), BadInput, "link 'a': <origin> is not read"),
+        (robot(link("<shape><box size='1 1 1'/></shape>")), BadInput, "link 'a': <shape> is not read"),
+        (robot(link('<x:collision xmlns:x="urn:x"/>')), BadInput, "<x:collision> is not read"),
+        (robot(A_B, '<include filename="gripper.urdf"/>'), BadInput, "robot 'r': <include> is not read"),
+        (robot(A_B, "<group>" + link(BOX, "c") + "</group>"), BadInput, "robot 'r': <group> is not read"),
+        ('<robot name="r" version="9.9"/>', BadInput, "robot: version='9.9'; 1.0 or 1.1"),
         (robot(link(BOX + collision("<cone/>"))), BadInput, "collision[1] geometry: <cone>"),
         (robot(link(collision("<box size='1 1 1'/><sphere radius='1'/>"))), BadInput, "<box>, <sphere>"),
         (robot(link(collision("<box/>"))), MissingKey, "<box> has no size"),

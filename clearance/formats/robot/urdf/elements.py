@@ -1,7 +1,7 @@
 """What a URDF document must look like before anything is made of it: each fault names its element.
 
-Elements that say nothing about shape or motion (inertia, colour, transmission, gazebo, …) are taken out. Then a
-`<geometry>` has one child, its shape, and attributes hold what `pose_of` and `numbers` read from them.
+A table says what is read, and which names say nothing about shape or motion (inertia, colour, gazebo, …): these
+are taken out. Then a `<geometry>` has one child, its shape, and attributes hold what `pose_of` and `numbers` read.
 """
 
 from __future__ import annotations
@@ -11,26 +11,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadRobot, BadShape, MissingKey, NotFinite, at, meant_name
+from clearance.errors import BadRobot, BadShape, MissingKey, NotFinite, at
 from clearance.formats.plausibility import odd_angles
 from clearance.formats.robot.request import Geometry
 from clearance.formats.robot.robot_element import robot_element
 from clearance.formats.robot.shape_kinds import chosen_kind
 from clearance.formats.text.numbers import is_zero
+from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
 from clearance.geometry.pose import pose_from_rpy
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.world.names import checked_name, require_own_names
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
-
-_NEEDED_BELOW = {
-    "robot": ("link", "joint"),
-    "link": ("collision", "visual"),
-    "collision": ("origin", "geometry"),
-    "visual": ("origin", "geometry"),
-    "joint": ("origin", "parent", "child", "axis", "limit", "mimic"),
-}
 
 _PRIMITIVES = {name: shape for name, shape in SHAPES.items() if shape.in_urdf}
 
@@ -62,16 +55,61 @@ _REQUIRED = {
 
 _SHAPES = (*_PRIMITIVES, "mesh")
 
-_PLAIN = {*_PRIMITIVES, "origin", "mimic", "parent", "child"}
-"""Elements that public files give no attributes but those that are read."""
-
 _SINGLE = ("origin", "axis", "limit", "mimic")
 """Elements that stand once in another one."""
 
-_ATTRIBUTES = {
-    tag: {*_NUMBERS.get(tag, ()), *_REQUIRED.get(tag, ())} for tag in {*_NUMBERS, *_REQUIRED}
-} | {"limit": {"lower", "upper", "velocity", "effort"}}
-"""The attributes that are read, and `effort`."""
+_LEAVES = (*_SHAPES, *_SINGLE, "parent", "child")
+
+_PASSED = {
+    "limit": "effort velocity acceleration deceleration jerk command_effort gear_velocity current twist",
+    "mesh": "declare_convex",
+}
+
+
+def _leaf(tag: str) -> Row:
+    attributes = " ".join((*_NUMBERS.get(tag, ()), *_REQUIRED.get(tag, ())))
+    return Row(attributes=attributes, passed=_PASSED.get(tag, ""), closed=True)
+
+
+_SHAPE = Row(
+    "origin geometry",
+    "name",
+    "material verbose group mask concave accepting_renderer proximity_properties",
+)
+
+_URDF = Format(
+    {
+        "robot": Row(
+            "link joint",
+            "name version",
+            "gazebo transmission material sensor ros2_control mujoco frame force_element "
+            "collision_filter_group",
+        ),
+        "link": Row(
+            "collision visual self_filter self_collision_checking",
+            "name",
+            "type drake_ignore concave inertial contact gravity kinematic surface collision_checking",
+        ),
+        "joint": Row(
+            "origin parent child axis limit mimic",
+            "name type",
+            "dynamics safety_controller calibration joint_properties dont_collapse role",
+        ),
+        **dict.fromkeys(("collision", "visual", "self_filter", "self_collision_checking"), _SHAPE),
+        "geometry": Row(ANY, passed="name"),
+        **{tag: _leaf(tag) for tag in _LEAVES},
+    },
+    hidden=frozenset(
+        "origin axis mesh xyz rpy pose pos quat size radius length scale link filename file uri "
+        "include".split()
+    ),
+    fault=BadRobot,
+)
+"""Names that are passed over: those of the specification, and of URDF for Gazebo, ros2_control, Bullet, Drake,
+MuJoCo and pinocchio."""
+
+VERSIONS = ("1", "1.0", "1.1")
+"""Source: urdfdom, README, "URDF Versioning"."""
 
 
 def parse_document(data: bytes) -> Element:
@@ -80,19 +118,26 @@ def parse_document(data: bytes) -> Element:
     Raises:
         BadInput: as `reduced_document` and `checked_document`.
     """
-    return checked_document(reduced_document(data))
+    return checked_document(reduced_document(data)[0])
 
 
-def reduced_document(data: bytes) -> Element:
-    """The root element of a URDF document, reduced to links' shapes and joints.
+def reduced_document(data: bytes) -> tuple[Element, list[Unread]]:
+    """The root element of a URDF document, reduced to links' shapes and joints; and what else there was.
 
     Raises:
-        BadSyntax: not XML, not URDF, or a xacro file. BadRobot: an element whose name resembles one that is read.
+        BadSyntax: not XML, no URDF, or a xacro file. BadRobot: another version; an element, attribute or text that
+            is not read, and may give a shape or a place.
     """
     root = robot_element(data, "a URDF file")
     checked_name(root.get("name") or "")
-    _reduce(root)
-    return root
+    version = root.get("version") or VERSIONS[0]
+    if version not in VERSIONS:
+        raise BadRobot(f"version={version!r:.60}", where="robot", valid=" or ".join(VERSIONS[1:]))
+    found = [*unread(root, _URDF)]
+    for one in found:
+        if not one.name.endswith("="):
+            one.element.getparent().remove(one.element)
+    return root, found
 
 
 def without_empty_shapes(root: Element, geometry: Geometry) -> list[str]:
@@ -190,42 +235,6 @@ def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return numbers(origin, "xyz", zeros), numbers(origin, "rpy", zeros)
 
 
-def _reduce(element: Element) -> None:
-    needed = _NEEDED_BELOW.get(element.tag)
-    for child in list(element):
-        if needed is not None and child.tag not in needed:
-            _require_unread(child, needed)
-            element.remove(child)
-        else:
-            _reduce(child)
-
-
-def _require_unread(element: Element, read: tuple[str, ...]) -> None:
-    """Refuses an element that was meant to say something about shape or motion."""
-    parent = element.getparent()
-    owner = next(
-        (one for one in (parent, *parent.iterancestors()) if one.tag in ("link", "joint")), parent
-    )
-    where = f"{owner.tag} {owner.get('name')!r}"
-    meant = meant_name(element.tag, read)
-    if meant:
-        raise BadRobot(
-            f"<{element.tag}> is not read", where=where, valid=f"did you mean <{meant}>?"
-        )
-
-
-def _require_known(element: Element, where: str) -> None:
-    """Refuses an attribute that was meant to say something about shape or motion."""
-    read = _ATTRIBUTES.get(element.tag, ())
-    for given in element.attrib:
-        meant = "rpy" if given == "quat_xyzw" else meant_name(given, read)
-        if meant or (element.tag in _PLAIN and given not in read):
-            valid = f"{meant}=… is needed" if meant else f"{', '.join(sorted(read))}, and no other"
-            raise BadRobot(
-                f"{given}={element.get(given)!r:.60} is not read", where=where, valid=valid
-            )
-
-
 def _check_names(root: Element, kind: str) -> None:
     names = [element.get("name") for element in root.findall(kind)]
     for i, name in enumerate(names):
@@ -235,7 +244,6 @@ def _check_names(root: Element, kind: str) -> None:
 
 
 def _check(element: Element, where: str) -> None:
-    _require_known(element, where)
     for attribute in _REQUIRED.get(element.tag, ()):
         if not element.get(attribute):
             raise MissingKey(f"<{element.tag}> has no {attribute}", where=where)

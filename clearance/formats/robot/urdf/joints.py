@@ -38,7 +38,7 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     require_own_names("joint", [joint.name for joint in joints])
     masters = masters_of(joints)
     fixed = {joint.name for joint in joints if joint.kind is JointKind.FIXED}
-    notes = [*notes_on_parts(joints), *_on_no_limits(joints)]
+    notes = [*notes_on_parts(joints), *_on_no_limits(joints), *_on_no_axis(root)]
     for i, (joint, master, _, position) in enumerate(masters[joint.name] for joint in joints):
         if joint.mimic is not None and master in fixed:
             joints[i] = _at_rest(joint, position)
@@ -120,6 +120,17 @@ def _on_no_limits(joints: list[Joint]) -> list[str]:
     ]
     note = f"joints without <limit>, taken as unlimited: {listed(names, 8)}"
     return [note] if names else []
+
+
+def _on_no_axis(root: Element) -> list[str]:
+    """A note on joints that move along or about x since the file does not say otherwise (URDF)."""
+    names = [
+        repr(joint.get("name"))
+        for joint in root.iterfind("joint")
+        if joint.get("type") not in ("fixed", *_COMPOUND)
+        and (joint.find("axis") is None or joint.find("axis").get("xyz") is None)
+    ]
+    return [f"joints without <axis>, taken as x: {listed(names, 8)}"] if names else []
 
 
 def _velocity(element: Element | None) -> float:

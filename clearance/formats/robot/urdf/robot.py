@@ -31,6 +31,7 @@ from clearance.formats.robot.urdf.elements import (
 )
 from clearance.formats.robot.urdf.joints import joints_of
 from clearance.formats.robot.urdf.shapes import ShapeReader
+from clearance.formats.text.unread import notes_on, notices_on
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.names import require_own_names
@@ -72,7 +73,7 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
     """
     data, made = _document(request, meshes.files)
     with at(meshes.files.shown(request.path)):
-        root = reduced_document(data)
+        root, others = reduced_document(data)
         empty = without_empty_shapes(root, request.geometry)
         checked_document(root)
         joints, notes = joints_of(root)
@@ -91,8 +92,10 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
             *axis_notices(links, bodies, ordered, reader),
             *unseen(kinds, request.geometry),
             *_on_empty(empty),
+            *notices_on(others),
         ]
-    notes = [f"{request.path.name}: {note}" for note in (*notes, *notes_on_bare(kinds))]
+    said = *notes, *notes_on_bare(kinds), *notes_on(others)
+    notes = [f"{request.path.name}: {note}" for note in said]
     return Robot(
         root.get("name") or "robot",
         link_names,
