@@ -27,6 +27,7 @@ from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.pose import inverse
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
+from clearance.programs.time_law import Limits
 from clearance.world.case import PlacedRobot
 
 
@@ -230,9 +231,11 @@ def _move(move: schema.Move, frames: _Frames, where: str, name: str) -> Move:
     if move.ptp is not None:
         given, to = move.ptp, move.ptp.to
         link, pose = ("", None) if to is None else frames.target(to)
+        speed = given.joint_speed
+        leading = None if speed is None else Limits(speed, given.joint_acceleration)
         return JointMove(
-            *(name, where, given.joints, pose, given.speed, given.zone, given.near, given.within),
-            seen_from=link,
+            *(name, where, given.joints, pose, given.speed, given.time, leading, given.zone),
+            *(given.near, given.within, link),
         )
     path = move.circ or move.lin
     assert path is not None
@@ -248,6 +251,7 @@ def _move(move: schema.Move, frames: _Frames, where: str, name: str) -> Move:
         speed=path.speed,
         acceleration=path.acceleration,
         turn_speed=path.turn_speed,
+        time=path.time,
         zone=path.zone,
         hold=dict(path.hold),
         free=path.free,

@@ -13,6 +13,7 @@ from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.inverse import ANOTHER, nearest_joints, range_of
 from clearance.programs.moves import SHARE_OF_WAY, JointMove
+from clearance.programs.time_law import Limits
 from clearance.world.robot import Joint
 
 RUN_UP = 0.25
@@ -131,8 +132,17 @@ def fastest(joints: Sequence[Joint]) -> np.ndarray:
     return np.array([one if one > 0.0 else USUAL_SPEED for one in known])
 
 
-def joint_law(joints: Sequence[Joint], way: np.ndarray, speed: float) -> tuple[float, float]:
+def joint_law(joints: Sequence[Joint], way: np.ndarray, speed: float) -> Limits:
     """[1/s] and [1/s^2] The rate of a joint move, and its change: no joint is faster than it may be."""
     ways = np.maximum(np.abs(way), NO_WAY)
     rate = float(speed * (fastest(joints) / ways).min())
-    return rate, rate / (speed * RUN_UP)
+    return Limits(rate, rate / (speed * RUN_UP))
+
+
+def limits_of_joint_move(joints: Sequence[Joint], way: np.ndarray, move: JointMove) -> Limits:
+    """[1/s] and [1/s^2] The rate of a joint move that goes so far (k,), and its change."""
+    found = joint_law(joints, way, move.speed)
+    if move.leading is not None:
+        farthest = max(float(np.abs(way).max()), NO_WAY)
+        found = Limits(move.leading.speed / farthest, move.leading.change / farthest)
+    return found if move.time is None else found.lasting(1.0, move.time)

@@ -14,7 +14,7 @@ import numpy as np
 from clearance.errors import BadProgram, at
 from clearance.programs.arm import Arm
 from clearance.programs.following import Follower, joints_on_path
-from clearance.programs.joint_way import RUN_UP, JointWay, fastest, joint_law
+from clearance.programs.joint_way import RUN_UP, JointWay, fastest, limits_of_joint_move
 from clearance.programs.moves import (
     SHARE_OF_WAY,
     SHORTEST,
@@ -23,7 +23,7 @@ from clearance.programs.moves import (
     PathMove,
     Run,
 )
-from clearance.programs.time_law import Piece, trapezoid
+from clearance.programs.time_law import UNLIMITED, Limits, Piece, trapezoid
 from clearance.programs.tool_path import Stretch, arc, corner, line
 
 LONGEST = 100.0
@@ -38,7 +38,8 @@ class Corner:
     """A corner zone.
 
     Attributes:
-        radius: [m]. moves: it is between. sides: the parts of both ways that it takes the place of.
+        radius: [m]. moves: it is between. sides: the parts of both ways that it takes the place of. limits: of
+            these.
         is_cut: one side would take more than `SHARE_OF_WAY`.
         joints: (k,) about where the joints are at the corner; None between lines and arcs.
     """
@@ -46,6 +47,7 @@ class Corner:
     radius: float
     moves: tuple[JointMove | PathMove, JointMove | PathMove]
     sides: tuple[Way, Way]
+    limits: tuple[Limits, Limits]
     is_cut: bool
     joints: np.ndarray | None = None
 
@@ -60,23 +62,25 @@ class Leg:
     """A move, or a part of one, or the corner after it.
 
     Attributes:
-        way: how it goes; None in a corner beside a joint move, and where nothing moves. pieces: how fast.
-        corner: the zone that it is; None where it is none.
+        way: how it goes; None in a corner beside a joint move, and where nothing moves. pieces: how fast, within
+            limits. corner: the zone that it is; None where it is none.
     """
 
     move: Move
     way: Way | None = None
+    limits: Limits = UNLIMITED
     pieces: tuple[Piece, ...] = ()
     corner: Corner | None = None
 
 
 class PlannedWay(NamedTuple):
     """How a move goes; None where nothing moves. joints: (k,) at its end, as far as joint moves after it need
-    them."""
+    them. limits: of its speed, in the size of the way."""
 
     move: Move
     way: Way | None
     joints: np.ndarray
+    limits: Limits
 
 
 def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
@@ -86,15 +90,16 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
         BadInput: a zone beside a move of no length; with the move.
     """
     before, legs = 0.0, list[Leg]()
-    for (move, way, joints), (next_move, following, _) in pairwise(ways):
+    for (move, way, joints, limits), (next_move, following, _, next_limits) in pairwise(ways):
         assert way is not None and following is not None
         assert isinstance(move, JointMove | PathMove)
         assert isinstance(next_move, JointMove | PathMove)
         with at(move.where):
             radius, into, out = _cut(arm, move.zone, way, following)
-        legs.append(Leg(move, way.part(before, 1.0 - into)))
+        legs.append(Leg(move, way.part(before, 1.0 - into), limits))
         first, second = way.part(1.0 - into, 1.0), following.part(0.0, out)
-        zone = Corner(radius, (move, next_move), (first, second), radius < move.zone)
+        both = (limits, next_limits)
+        zone = Corner(radius, (move, next_move), (first, second), both, radius < move.zone)
         if isinstance(first, Stretch) and isinstance(second, Stretch):
             _require_same_joints(move, first, second)
             legs.append(Leg(move, corner(first, second), corner=zone))
@@ -102,11 +107,11 @@ def legs_of(arm: Arm, ways: Sequence[PlannedWay]) -> Iterator[Leg]:
             is_cut = SHARE_OF_WAY in (into, out)
             legs.append(Leg(move, corner=replace(zone, is_cut=is_cut, joints=joints)))
         before = out
-    last, way, _ = ways[-1]
+    last, way, _, limits = ways[-1]
     if way is None:
         yield Leg(last)
         return
-    yield from _with_speeds(arm, [*legs, Leg(last, way.part(before, 1.0))])
+    yield from _with_speeds(arm, [*legs, Leg(last, way.part(before, 1.0), limits)])
 
 
 def _require_same_joints(move: JointMove | PathMove, first: Stretch, second: Stretch) -> None:
@@ -146,7 +151,7 @@ def ways_of(arm: Arm, run: Run, start: np.ndarray) -> list[PlannedWay]:
                 if not is_none(way):
                     pose = way.poses(np.array([[1.0, 0.0]]))[0]
                     joints = _joints_after(arm, way, joints, run[i + 1 :])
-        found.append(PlannedWay(move, way, joints))
+        found.append(PlannedWay(move, way, joints, _limits_of(arm, move, way)))
     return found
 
 
@@ -219,11 +224,13 @@ def size_of(way: Way) -> float:
     return next((one for one in sizes if one >= SHORTEST), 0.0)
 
 
-def _limits_of(arm: Arm, move: Move, way: Way) -> tuple[float, float]:
-    """How fast a way may be gone along, and how much faster each second, in its sizes."""
+def _limits_of(arm: Arm, move: Move, way: Way | None) -> Limits:
+    """How fast the whole way of a move may be gone along, and how much faster each second."""
+    if way is None or is_none(way):
+        return UNLIMITED
     if isinstance(way, JointWay):
         assert isinstance(move, JointMove)
-        return joint_law(arm.joints, way.whole, move.speed)
+        return limits_of_joint_move(arm.joints, way.whole, move)
     assert isinstance(move, PathMove)
     by_held = size_of(way) / max(way.least_time, 1e-300)
     most, change = np.inf, np.inf
@@ -232,7 +239,8 @@ def _limits_of(arm: Arm, move: Move, way: Way) -> tuple[float, float]:
         change = move.acceleration
     elif way.turned >= SHORTEST:
         most, change = move.turn_speed, move.turn_speed / RUN_UP
-    return min(most, by_held), min(change, by_held / RUN_UP)
+    found = Limits(min(most, by_held), min(change, by_held / RUN_UP))
+    return found if move.time is None else found.lasting(size_of(way), move.time)
 
 
 def _with_speeds(arm: Arm, run: list[Leg]) -> Iterator[Leg]:
@@ -248,7 +256,7 @@ def _with_speeds(arm: Arm, run: list[Leg]) -> Iterator[Leg]:
             if isinstance(leg.way, JointWay):
                 yield leg
             continue
-        size, (most, change) = size_of(leg.way), _limits_of(arm, leg.move, leg.way)
+        size, (most, change) = size_of(leg.way), leg.limits
         yield replace(
             leg, pieces=tuple(trapezoid(most / size, change / size, first / size, last / size))
         )
@@ -273,7 +281,7 @@ def _speeds_at_ends(arm: Arm, run: Sequence[Leg]) -> list[float]:
         if is_none(leg.way):
             most[i] = most[i + 1] = min(most[i], most[i + 1])
             continue
-        gained = 2.0 * _limits_of(arm, leg.move, leg.way)[1] * size_of(leg.way)
+        gained = 2.0 * leg.limits.change * size_of(leg.way)
         most[i + 1] = min(most[i + 1], float(np.sqrt(most[i] ** 2 + gained)))
         most[i] = min(most[i], float(np.sqrt(most[i + 1] ** 2 + gained)))
     return most
@@ -283,8 +291,10 @@ def _rate_in_corner(arm: Arm, zone: Corner) -> float:
     """[1/s] How fast a corner is passed: as both sides allow, and so that its bend takes no more than the
     acceleration."""
     before, after = zone.moves
-    sides = (before, zone.sides[0], 1.0), (after, zone.sides[1], 0.0)
-    rates = [_limits_of(arm, move, side)[0] / (2.0 * size_of(side)) for move, side, _ in sides]
+    rates = [
+        limits.speed / (2.0 * size_of(side))
+        for side, limits in zip(zone.sides, zone.limits, strict=True)
+    ]
     if zone.joints is None:
         assert isinstance(before, PathMove) and isinstance(after, PathMove)
         first, second = (side.ways[0] for side in zone.sides if isinstance(side, Stretch))
@@ -301,7 +311,10 @@ def _rate_in_corner(arm: Arm, zone: Corner) -> float:
         bends = np.abs(held[1] - held[0]) / fastest(arm.joints)
         rates.append(float(np.sqrt(0.5 / RUN_UP / max(float(bends.max()), 1e-12))))
     else:
-        ways = [_joint_way(arm, side, zone.joints, share) for _, side, share in sides]
+        ways = [
+            _joint_way(arm, side, zone.joints, share)
+            for side, share in zip(zone.sides, (1.0, 0.0), strict=True)
+        ]
         bend = float((np.abs(ways[1] - ways[0]) / fastest(arm.joints)).max())
         acceleration = 1.0 / RUN_UP
     return float(min(*rates, np.sqrt(acceleration / max(2.0 * bend, 1e-12))))

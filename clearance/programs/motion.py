@@ -130,7 +130,7 @@ class _Samples:
     def note_targets(self, ways: Sequence[PlannedWay]) -> None:
         """Says which joints are taken in moves to a pose."""
         names = [joint.name for joint in self.arm.joints]
-        for move, way, _ in ways:
+        for move, way, *_ in ways:
             if isinstance(way, JointWay) and isinstance(move, JointMove) and move.pose is not None:
                 target = np.round(way.target, 9) + 0.0  # 0 but for rounding is 0, and never -0
                 texts = [f"{name} {at:.4g}" for name, at in zip(names, target, strict=True)]

@@ -12,6 +12,7 @@ from itertools import zip_longest
 import numpy as np
 
 from clearance.errors import BadProgram, at
+from clearance.programs.time_law import Limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +23,10 @@ class JointMove:
         name: what the report calls it. where: in which file and field.
         joints: targets by name [rad or m]; None where `pose` is given. pose: (4, 4) of the tool [m].
         seen_from: the link that the pose is seen from; the root if empty.
-        speed: share of the joints' greatest speeds. acceleration: [1/s^2] of the share of the way; None for the
-            default. zone: [m] radius of the corner zone at its end.
+        speed: share of the joints' greatest speeds. zone: [m] radius of the corner zone at its end.
+        time: [s] from standstill to standstill, whatever the speed; None if no time is asked for.
+        leading: the speed of the joint that goes farthest, and its acceleration [rad/s] and [rad/s^2]; None if
+            `speed` says it.
         near: joints to which those for the pose are nearest; those that are not named are where they are.
         within: from where to where joints for the pose may be, by name.
     """
@@ -33,6 +36,8 @@ class JointMove:
     joints: dict[str, float] | None = None
     pose: np.ndarray | None = None
     speed: float = 1.0
+    time: float | None = None
+    leading: Limits | None = None
     zone: float = 0.0
     near: Mapping[str, float] = field(default_factory=dict)
     within: Mapping[str, Sequence[float]] = field(default_factory=dict)
@@ -49,6 +54,7 @@ class PathMove:
             path.
         keeps_orientation: the tool is not turned, whatever the pose says.
         speed: [m/s]. acceleration: [m/s^2]. turn_speed: [rad/s]. zone: [m] radius of the corner zone at its end.
+        time: as of a joint move, whatever the speeds.
         hold: joints that go straight to these values meanwhile [rad or m], by name.
         free: joints beside the arm that follow the path too.
         seen_from: the link that the pose and the point are seen from; the root if empty.
@@ -63,6 +69,7 @@ class PathMove:
     speed: float = 0.25
     acceleration: float = 1.0
     turn_speed: float = 1.0
+    time: float | None = None
     zone: float = 0.0
     hold: dict[str, float] | None = None
     free: Sequence[str] = ()

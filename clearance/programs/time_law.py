@@ -29,6 +29,22 @@ class Piece(NamedTuple):
         return self.rate + self.change * times
 
 
+class Limits(NamedTuple):
+    """How fast a way is gone along at most, and by how much faster each second, in its own size."""
+
+    speed: float
+    change: float
+
+    def lasting(self, size: float, seconds: float) -> Limits:
+        """Those with which a way of a size takes some time from standstill to standstill: the change stays as it
+        is, unless the time is too short for it."""
+        change = max(self.change, 4.0 * size / seconds**2)
+        root = np.sqrt(max(seconds**2 - 4.0 * size / change, 0.0))
+        return Limits(2.0 * size / (seconds + root), change)
+
+
+UNLIMITED = Limits(np.inf, np.inf)
+
 SHORTEST = 1e-9
 """[s] A piece that is shorter is none."""
 

@@ -199,7 +199,7 @@ def notices_on_clocks(case: Case) -> list[Notice]:
     """
     if case.clock.slack == math.inf:
         return []
-    tables, found = sorted(_tables(case)), list(_waits_left_out(case))
+    tables, found = sorted(_tables(case)), list(_times_lacking(case))
     for i, later in enumerate(tables[1:], 1):
         earlier = max(tables[:i], key=lambda table: table.end)
         meant = earlier.timing.says_after or later.timing.says_start
@@ -212,21 +212,24 @@ def notices_on_clocks(case: Case) -> list[Notice]:
     return [*found, *_recordings_begin_unlike(case)]
 
 
-def _waits_left_out(case: Case) -> Iterator[Notice]:
-    """Notices on programs whose times lack what the case leaves out, beside others that move."""
+def _times_lacking(case: Case) -> Iterator[Notice]:
+    """Notices on programs whose times lack something, beside others that move; with slack, on what that covers."""
     moving = [table.name for table in _tables(case)]
-    for placed in case.robots if case.clock.slack == 0.0 else ():
+    for placed in case.robots:
         asked = placed.trajectory
         if asked is None or not asked.left_out:
             continue
         own = [f"robot {name!r}" for name in (placed.robot.name, *asked.drives)]
         others = [name for name in moving if name not in own]
-        if others:
-            text = (
-                f"CHECK CLOCKS: the times of {own[0]} leave out {listed(asked.left_out)}, and "
-                f"{listed(others)} moves too; clock: {{slack: seconds}} says by how much their times may be off"
-            )
-            yield Notice(Severity.SUSPECT, "clocks", text)
+        if not others:
+            continue
+        text = f"the times of {own[0]} leave out {listed(asked.left_out)}, and {listed(others)} moves too"
+        if case.clock.slack == 0.0:
+            says = "clock: {slack: seconds} says by how much their times may be off"
+            yield Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
+        else:
+            covers = f"all of it has to be within the slack of {case.clock.slack:g} s"
+            yield Notice(Severity.WARNING, "clocks", f"{text}: {covers}")
 
 
 def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:

@@ -68,7 +68,7 @@ def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
     x, y, z = tool_at(START)[:3, 3].tolist()
     place = lambda *xyz: {"frame": "base", "xyz": list(xyz)}  # noqa: E731
     moves = [
-        {"ptp": {"joints": START, "speed": 0.5}},
+        {"ptp": {"joints": START, "joint_speed": 0.8, "joint_acceleration": 1.4}},
         {"lin": {"to": place(x, y + 0.1, z), "acceleration": 0.5, "speed": 0.1}},
         {
             "circ": {
@@ -210,7 +210,7 @@ def test_flags_choose_the_configuration_and_tools_change(tmp_path):
     way = (last - tool_at(START))[:3, 3]
     assert np.allclose(way, 0.02 * tool_at(START)[:3, 1], atol=1e-9)
     assert "joint moves whose speed is the tool's" in "\n".join(found.notes)
-    assert trajectory.left_out == ("the speed of joint moves that is given as the tool's",)
+    assert trajectory.left_out == ("the speed of joint moves that no file gives for joints",)
 
 
 @pytest.mark.parametrize("is_said", [False, True])

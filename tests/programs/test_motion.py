@@ -12,6 +12,7 @@ import clearance as cl
 from clearance.programs.joint_way import joint_law
 from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.programs.time_law import Limits
 from clearance.report.motion_file import motion_content
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import positions_along
@@ -143,3 +144,45 @@ def test_a_joint_that_stands_but_for_rounding_takes_no_time():
     with np.errstate(all="raise"):
         rate, _ = joint_law(joints, way, 0.5)
     assert rate == pytest.approx(0.5 * joints[0].velocity / 0.5)
+
+
+@pytest.mark.parametrize("seconds", [20.6, 0.05])
+def test_a_time_says_how_long_a_move_takes_however_fast_it_is(seconds):
+    """A line keeps its acceleration of 1 m/s^2 unless the time is too short: 0.1 m in 0.05 s takes 160 m/s^2."""
+    names = [joint.name for joint in arm("heron6").joints]
+    joints = dict(zip(names, np.add(START, 0.3), strict=True))
+    (line,) = lines(first_pose(), [(0.0, 0.1, 0.0)])
+    spot = lines(first_pose(), [(0.0, 0.0, 0.0)], turn=(0.0, 0.0, 0.2))
+    ptp = JointMove("PTP 1", "moves[0]", joints=joints, speed=0.1)
+    for move in (line, spot[0], ptp):
+        found = motion([replace(move, time=seconds)]).trajectory
+        assert found.times[-1] == pytest.approx(seconds, abs=1e-9)
+    found = motion([replace(line, time=seconds)])
+    ramp = seconds / 2 - np.sqrt(max(seconds**2 / 4 - 0.1, 0.0))
+    at = tool(found, positions_along(found.trajectory, np.array([0.5 * ramp, seconds / 2])))
+    change = max(1.0, 0.4 / seconds**2)
+    went = (at[:, :3, 3] - first_pose()[:3, 3])[:, 1]
+    assert went == pytest.approx([change * ramp**2 / 8, 0.05], abs=1e-7)
+
+
+def test_a_time_counts_as_without_the_zones_at_the_ends_of_a_move():
+    """Between its zones the line goes at the speed that brings 0.4 m in 4 s: 2 - sqrt(4 - 0.4) m/s."""
+    first, second, third = lines(
+        first_pose(), [(0.0, -0.1, 0.0), (0.0, 0.0, 0.4), (0.0, 0.1, 0.0)], zone=0.01
+    )
+    found = motion([first, replace(second, time=4.0), third])
+    middle = 0.5 * (found.trajectory.moves[1].start + found.trajectory.moves[1].end)
+    at = tool(found, positions_along(found.trajectory, middle + np.array([-0.1, 0.1])))
+    speed = np.linalg.norm(at[1, :3, 3] - at[0, :3, 3]) / 0.2
+    assert speed == pytest.approx(2.0 - np.sqrt(3.6), abs=1e-6)
+
+
+def test_the_joint_that_goes_farthest_has_the_speed_that_is_asked_for():
+    """0.6 rad at 0.5 rad/s and 1.4 rad/s^2 take 0.6 / 0.5 + 0.5 / 1.4 s."""
+    names = [joint.name for joint in arm("heron6").joints]
+    joints = dict(zip(names, START, strict=True)) | {
+        names[0]: START[0] + 0.6,
+        names[5]: START[5] - 0.5,
+    }
+    move = JointMove("PTP 1", "moves[0]", joints=joints, leading=Limits(0.5, 1.4))
+    assert motion([move]).trajectory.times[-1] == pytest.approx(0.6 / 0.5 + 0.5 / 1.4, abs=1e-9)

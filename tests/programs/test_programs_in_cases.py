@@ -532,3 +532,21 @@ def test_a_frame_on_a_link_that_moves_is_refused(tmp_path, on, told):
     path.write_text(yaml.safe_dump(content))
     with pytest.raises(cl.ClearanceError, match=told):
         cl.load_case(path)
+
+
+@pytest.mark.parametrize(
+    ("key", "fault"),
+    [({"time": 2.0, "speed": 0.5}, "time and speed are given"),
+     ({"joint_speed": 2.0, "time": 0.5}, "time and joint_speed are given"),
+     ({"joint_acceleration": 2.0}, "joint_acceleration is given alone")],
+)  # fmt: skip
+def test_a_move_says_in_one_way_how_fast_it_is(tmp_path, key, fault):
+    with pytest.raises(cl.ClearanceError, match=fault):
+        cl.load_case(case(tmp_path, [{"ptp": {"joints": START, **key}}], [far()]))
+
+
+def test_moves_take_the_time_that_they_state(tmp_path):
+    line = {"to": place(tool_at(START)[:3, 3] + [0.0, 0.1, 0.0]), "time": 20.6}
+    back = {"joints": START, "time": 4.0}
+    found = cl.load_case(case(tmp_path, [{"lin": line}, {"ptp": back}], [far()]))
+    assert found.robots[0].trajectory.times[-1] == pytest.approx(24.6, abs=1e-9)

@@ -127,7 +127,14 @@ def test_a_program_that_leaves_out_waits_is_suspect_beside_others_that_move(tmp_
     case = replace(case, robots=(waits, *others))
     (told,) = reported(case)
     assert "the times of robot 'left' leave out WaitDI (line 23), and obstacle 'door' moves" in told
-    assert not reported(replace(case, clock=Clock(1.0)))
+    (covered,) = [
+        one for one in notices_of(replace(case, clock=Clock(1.0))) if one.kind == "clocks"
+    ]
+    assert covered.severity == "warning"
+    assert (
+        "leave out WaitDI (line 23)" in covered.text and "within the slack of 1 s" in covered.text
+    )
+    assert not reported(replace(case, clock=Clock(np.inf)))
     assert not reported(replace(case, obstacles=tuple(one for one in case.obstacles if one.stands)))
 
 

@@ -7,7 +7,7 @@ seconds. Not for: names, loops and calls, which a language's reader resolves.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import Any, ClassVar, Literal
 
@@ -79,7 +79,9 @@ class ControllerMove:
         orientation: as in `schema.program.ArcMove`, or from the start to the end, seen from the path; on a line it
             stays where it is constant.
         speed: of the tool's point [m/s]; acceleration [m/s^2]; turn_speed [rad/s]; None for the default.
-        share: for `ptp`, of the joints' greatest speeds. axis_speed: for `ptp`, of the axis that leads [rad/s].
+        time: from standstill to standstill, whatever the speeds [s]; None if no time is asked for.
+        share: for `ptp`, of the joints' greatest speeds. axis_speed, axis_acceleration: for `ptp`, of the axis
+            that goes farthest [rad/s] and [rad/s^2].
         zone: radius of the corner at the end [m]; 0 stops there. file: where it stands, if beside the program's.
         own: the number of its line that the controller shows, if that is another.
     """
@@ -95,6 +97,8 @@ class ControllerMove:
     turn_speed: float | None = None
     share: float | None = None
     axis_speed: float | None = None
+    axis_acceleration: float | None = None
+    time: float | None = None
     zone: float = 0.0
     file: str = ""
     own: int = 0
@@ -103,6 +107,14 @@ class ControllerMove:
     def uses_tool(self) -> bool:
         """True where it matters which tool is on the flange."""
         return self.kind != "ptp" or isinstance(self.to, PoseTarget) or self.zone > 0.0
+
+    def slowed(self, share: float) -> ControllerMove:
+        """The same move at a share of all its speeds."""
+        names = ("speed", "turn_speed", "share", "axis_speed")
+        speeds = {name: getattr(self, name) for name in names}
+        slower = {name: share * one for name, one in speeds.items() if one is not None}
+        time = None if self.time is None else self.time / share
+        return replace(self, time=time, **slower)
 
 
 @dataclass(frozen=True)
@@ -135,7 +147,7 @@ class ControllerProgram:
         moves: in the order in which they are made: loops and calls are resolved. notes: a line each on what was
             assumed or passed over. base: why a robot's root link may not be the controller's base; empty where it
             is. doubts: a line each on what the controller may move otherwise, for the headline. maker: the preset
-            of `axes_as` that its language has. left_out: instructions that the case leaves out, and where.
+            of `axes_as` that its language has. left_out: what the times of the moves lack, and where.
     """
 
     moves: tuple[ControllerMove | ControllerWait, ...]

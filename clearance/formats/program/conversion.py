@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -44,8 +45,8 @@ FARTHEST = 1e3
 NO_WAY = 1e-9
 """[m] and sine of a turn: a move that is shorter is none."""
 
-UNTIMED = "the speed of joint moves that is given as the tool's"
-"""What the times of a program lack, beside instructions that are left out."""
+UNTIMED = "the speed of joint moves that no file gives for joints"
+"""What the times of a program lack, beside what its reader names."""
 
 CONTROLLER = "controller"
 """The frame of the moves: the controller's base."""
@@ -60,7 +61,7 @@ class ConvertedProgram:
             assumed.
         assumed: what a verdict rests on, where nothing in the files confirms it, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
-        left_out: instructions that the case leaves out, and where, and `UNTIMED`: what its times lack.
+        left_out: what its times lack: instructions that the case leaves out, and what no file says.
         own: the program, if it is written in our form.
     """
 
@@ -262,7 +263,7 @@ class _Conversion:
                 )
 
     def _joint_move(self, one: ControllerMove) -> dict[str, Any]:
-        made: dict[str, Any] = {"speed": self._share(one), "zone": one.zone}
+        made: dict[str, Any] = {"zone": one.zone, **_joint_speed(one)}
         if isinstance(one.to, AxisTarget):
             return {**made, "joints": self.arm.axes.joints_of(one.to)}
         made["within"] = self.arm.ranges_of(one.to, one.tool)
@@ -292,9 +293,10 @@ class _Conversion:
 
     def _path_move(self, one: ControllerMove) -> dict[str, Any]:
         given = {
-            "speed": one.speed,
+            "speed": one.speed if one.time is None else None,
             "acceleration": one.acceleration,
-            "turn_speed": one.turn_speed,
+            "turn_speed": one.turn_speed if one.time is None else None,
+            "time": one.time,
             "hold": self.arm.axes.external_values(one.to) or None,
             "zone": one.zone,
         }
@@ -334,13 +336,6 @@ class _Conversion:
         pose = self.arm.tool_at(self.arm.axes.joints_of(to), one.tool)
         return {"frame": schema.BASE, **pose_written(pose), **name}
 
-    def _share(self, one: ControllerMove) -> float:
-        """The share of the joints' greatest speeds with which a joint move goes."""
-        if one.axis_speed is None:
-            return 1.0 if one.share is None else one.share
-        limits = [joint.velocity for joint in self.arm.chain.masters if joint.velocity > 0.0]
-        return min(1.0, one.axis_speed / min(limits)) if np.isfinite(min(limits)) else 1.0
-
     def doubts(self) -> Iterator[str]:
         """A line each on what controllers may do otherwise, whatever confirms axes and base."""
         yield from self.arm.doubts_on_configurations(self._poses)
@@ -362,8 +357,6 @@ class _Conversion:
         """A line each on what the moves leave open, and how that is taken."""
         if self.has_untimed_moves:
             yield "joint moves whose speed is the tool's go at the joints' full speeds"
-        if any(one.axis_speed is not None for one in self._joint_moves):
-            yield "speeds of axes are shares of the slowest joint's greatest speed"
         needed = {"base": bool(self._poses), "axes": self.names_axes, "axes_as": self.names_axes}
         idle = [key for key in needed if not needed[key] and getattr(self.arm.asked, key)]
         if idle:
@@ -373,13 +366,9 @@ class _Conversion:
             yield f"poses with axes beside them agree with the robot within {way:.2g} mm and {turn:.2g} degrees"
 
     @property
-    def _joint_moves(self) -> list[ControllerMove]:
-        return [one for one in self._moves if one.kind == "ptp"]
-
-    @property
     def has_untimed_moves(self) -> bool:
         """Whether a joint move has the speed of the tool, which says no time."""
-        return any(one.share is None and one.axis_speed is None for one in self._joint_moves)
+        return any(one.kind == "ptp" and not _joint_speed(one) for one in self._moves)
 
     @cached_property
     def _moves(self) -> list[ControllerMove]:
@@ -399,6 +388,16 @@ class _Conversion:
                     text = f"a point {away:.3g} m away"
                     raise BadProgram(text, where=place_of(one), valid=f"{FARTHEST:g} m or less")
         return found
+
+
+def _joint_speed(one: ControllerMove) -> dict[str, float]:
+    """How fast a joint move goes, by the fields of `schema.program.JointMove`; nothing where no file says it."""
+    given = {"time": one.time, "joint_speed": one.axis_speed, "speed": one.share}
+    said = {key: value for key, value in given.items() if value is not None}
+    found = dict(islice(said.items(), 1))
+    if "joint_speed" in found and one.axis_acceleration is not None:
+        found["joint_acceleration"] = one.axis_acceleration
+    return found
 
 
 def _names(read: ControllerProgram) -> Iterator[str]:

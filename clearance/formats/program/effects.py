@@ -37,11 +37,13 @@ class Effects:
 
     Attributes:
         moves: whether a word of the language decides where the robot goes; None where it is not known.
-        writes: the arguments of a call that the language gives a value. skip: words that are left out.
+        writes: the arguments of a call that the language gives a value. waits: whether a call takes time.
+        skip: words that are left out.
     """
 
     moves: Callable[[str], bool | None]
     writes: Callable[[Call], Iterable[Expression]]
+    waits: Callable[[Call], bool]
     routines: Mapping[str, Routine]
     skip: frozenset[str]
 
@@ -66,14 +68,30 @@ class Effects:
 
     def moving(self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()) -> Iterator[Call]:
         """The calls in a body that move the robot or change how it moves, or may do so."""
-        for call in (call for one in within(body) for call in _calls_of(one)):
-            if call.name in self.skip or call.name in entered:
-                continue
-            if call.name in self.routines:
-                inner = self.routines[call.name].body
-                yield from self.moving(inner, (*entered, call.name))
-            elif self.moves(call.name) is not False:
-                yield call
+        for one in self._run_in(body, entered):
+            for call in _calls_of(one):
+                own = call.name in self.routines or call.name in self.skip
+                if not own and self.moves(call.name) is not False:
+                    yield call
+
+    def waiting(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
+        """What in bodies takes a time, or is left out whatever time it takes, and where."""
+        for one in (one for body in bodies for one in self._run_in(body)):
+            if isinstance(one, While):
+                yield f"{one.word} ({one.line})"
+            for call in _calls_of(one):
+                if call.name in self.skip or self.waits(call):
+                    yield f"{call.name} ({call.line})"
+
+    def _run_in(
+        self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()
+    ) -> Iterator[Statement]:
+        """The statements that a body may run, in routines that it calls and that are not left out too."""
+        for one in within(body):
+            yield one
+            for name in (call.name for call in _calls_of(one)):
+                if name in self.routines and name not in self.skip and name not in entered:
+                    yield from self._run_in(self.routines[name].body, (*entered, name))
 
     def moving_in(self, name: str) -> str | None:
         """Where an instruction or a routine moves the robot; None where it does not, or nobody knows."""

@@ -36,7 +36,7 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.language import Language
 from clearance.formats.program.persistent import PersistentValues
-from clearance.formats.program.remarks import LEFT_OUT, Remarks
+from clearance.formats.program.remarks import LEFT_OUT, WAITS, Remarks
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -87,7 +87,7 @@ class Execution(Remarks):
     def effects(self) -> Effects:
         """What statements may do."""
         language = self.language
-        return Effects(language.moves, language.writes, self.routines, self.skip)
+        return Effects(language.moves, language.writes, language.waits, self.routines, self.skip)
 
     @cached_property
     def persistent(self) -> PersistentValues:
@@ -103,7 +103,8 @@ class Execution(Remarks):
 
     def pass_over(self, call: Call) -> None:
         """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
-        self.note("instructions that move nothing", f"{call.name} ({call.line})")
+        what = WAITS if self.language.waits(call) else "instructions that move nothing"
+        self.note(what, f"{call.name} ({call.line})")
         for part in (*call.args, *call.named.values()):
             if any(one.name in self.routines for one in calls_in(part)):
                 self.evaluated(part)
@@ -192,6 +193,8 @@ class Execution(Remarks):
             return self._called(self.routines[call.name], call)[0]
         if (moves := self.language.moves(call.name)) is not False:
             raise unknown_word(call, self.language.suffix, moves)
+        if self.language.waits(call):
+            self.note(WAITS, f"{call.name} ({call.line})")
         return self.language.result_of(call, self)
 
     def items(self, values: list[Any], kind: str) -> Any:
@@ -330,6 +333,8 @@ class Execution(Remarks):
             fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
             raise BadProgram(fault, where=str(one.line), valid="let the file decide it")
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
+        for waiting in self.effects.waiting(bodies):
+            self.note(WAITS, waiting)
         self._forget(self.effects.changed_in(bodies))
 
     def _while(self, one: While) -> Leave | None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,17 @@ from clearance.formats.program.controller_program import (
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
-from clearance.formats.program.fanuc_text import MOVES, QUIET, WAIT, Motion, listing_of
+from clearance.formats.program.fanuc_text import (
+    LARGEST_SPEEDS,
+    MOVES,
+    OVERRIDE,
+    QUIET,
+    WAIT,
+    WAITING,
+    Motion,
+    listing_of,
+)
+from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import For, Routine, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
@@ -40,6 +50,9 @@ _POSE, _JOINTS = ("X", "Y", "Z", "W", "P", "R"), ("J1", "J2", "J3", "J4", "J5", 
 
 _METRES = {"mm/sec": MM, "cm/min": 0.01 / 60.0, "inch/min": 0.0254 / 60.0}
 """[m/s] One of each unit."""
+
+_SECONDS = {"sec": 1.0, "msec": 1e-3}
+"""[s] One of each unit."""
 
 _IDLE = re.compile(r"ACC\d+|PTH|BREAK|PSPD\d+|RT_LD\d+|AP_LD\d+|EV\d+%?|INDEV\d+%?")
 """Options of a motion that change nothing of its way, or only how near to its corner it is rounded."""
@@ -73,9 +86,8 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         counters = {one.name.name for one in statements if isinstance(one, For)}
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
         run.run(main.body)
-        notes = (*run.notes, *language.notes())
         return ControllerProgram(
-            tuple(run.moves), notes, base=BASE, maker="fanuc", left_out=run.left_out
+            tuple(run.moves), tuple(run.notes), base=BASE, maker="fanuc", left_out=run.left_out
         )
 
 
@@ -84,26 +96,23 @@ class _Fanuc:
     """The instructions of a listing.
 
     Attributes:
-        asked: what the case says. unsaid: lines whose speed is none that the file gives.
+        asked: what the case says. share: of all speeds, which `OVERRIDE` says.
     """
 
     asked: ProgramFile
-    unsaid: dict[str, None] = field(default_factory=dict)
+    share: float = 1.0
     suffix = ".LS"
-
-    def notes(self) -> list[str]:
-        """A line each on an assumption."""
-        lines = ", ".join([*self.unsaid][:6])
-        note = f"speeds that the file does not give as such are assumed ({lines})"
-        return [note] if lines else []
 
     @property
     def state(self) -> Any:
-        return None
+        return self.share
 
     def moves(self, name: str) -> bool | None:
         """Whether an instruction moves the robot; None for one that is not known."""
         return True if name in MOVES else False if name in QUIET or name == WAIT else None
+
+    def waits(self, call: Call) -> bool:
+        return call.name in (WAIT, *WAITING)
 
     def writes(self, call: Call) -> tuple[Expression, ...]:
         """None: instructions that are passed over change no variables that are read."""
@@ -137,7 +146,11 @@ class _Fanuc:
         """
         with at(str(call.line)):
             if call.name in MOVES:
-                run.add(self._move(call, run))
+                run.add(self._move(call, run).slowed(self.share))
+            elif call.name == OVERRIDE and call.args:
+                self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 100.0)
+            elif call.name in LARGEST_SPEEDS:
+                run.note(UNSAID, f"{call.name} ({call.line})")
             elif call.name == WAIT:
                 seconds = number(run.evaluated(call.args[0]), call.line, "the time")
                 if seconds > 0.0:
@@ -173,7 +186,7 @@ class _Fanuc:
             zone=self._zone(motion.end),
             file=call.line.file,
             own=call.line.own,
-            **self._speed(kind, motion.unit, run.evaluated(speed), call.line),
+            **_speed(kind, motion.unit, run.evaluated(speed), call, run),
         )
 
     def _target(
@@ -258,23 +271,26 @@ class _Fanuc:
             valid=f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or {kind} of all",
         )
 
-    def _speed(self, kind: str, unit: str, value: Any, line: Line) -> dict[str, Any]:
-        """The speed of a motion, by the field of a `ControllerMove`.
 
-        Raises:
-            BadProgram: it is 0 or less.
-        """
-        is_known = isinstance(value, int | float) and not isinstance(value, bool)
-        if is_known and value <= 0.0:
-            raise BadProgram(f"a speed of {value:g} {unit}", valid="more than 0")
-        if is_known and unit == "%" and kind == "ptp":
-            return {"share": min(1.0, value / 100.0)}
-        if is_known and unit in _METRES and kind != "ptp":
-            return {"speed": value * _METRES[unit]}
-        if is_known and unit == "deg/sec" and kind != "ptp":
-            return {"turn_speed": math.radians(value)}
-        self.unsaid[str(line)] = None
-        return {}
+def _speed(kind: str, unit: str, value: Any, call: Call, run: Execution) -> dict[str, Any]:
+    """The speed or the time of a motion, by the field of a `ControllerMove`.
+
+    Raises:
+        BadProgram: it is 0 or less.
+    """
+    is_known = isinstance(value, int | float) and not isinstance(value, bool)
+    if is_known and value <= 0.0:
+        raise BadProgram(f"a speed of {value:g} {unit}", valid="more than 0")
+    if is_known and unit in _SECONDS:
+        return {"time": value * _SECONDS[unit]}
+    if is_known and unit == "%" and kind == "ptp":
+        return {"share": min(1.0, value / 100.0)}
+    if is_known and unit in _METRES and kind != "ptp":
+        return {"speed": value * _METRES[unit]}
+    if is_known and unit == "deg/sec" and kind != "ptp":
+        return {"turn_speed": math.radians(value)}
+    run.note(UNSAID, f"{call.line}")
+    return {}
 
 
 def _configuration(text: str) -> dict[str, Any]:

@@ -86,11 +86,17 @@ MOVES = {"J": "ptp", "L": "lin", "C": "circ", "A": "", "S": ""}
 
 WAIT = "WAIT sec"
 
+OVERRIDE, LARGEST_SPEEDS = "OVERRIDE", ("JOINT_MAX_SPEED", "LINEAR_MAX_SPEED")
+"""Instructions that change speeds: all of them by a share [%], and those that are greater than a value."""
+
+WAITING = ("UALM", "ARC")
+"""Instructions that take time: until a person has reset an alarm, and until an arc burns."""
+
 QUIET = frozenset(
     (
         *("DO", "RO", "GO", "AO", "SO", "UO", "F", "M", "TIMER", "SR", "PR", "PAYLOAD", "MESSAGE"),
         *("UALM", "SKIP", "OFFSET", "TOOL_OFFSET", "ARC", "COL", "LOCK", "UNLOCK", "TC_ONLINE"),
-        *("OVERRIDE", "JOINT_MAX_SPEED", "LINEAR_MAX_SPEED"),
+        *(OVERRIDE, *LARGEST_SPEEDS),
     )
 )
 """Instructions that move nothing. Conditions of offsets and skips count only in motions that name them."""
@@ -314,7 +320,9 @@ class _Reader:
             name = Name(named(assigned[1]), line)
             return [Assign(line, name, _condition(assigned[2], line), is_of_all=True)]
         if word in QUIET:
-            return [Do(line, Call(word, (), {}, line))]
+            share = re.fullmatch(r"(?is)OVERRIDE\s*=\s*(.*?)\s*%?", text)
+            args = () if share is None else (_condition(share[1], line),)
+            return [Do(line, Call(word, args, {}, line))]
         return [Unreadable(line, word, bool(_JUMPS.search(text)))]
 
     def _motion(self, line: Line, found: re.Match[str]) -> Do:

@@ -46,6 +46,7 @@ from clearance.formats.program.krl_values import (
     matrix_of,
     why,
 )
+from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import Assign
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
@@ -105,7 +106,6 @@ class _Krl:
     Attributes:
         asked: what the case says. pose: (4, 4) `base_from_flange` [m] where the robot is; None where its axes say
             it. axes: [degrees] by name; None where its pose says it. root: where its foot is.
-            unsaid: lines whose speed is in no file.
             is_automatic: the program asks whether the controller runs by itself.
     """
 
@@ -113,18 +113,13 @@ class _Krl:
     pose: np.ndarray | None = None
     axes: Mapping[str, float] | None = None
     root: RobotRoot = field(default_factory=RobotRoot)
-    unsaid: dict[str, None] = field(default_factory=dict)
     is_automatic: bool = False
     suffix = ".src"
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""
         note = "automatic operation is assumed: $T1 and $T2 are FALSE"
-        found = [note] if self.is_automatic else []
-        if self.unsaid:
-            lines = ", ".join([*self.unsaid][:6])
-            found.append(f"$VEL.CP is not in the files: a speed is assumed ({lines})")
-        return found
+        return [note] if self.is_automatic else []
 
     # what the run asks
 
@@ -137,6 +132,9 @@ class _Krl:
         if name in MOVES or name in (SPLINE, "BAS"):
             return True
         return False if name in QUIET or name in FUNCTIONS or name in (AGGREGATE, WAIT) else None
+
+    def waits(self, call: Call) -> bool:
+        return call.name == WAIT
 
     def writes(self, call: Call) -> tuple[Expression, ...]:
         """None: instructions that are passed over change no variables that are read."""
@@ -237,10 +235,10 @@ class _Krl:
     ) -> ControllerMove:
         speeds = settings.speeds(kind)
         if kind != "ptp" and speeds["speed"] is None:
-            self.unsaid[str(call.line)] = None
+            settings.run.note(UNSAID, f"{call.line}")
         is_free = isinstance(to, AxisTarget) and isinstance(settings.value("$TOOL"), Unknown)
         words = [name for name in call.named if name.startswith("C_")]
-        return ControllerMove(
+        moved = ControllerMove(
             line=call.line.number,
             kind=kind,  # type: ignore[arg-type]
             to=to,
@@ -250,6 +248,10 @@ class _Krl:
             zone=settings.zone(kind, words, self.asked.zones),
             file=call.line.file,
             **speeds,
+        )
+        override = Call("$OV_PRO", (), {}, call.line)
+        return moved.slowed(
+            settings.run.share_of_speeds(settings.value("$OV_PRO"), override, 100.0)
         )
 
     def _absolute(self, way: Aggregate, in_tool: bool, settings: Settings) -> Aggregate:

@@ -43,6 +43,7 @@ FIRST: Mapping[str, Any] = {
     **{name: _NULL for name in ("$NULLFRAME", "$WORLD", "$ROBROOT")},
     **{"$ORI_TYPE": "#VAR", "$CIRC_TYPE": "#BASE", "$IPO_MODE": "#BASE"},
     **{name: {} for name in ("$VEL", "$ACC", "$APO", "$VEL_AXIS", "TOOL_DATA", "BASE_DATA")},
+    "$OV_PRO": 100,
     "$TECH": {number: {} for number in range(1, 7)},
     **{name: Unknown(f"{name} is not set before") for name in ("$TOOL", "$BASE")},
     **{name: Unknown(f"{name} is not set before") for name in ("FDAT_ACT", "PDAT_ACT", "LDAT_ACT")},

@@ -20,6 +20,9 @@ class Language(Protocol):
     def moves(self, name: str) -> bool | None:
         """Whether an instruction or a function can move the robot; None where it is not known."""
 
+    def waits(self, call: Call) -> bool:
+        """Whether an instruction or a function takes a time that counts; its file may not say how long."""
+
     def writes(self, call: Call) -> Iterable[Expression]:
         """The arguments of an instruction or a function that it gives a value."""
 

@@ -50,6 +50,7 @@ from clearance.formats.program.rapid_text import Declaration, Modules
 from clearance.formats.program.rapid_words import (
     MOVES,
     OTHER_MOVES,
+    PAUSES,
     RESULTS,
     WAITS,
     WORDS,
@@ -57,6 +58,7 @@ from clearance.formats.program.rapid_words import (
     WRITES_ONE,
     MoveRule,
 )
+from clearance.formats.program.remarks import UNSAID
 
 
 @dataclass(eq=False)
@@ -65,7 +67,8 @@ class Rapid:
 
     Attributes:
         known_data: tools and work objects that the case says. units: mechanical units of which it says the frame.
-        checks: whether joint moves keep to configurations.
+        checks: whether joint moves keep to configurations. share: of all speeds, by `VelSet`. fastest: by it, the
+            greatest speed of the tool's point [mm/s].
         zones: by the index of a move, the radii of its zone for point and orientation [m].
     """
 
@@ -73,6 +76,8 @@ class Rapid:
     known_data: dict[str, Any]
     units: Mapping[str, str] = field(default_factory=dict)
     checks: bool = True
+    share: float = 1.0
+    fastest: float = math.inf
     zones: dict[int, tuple[float, float]] = field(default_factory=dict)
     _persistent: bool = False
     _lines_keep: bool = False
@@ -80,8 +85,8 @@ class Rapid:
 
     @property
     def state(self) -> Any:
-        """Whether configurations are kept."""
-        return self.checks
+        """Whether configurations are kept, and what limits speeds."""
+        return self.checks, self.share, self.fastest
 
     @property
     def assumed(self) -> list[str]:
@@ -108,6 +113,10 @@ class Rapid:
         if name in MOVES or name in OTHER_MOVES or name == "ConfJ":
             return True
         return False if name.lower() in WORDS or name == "%array" else None
+
+    def waits(self, call: Call) -> bool:
+        """Whether a word waits for a time, a person, a signal or another machine."""
+        return call.name in WAITS or call.name in PAUSES
 
     def value_of(self, name: str, run: Execution) -> Any:
         """The value of a datum of a module, of the case, or of the controller."""
@@ -196,6 +205,13 @@ class Rapid:
         run.pass_over(call)
         if call.name == "ConfJ":
             self.checks = "off" not in call.named
+        elif call.name == "VelSet" and len(call.args) == 2:
+            share, fastest = (run.evaluated(one) for one in call.args)
+            self.share = run.share_of_speeds(share, call, 100.0)
+            is_known = not isinstance(fastest, Unknown)
+            self.fastest = number(fastest, call.line, call.name) if is_known else math.inf
+            if not is_known:
+                run.note(UNSAID, f"{call.name} ({call.line})")
         run.forget_written(call)
 
     def writes(self, call: Call) -> list[Expression]:
@@ -261,7 +277,7 @@ class Rapid:
         }
         with _expecting_data(call):
             work = work_of(given["work object"], self.units)
-            speed, turn_speed = _speed(given["speed"], call, run)
+            speed, turn_speed, time = _speed(given["speed"], call, run)
             via = None
             if rule.to == 1:
                 via = self._target(call, given["point on the arc"], call.args[0], work, run)
@@ -272,11 +288,15 @@ class Rapid:
             move = ControllerMove(
                 line.number, rule.kind, to, flange_from_tool(given["tool"]), via, file=line.file
             )
+        move = replace(move, time=time)
         if rule.kind != "ptp":
+            speed = min(speed, 1e-3 * self.fastest / self.share)
             move = replace(move, speed=speed, turn_speed=turn_speed, orientation="path")
+        if call.name.startswith("Arc"):
+            run.note(UNSAID, f"{call.name} ({line})")
         if max(point, turn) > 0.0:
             self.zones[len(run.moves)] = (point, turn)
-        run.add(move)
+        run.add(move.slowed(self.share))
 
     def _target(
         self, call: Call, value: Any, one: Expression, work: Work, run: Execution
@@ -347,14 +367,17 @@ def _number(one: Expression, run: Execution) -> str:
     return f"{value:g}" if isinstance(value, int | float) else "…"
 
 
-def _speed(value: list[float], call: Call, run: Execution) -> tuple[float, float]:
-    """[m/s] and [rad/s] of the tool."""
+def _speed(value: list[float], call: Call, run: Execution) -> tuple[float, float, float | None]:
+    """[m/s] and [rad/s] of the tool, and the time that the move asks for in their place [s]."""
     tcp, turn, *_ = record(value, 4, is_flagged=False)
     if "v" in call.named:
         tcp = number(run.evaluated(call.named["v"]), call.line, "V")
+    time = None
     if "t" in call.named:
-        run.note("times of moves (T) are not followed, but speeds", f"{call.line}")
-    return 1e-3 * tcp, math.radians(turn)
+        time = number(run.evaluated(call.named["t"]), call.line, "T")
+        if not time > 0.0:
+            raise BadProgram(f"T is {time:g} s", valid="more than 0")
+    return 1e-3 * tcp, math.radians(turn), time
 
 
 def _zone(value: list[Any], call: Call, run: Execution) -> tuple[float, float]:

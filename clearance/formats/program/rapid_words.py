@@ -62,6 +62,14 @@ STILL = frozenset(
 )
 """Instructions that move nothing."""
 
+PAUSES = frozenset(
+    "WaitTime Stop SystemStopAction UIMsgBox TPReadNum TPReadFK TPReadDnum SocketReceive SocketConnect "
+    "SocketAccept Load UnLoad StartLoad LoadId SyncMoveOn SyncMoveOff StopMove ReadAnyBin ReadRawBytes "
+    "UIMessageBox UINumEntry UINumTune UIAlphaEntry UIListView UIDnumEntry ReadNum ReadStr ReadStrBin "
+    "ReadBin".split()
+)
+"""Instructions and functions that take time, beside `WAITS`: until a person or another machine has answered."""
+
 WRITES = frozenset(
     "TPReadNum TPReadFK TPReadDnum SocketReceive ReadAnyBin ReadRawBytes UnpackRawBytes GetDataVal GetSysData "
     "GetJointData GetTrapData BitSet BitClear ReadErrData SetDataVal TryInt".split()

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
+from clearance.errors import BadProgram
+from clearance.formats.program.expressions import Call, Unknown, number
 from clearance.world.notice import listed
 
 LEFT_OUT = "left out as asked"
+WAITS = "instructions that take a time which no file says are taken to take none"
+UNSAID = "speeds that no file says are assumed"
 
 
 @dataclass(eq=False)
@@ -22,8 +27,9 @@ class Remarks:
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What is left out as the case asks, and where."""
-        return tuple(self._passed.get(LEFT_OUT, ()))
+        """What the times of the moves lack, and where: what the case leaves out, and what no file says."""
+        speeds = (f"the speed of {where}" for where in self._passed.get(UNSAID, ()))
+        return (*self._passed.get(LEFT_OUT, ()), *self._passed.get(WAITS, ()), *speeds)
 
     @property
     def notes(self) -> list[str]:
@@ -33,3 +39,18 @@ class Remarks:
     def note(self, what: str, where: str) -> None:
         """Keeps something to tell, each place once."""
         self._passed.setdefault(what, {})[where] = None
+
+    def share_of_speeds(self, value: Any, call: Call, whole: float) -> float:
+        """The share of all speeds that an instruction asks for; where it is not known it is 1, and is told.
+
+        Raises:
+            BadProgram: it is no such share.
+        """
+        if isinstance(value, Unknown):
+            self.note(UNSAID, f"{call.name} ({call.line})")
+            return 1.0
+        share = number(value, call.line, call.name) / whole
+        if not 0.0 < share <= 1.0:
+            fault, valid = f"{call.name} is {value:g}", f"more than 0, at most {whole:g}"
+            raise BadProgram(fault, where=str(call.line), valid=valid)
+        return share

@@ -75,6 +75,12 @@ _STILL = frozenset(
     "force to_str str_at str_cat str_empty str_find str_len str_sub to_num binary_list_to_integer "
     "integer_to_binary_list random make_list size struct".split()
 )
+_BLOCKING = frozenset(
+    "sleep join enter_critical socket_open socket_get_var powerdown protective_stop halt".split()
+)
+_BLOCKING_BEFORE = ("request_", "socket_read_")
+"""Functions that take time: until a person, a thread or another machine has answered."""
+
 _STILL_BEFORE = (
     *("set_", "get_", "read_", "write_", "is_", "socket_", "modbus_", "rtde_", "rpc_", "tool_"),
     *("request_", "assign_", "conveyor_", "xmlrpc", "enable_", "disable_"),
@@ -138,18 +144,19 @@ class _UrScript:
 
     Attributes:
         tool: (4, 4) `flange_from_tool` [m]; None until it is known. labels: of nodes, by line.
-        last: the target of the last move, if it stops.
+        last: the target of the last move, if it stops. share: of all speeds, which `set_speed` says.
     """
 
     tool: np.ndarray | None
     labels: Mapping[int, str]
     last: Any = None
+    share: float = 1.0
     suffix = ""
 
     @property
     def state(self) -> Any:
-        """The tool and where it is."""
-        return (None if self.tool is None else self.tool.tolist(), self.last)
+        """The tool, where it is, and the share of all speeds."""
+        return (None if self.tool is None else self.tool.tolist(), self.last, self.share)
 
     def moves(self, name: str) -> bool | None:
         """Whether a function decides where the robot goes; None for one that is not known."""
@@ -157,6 +164,13 @@ class _UrScript:
             return True
         still = name in _STILL or name in _VALUES or name.startswith(_STILL_BEFORE)
         return False if still or name in ("sleep", "pose_trans", "get_inverse_kin") else None
+
+    def waits(self, call: Call) -> bool:
+        """Whether a function waits for someone; a popup does if it blocks."""
+        if call.name == "popup":
+            blocks = call.named.get("blocking", call.args[4] if len(call.args) > 4 else None)
+            return blocks not in (None, Constant(False))
+        return call.name in _BLOCKING or call.name.startswith(_BLOCKING_BEFORE)
 
     def value_of(self, name: str, _: Execution) -> Any:
         """None: all names but `True` and `False` are variables."""
@@ -204,6 +218,8 @@ class _UrScript:
                 where=str(call.line),
                 valid=f"{', '.join(_PARAMETERS)}",
             )
+        elif call.name == "set_speed" and call.args:
+            self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 1.0)
         else:
             run.pass_over(call)
 
@@ -250,8 +266,6 @@ class _UrScript:
             run.note(
                 "r of movep is taken for the distance of its arc from the corner", f"{call.line}"
             )
-        if options.get("t", 0.0) > 0.0:
-            run.note("times of moves (t) are not followed, but speeds", f"{call.line}")
         ends = [key for key in _TARGETS if key in given]
         if len(ends) != (2 if call.name == "movec" else 1):
             raise MissingKey(f"{call.name} has no target", where=str(call.line))
@@ -266,12 +280,14 @@ class _UrScript:
             targets[0] if len(ends) == 2 else None,
             "tangent" if options.get("mode") == 1.0 else "to",
             speed=None if is_joints else speed,
-            acceleration=None if is_joints else acceleration,
+            acceleration=None if is_joints else acceleration * self.share**2,
             axis_speed=speed if is_joints else None,
+            axis_acceleration=acceleration * self.share**2 if is_joints else None,
+            time=options["t"] if options.get("t", 0.0) > 0.0 else None,
             zone=options.get("r", 0.0),
             file=call.line.file,
         )
-        run.add(move)
+        run.add(move.slowed(self.share))
         self.last = values[ends[-1]] if move.zone == 0.0 else None
 
     def _tool(self, line: Line, is_any: bool) -> np.ndarray:

@@ -22,6 +22,9 @@ Above0 = Annotated[float, Field(ge=1e-6, le=1e6)]
 Zone = Annotated[float, Field(ge=0)]
 """[m] The radius of the corner at a move's end."""
 
+Time = Annotated[float | None, Field(ge=1e-6, le=1e6)]
+"""[s] That a move takes from standstill to standstill; None if its speed says it."""
+
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
@@ -61,13 +64,17 @@ class Target(Pose):
 
 class JointMove(StrictModel):
     """`ptp`: all joints go straight to their targets, begin together and end together; `speed` is a share of their
-    greatest, and `zone` the radius of the corner at its end [m]. For the pose `to` the joints are those nearest to
-    `near` (default: to where they are), `within` ranges.
+    greatest, and `zone` the radius of the corner at its end [m]. In place of `speed`, `time` is what it takes from
+    standstill to standstill [s], or `joint_speed` and `joint_acceleration` are of the joint that goes farthest.
+    For the pose `to` the joints are those nearest to `near` (default: to where they are), `within` ranges.
     """
 
     joints: dict[Name, float] | None = None
     to: Target | None = None
     speed: Annotated[float, Field(gt=0, le=1)] = 1.0
+    time: Time = None
+    joint_speed: Above0 | None = None
+    joint_acceleration: Above0 = 1.4
     zone: Zone = 0.0
     near: dict[Name, float] = {}
     within: dict[Name, Pair] = {}
@@ -83,6 +90,9 @@ class JointMove(StrictModel):
             raise BadProgram("joints are given", where="near", valid="no such key, or a pose to")
         if self.to is not None and not self.to.turns:
             raise MissingKey("no orientation is given", where="to", valid="quat_xyzw or rpy")
+        _require_one(self, "time", "joint_speed", "speed")
+        if self.joint_speed is None and "joint_acceleration" in self.model_fields_set:
+            raise MissingKey("joint_acceleration is given alone", valid="joint_speed beside it")
         return self
 
 
@@ -90,16 +100,34 @@ class PathMove(StrictModel):
     """What `lin` and `circ` share: speed of the tool's point [m/s], its acceleration [m/s^2], speed of a turn
     [rad/s], radius of the corner at its end [m], and joints that go straight to values meanwhile (`hold`). Joints
     beside the arm, as `turntable/turn` of another robot, stay unless `hold` says where they go, or `free` that
-    they follow too.
+    they follow too. `time` in place of speeds is what it takes from standstill to standstill [s].
     """
 
     to: Target
     speed: Above0 = 0.25
     acceleration: Above0 = 1.0
     turn_speed: Above0 = 1.0
+    time: Time = None
     zone: Zone = 0.0
     hold: dict[Name, float] = {}
     free: list[Name] = []
+
+    @model_validator(mode="after")
+    def _one_law(self) -> PathMove:
+        _require_one(self, "time", "speed")
+        _require_one(self, "time", "turn_speed")
+        return self
+
+
+def _require_one(move: StrictModel, *keys: str) -> None:
+    """Checks that a move says at most one of some keys.
+
+    Raises:
+        BadProgram: it says two.
+    """
+    given = [key for key in keys if key in move.model_fields_set]
+    if len(given) > 1:
+        raise BadProgram(f"{' and '.join(given)} are given", valid="one of them")
 
 
 class LinearMove(PathMove):

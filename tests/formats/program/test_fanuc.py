@@ -109,7 +109,7 @@ L P[4] R[9]mm/sec FINE ;
     ]
     assert [move.speed for move in found.moves] == [0.1, 0.1, 0.1, None]
     assert place(found.moves[2]) == pytest.approx([0.5, 0.0, 0.25])
-    assert any("assumed (line 17)" in note for note in found.notes)
+    assert any("assumed: line 17" in note for note in found.notes)
 
 
 def test_other_groups_and_axes_are_external():
