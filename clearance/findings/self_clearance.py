@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
+from clearance.record.names import pair_names
 from clearance.record.record import CUT, Record
 from clearance.record.wording import count
 from clearance.world.case import PlacedRobot
@@ -30,24 +31,28 @@ def self_clearance_of(record: Record) -> list[dict[str, Any]]:
 
 
 def left_out_lines(record: Record) -> Iterator[str]:
-    """The links that the case excludes, and the pairs that it allows, beside those of two links of one robot."""
+    """The links that the case excludes, and the pairs that it allows or lets touch a part in hand, beside those of
+    two links of one robot."""
     case = record.case
     excluded = [case.prefix_of(one) + link for one in case.robots for link in one.exclude_links]
     if excluded:
         yield f"not measured: {count(len(excluded), 'excluded link')}: {listed(excluded)}"
-    rows = {str(row) for row in case.allow}
+    excuses = {str(row) for row in case.allow}
+    excuses |= {carry.excuse(pattern) for carry in case.carries for pattern in carry.touch}
     links = {
         case.prefix_of(one) + link: one for one in case.robots for link in one.robot.link_names
     }
-    allowed = [
-        f"{one.link} - {one.obstacle}"
+    allowed = {
+        (one.link, one.obstacle): None
         for one in record.unmeasured
-        if one.reason in rows
+        if one.reason in excuses
         and (one.obstacle not in links or links[one.link] is not links[one.obstacle])
-    ]
-    if allowed:
-        often = " at times" if any(row.when for row in case.allow) else ""
-        yield f"not measured{often}: {count(len(allowed), 'allowed pair')}: {listed(allowed)}"
+    }
+    at_times = {*zip(*pair_names(case, record.pairs), strict=True)} & allowed.keys()
+    for when, pairs in (("", allowed.keys() - at_times), (" at times", at_times)):
+        if pairs:
+            names = [" - ".join(pair) for pair in allowed if pair in pairs]
+            yield f"not measured{when}: {count(len(names), 'allowed pair')}: {listed(names)}"
 
 
 def self_clearance_lines(record: Record) -> tuple[str, ...]:

@@ -41,6 +41,10 @@ class Carry:
         if self.part == self.by:
             raise Contradiction(f"part {self.part!r} carries itself", valid="by: what carries it")
 
+    def excuse(self, pattern: str) -> str:
+        """Why a body that one of `touch` is of is not measured against the part."""
+        return f"touch: {pattern}, while {self.part} is carried {self.window}"
+
 
 def require_one_carrier(carries: Sequence[Carry]) -> None:
     """Nothing, if each part is carried by one body at a time.

@@ -324,7 +324,7 @@ def _why_while_carried(carry: Carry, mate: Collection[str]) -> str | None:
         return f"moves with it while {carry.part} is carried {carry.window}"
     for pattern in carry.touch:
         if any(matches(name, pattern) for name in mate):
-            return f"touch: {pattern}, while {carry.part} is carried {carry.window}"
+            return carry.excuse(pattern)
     return None
 
 

@@ -183,3 +183,20 @@ def test_pairs_that_the_case_allows_and_links_that_it_excludes_are_counted_by_na
     case = load_gates(tmp_path, near, "allow: [{between: [box, gate_a], until: 0.6}]")
     assert cl.check(case).verdict.scope[-1] == "not measured at times: 1 allowed pair: box - gate_a"
     assert len(cl.check(load_gates(tmp_path, near)).verdict.scope) == 1
+
+
+@pytest.mark.parametrize(
+    ("by", "start", "touch", "told"),
+    [
+        ("box", 0.0, "*", "not measured: 2 allowed pairs: gate_a - gate_c, gate_b - gate_c"),
+        ("gate_a", 0.0, "box", "not measured: 1 allowed pair: box - gate_c"),
+        ("gate_a", 0.5, "box", "not measured at times: 1 allowed pair: box - gate_c"),
+    ],
+)
+def test_pairs_that_a_carried_part_may_touch_are_counted_as_allowed_ones(
+    tmp_path, by, start, touch, told
+):
+    """What carries it moves with it, and is no allowed pair."""
+    near = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004), "gate_c": (0.0, 0.5)}
+    carried = f"carry: [{{part: gate_c, by: {by}, from: {start}, touch: ['{touch}']}}]"
+    assert cl.check(load_gates(tmp_path, near, carried)).verdict.scope[1:] == (told,)
