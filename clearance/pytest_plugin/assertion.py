@@ -20,7 +20,7 @@ def assert_clear(
     """Nothing, if bodies keep a clearance over the motion, as far as proven; at the samples where nothing is.
 
     With `between` or `at_least` that is proven, whatever the run is; a warning names pairs that are excluded or
-    excused.
+    excused, and links of one robot that are not measured against one another.
 
     Args:
         run: of `check`, or of the fixture `clearance_case`.

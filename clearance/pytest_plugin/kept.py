@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
+from clearance.findings.doubts import SELF_COLLISION
 from clearance.findings.of_rule import why_undecided
 from clearance.record.budget import RuleBudget
 from clearance.record.record import Record
@@ -12,8 +13,11 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest
 from clearance.record.wording import limit_mm, mm, moment_text, of_rule
 from clearance.run import Run
+from clearance.world.case import Case
+from clearance.world.notice import listed
 from clearance.world.pairs import NO_GEOMETRY
 from clearance.world.rules import PairPattern, checked_level, matches
+from clearance.world.self_pairs import RIGID, self_pairs
 
 CONTACT = "contact is not ruled out"
 
@@ -41,13 +45,28 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
 
 
 def left_out_of(run: Run, between: tuple[str, str]) -> list[str]:
-    """The pairs of such bodies that are excluded or excused, and why; not those without a shape."""
+    """The pairs of such bodies that are excluded, excused or not asked for, and why; not those without a shape."""
     pattern, found = PairPattern(between), []
     for one in run.record.unmeasured:
         whole = one.obstacle == "*" and any(matches(one.link, name) for name in between)
         if one.reason != NO_GEOMETRY and (whole or pattern.matches((one.link,), (one.obstacle,))):
             found.append(f"{one.link} - {one.obstacle} ({one.reason})")
-    return found
+    return [*found, *_links_unasked(run.record.case, pattern)]
+
+
+def _links_unasked(case: Case, pattern: PairPattern) -> Iterator[str]:
+    """The pairs of links of one robot that can move against each other, where the case does not ask for them."""
+    for placed in case.robots:
+        before = case.prefix_of(placed)
+        for pair in () if placed.self_clearance else self_pairs(placed.robot):
+            a, b = (before + pair.link_a, before + pair.link_b)
+            known = {pair.link_a, pair.link_b}.isdisjoint(placed.exclude_links)
+            if (
+                known
+                and pair.excused != RIGID
+                and pattern.matches((a, pair.link_a), (b, pair.link_b))
+            ):
+                yield f"{b} - {a} ({SELF_COLLISION} not checked)"
 
 
 def _budgets(run: Run, is_meant: PairTest) -> tuple[RuleBudget, ...]:
@@ -90,9 +109,16 @@ def _faults(record: Record, answer: RuleAnswer, at_least: float | None) -> Itera
 
 def _no_such_pair(run: Run, between: tuple[str, str]) -> BadInput:
     names = sorted({body.name_in(run.record.case) for pair in run.record.pairs for body in pair})
+    whole = {one.link: one.reason for one in run.record.unmeasured if one.obstacle == "*"}
     for pattern in between:
-        if not any(matches(name, pattern) for name in names):
-            return UnknownLink(f"no body is called {pattern!r}", valid=nearest_name(pattern, names))
-    return BadInput(
-        f"no pair is measured between {list(between)}", valid="patterns of two bodies of a pair"
-    )
+        if any(matches(name, pattern) for name in names):
+            continue
+        if found := [link for link in whole if matches(link, pattern)]:
+            why = listed([*{whole[link]: None for link in found}])
+            return UnknownLink(
+                f"{pattern!r} matches {listed(found)} alone: {why}", valid=listed(names, 6)
+            )
+        return UnknownLink(f"no body is called {pattern!r}", valid=nearest_name(pattern, names))
+    why = listed(left_out_of(run, between))
+    fault = f"no pair is measured between {list(between)}{f': {why}' if why else ''}"
+    return BadInput(fault, valid="patterns of two bodies of a pair")

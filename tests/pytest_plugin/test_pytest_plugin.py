@@ -11,6 +11,7 @@ import tomllib
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import clearance as cl
@@ -18,8 +19,10 @@ from clearance.case.case_list import cases_in
 from clearance.errors import BadInput
 from clearance.pytest_plugin import assert_clear
 from clearance.simulate.measure import refine
+from clearance.world.case import SelfClearance
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates, write_gates
+from tests.made_cases import arm, at
 
 pytest_plugins = ["pytester"]
 
@@ -328,6 +331,46 @@ def test_pairs_that_a_pattern_means_and_that_are_excused_are_told(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert_clear(run, between=("box", B), at_least=0.02)
+
+
+@pytest.fixture(scope="module")
+def swaying():
+    """A run of two links over a bare root, beside a post, whose links are not measured against one another."""
+    links, post = [cl.box((0.5, 0.1, 0.1)), cl.box((0.4, 0.08, 0.08))], cl.box((0.1, 0.1, 2.0))
+    return cl.check(arm("swaying", links, [(post, at(x=1.9))], np.array([[0.0, 0.1], [0.1, 0.0]])))
+
+
+@pytest.mark.parametrize("between", [None, ("*", "*"), ("l2", "*"), ("o*", "l?")])
+def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_meant(
+    swaying, between
+):
+    with warnings.catch_warnings(record=True) as told:
+        assert_clear(swaying, between=between, at_least=0.001)
+    meant = between != ("o*", "l?")
+    assert len(told) == meant
+    for one in told:
+        assert "not measured are l2 - l1 (self-collision not checked)" in str(one.message)
+    by_hand = dataclasses.replace(swaying.record.case.robots[0], self_clearance=SelfClearance())
+    measured = cl.check(dataclasses.replace(swaying.record.case, robots=(by_hand,)))
+    with pytest.warns(UserWarning, match=r"not measured are l2 - l1 \(excused: Adjacent\)$"):
+        assert_clear(measured, between=("*", "*"), at_least=0.001)
+
+
+@pytest.mark.parametrize(
+    ("between", "told"),
+    [
+        (
+            ("l1", "l2"),
+            "no pair is measured between ['l1', 'l2']: l2 - l1 (self-collision not checked)",
+        ),
+        (("[l]0", "o0"), "'[l]0' matches l0 alone: no geometry"),
+        (("l0", "*"), "'l0' matches l0 alone: no geometry"),
+        (("basis", "*"), "no body is called 'basis'"),
+    ],
+)
+def test_a_pattern_of_what_is_not_measured_says_why(swaying, between, told):
+    with pytest.raises(BadInput, match=re.escape(told)):
+        assert_clear(swaying, between=between)
 
 
 def test_contact_is_never_clear(tmp_path):
