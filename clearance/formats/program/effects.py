@@ -198,16 +198,16 @@ def unknown_word(call: Call, suffix: str, moves: bool | None = None) -> BadProgr
     )
 
 
-def unreadable_word(one: Unreadable) -> BadProgram:
+def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
     """The error for a statement that may do anything."""
     if one.jumps:
         fault = f"{one.word!r} is not understood, and decides which lines run"
         return BadProgram(fault, where=str(one.line), valid="take it out of the program")
-    return BadProgram(
-        f"{one.word!r} is not understood, and may decide where the robot goes",
-        where=str(one.line),
-        valid=f"take it out of the program, or write skip: [{one.word}] if it does not",
-    )
+    valid = "take it out of the program"
+    if may_be_left_out:
+        valid = f"{valid}, or write skip: [{one.word}] if it does not"
+    fault = f"{one.word!r} is not understood, and may decide where the robot goes"
+    return BadProgram(fault, where=str(one.line), valid=valid)
 
 
 def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:

@@ -155,8 +155,9 @@ class Execution(Remarks):
                 return one
             case Unreadable():
                 if not self.effects.leaves_out(one):
-                    raise unreadable_word(one)
+                    raise unreadable_word(one, self.effects.moving_in(one.word) is None)
                 self.note(LEFT_OUT, f"{one.word} ({one.line})")
+                self._forget([(one.word, one.line)])
         return None
 
     def evaluated(self, one: Expression) -> Any:
@@ -245,7 +246,7 @@ class Execution(Remarks):
     def _leave_out(self, call: Call) -> None:
         """Keeps that a call is left out, and makes variables unknown that it may have changed."""
         self.note(LEFT_OUT, f"{call.name} ({call.line})")
-        self._forget(self.effects.changed_in([(Do(call.line, call),)]))
+        self._forget(self.effects.changed_in([(Do(call.line, call),)]), f" by {call.name}")
 
     def enter(self, routine: Routine) -> None:
         """Runs a routine that takes no arguments."""

@@ -29,6 +29,7 @@ from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
 from clearance.formats.program.fanuc_text import (
+    DECIDING,
     LARGEST_SPEEDS,
     MOVES,
     OVERRIDE,
@@ -108,8 +109,11 @@ class _Fanuc:
         return self.share
 
     def moves(self, name: str) -> bool | None:
-        """Whether an instruction moves the robot; None for one that is not known."""
-        return True if name in MOVES else False if name in QUIET or name == WAIT else None
+        """Whether an instruction moves the robot, or changes points, frames or registers; None for one that is not
+        known."""
+        if name in MOVES or name in DECIDING or name.startswith("$MNU"):
+            return True
+        return False if name in QUIET or name == WAIT else None
 
     def waits(self, call: Call) -> bool:
         return call.name in (WAIT, *WAITING)
@@ -197,6 +201,10 @@ class _Fanuc:
         Raises:
             BadProgram: no position, or one of other frames than those in force.
         """
+        if name in run.variables:
+            raise BadProgram(
+                f"{name} is given a value before", valid="a point that no line changes"
+            )
         if one is None:
             fault = (
                 "a position register" if name.startswith("PR") else "no position of it under /POS"

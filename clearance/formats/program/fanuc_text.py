@@ -101,6 +101,9 @@ QUIET = frozenset(
 )
 """Instructions that move nothing. Conditions of offsets and skips count only in motions that name them."""
 
+DECIDING = ("P", "R", "UFRAME", "UTOOL", "UFRAME_NUM", "UTOOL_NUM")
+"""What decides where motions go: a line that changes it is never left out. `$MNU…` are frames and tools too."""
+
 _POINT = r"(PR?)\s*\[\s*([^\]:]*)(?::[^\]]*)?\]"
 _MOTION = re.compile(rf"([JLCAS])\s+{_POINT}(?:\s*{_POINT})?\s*(.*)", re.IGNORECASE | re.DOTALL)
 _SPEED = re.compile(
@@ -108,7 +111,7 @@ _SPEED = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 _END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGNORECASE)
-_ASSIGNED = re.compile(r"(?is)((?:R|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)")
+_ASSIGNED = re.compile(r"(?is)((?:R|P|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)")
 _JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
 _ENDS = ("ENDIF", "ELSE", "ENDFOR", "=")
 _TIMED = re.compile(

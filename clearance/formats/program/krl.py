@@ -137,8 +137,8 @@ class _Krl:
         return call.name == WAIT
 
     def writes(self, call: Call) -> tuple[Expression, ...]:
-        """None: instructions that are passed over change no variables that are read."""
-        return ()
+        """All arguments of a procedure that is in no file; instructions change no variables that are read."""
+        return call.args if self.moves(call.name) is None else ()
 
     def value_of(self, name: str, run: Execution) -> Any:
         """The controller is assumed to run the program by itself."""

@@ -59,6 +59,7 @@ from clearance.formats.program.rapid_words import (
     MoveRule,
 )
 from clearance.formats.program.remarks import UNSAID
+from clearance.formats.program.statements import assigned
 
 
 @dataclass(eq=False)
@@ -215,13 +216,21 @@ class Rapid:
         run.forget_written(call)
 
     def writes(self, call: Call) -> list[Expression]:
-        """The arguments of an instruction or a function that it gives a value."""
+        """The arguments of an instruction or a function that it gives a value; of one that is in no file all that
+        are no constants."""
+        if self.moves(call.name) is None:
+            found = ((one, assigned(one)) for one in (*call.args, *call.named.values()))
+            return [one for one, name in found if name is not None and not self._is_constant(name)]
         if call.name in WRITES:
             return [*call.args, *call.named.values()]
         return [
             *(call.args[i] for i in WRITES_ONE.get(call.name, ()) if i < len(call.args)),
             *(one for key, one in call.named.items() if key in RESULTS),
         ]
+
+    def _is_constant(self, name: Name) -> bool:
+        one = self.modules.declared.get(name.name)
+        return one is not None and one.kind == "CONST"
 
     def _connect(self, call: Call, run: Execution) -> None:
         trap = call.args[0].value if isinstance(call.args[0], Constant) else ""

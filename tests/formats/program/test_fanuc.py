@@ -161,6 +161,11 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
             "line 6: WAIT waits for what is not known: only the controller knows DI[1]",
         ),
         ("IF DI[1]=ON,JMP LBL[1] ;", "line 6: IF decides on JMP at line 6"),
+        ("P[2]=P[5] ;\n" + L2 + " ;", "line 9: P[2] is given a value before"),
+        (
+            "P[R[1]:any]=P[5] ;\n" + L2 + " ;",
+            "line 6: 'P' is not understood, and may decide where the robot goes; take",
+        ),
         ("JMP LBL[1] ;", "line 6: 'JMP' is not understood, and decides which"),
         ("WAIT DI[1]=ON TIMEOUT,LBL[1] ;", "line 6: 'TIMEOUT' is not understood, and decides"),
         (
@@ -178,6 +183,14 @@ def test_what_a_listing_does_not_decide_is_refused_with_its_line(body, told):
     with pytest.raises(cl.ClearanceError) as caught:
         program(body, POINTS + point(5, 0.0, 0.0, 7) + untaught, skip=SKIP)
     assert str(caught.value).startswith("CELL.LS: ") and told in str(caught.value)
+
+
+@pytest.mark.parametrize("word", ["P", "R", "UFRAME_NUM", "UTOOL", "$MNUFRAMENUM"])
+def test_what_changes_points_and_frames_is_never_left_out(word):
+    with pytest.raises(
+        cl.ClearanceError, match=f"skip: .*{word[1:]} moves the robot, or changes how"
+    ):
+        program(FRAMES + "P[R[1]]=P[5] ;\nL P[2] 100mm/sec FINE ;", skip=[word])
 
 
 def test_a_listing_that_is_cut_off_within_its_points_is_refused():

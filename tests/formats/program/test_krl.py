@@ -404,6 +404,12 @@ def test_what_runs_beside_the_program_moves_nothing(body):
     )
 
 
+@pytest.mark.parametrize("line", ["FIND(XP1)", "N=FIND(1,XP1)", "XP1=A(1) WHATEVER"])
+def test_what_a_line_that_is_left_out_may_have_changed_is_unknown(line):
+    with pytest.raises(cl.ClearanceError, match="'XP1' is given a value"):
+        program(f"{FRAMES}{line}\nLIN XP1", skip=["FIND", "XP1"])
+
+
 def test_a_move_is_never_left_out():
     with pytest.raises(cl.ClearanceError, match="PTP moves the robot"):
         program("PTP XHOME", skip=["ptp"])

@@ -323,6 +323,16 @@ def test_a_procedure_is_left_out_only_if_it_moves_nothing():
     assert len(moves_of(f"{body}SetDO do1,1;\nWorldAccLim\\On:=3;", data, skip=["sub"])) == 1
 
 
+@pytest.mark.parametrize("call", ["find p;", "n:=find(p);", "find 1\\at:=p;", "find p.trans;"])
+def test_what_a_procedure_in_no_file_may_have_changed_is_unknown(call):
+    data, body = "%s robtarget p:=%s; VAR num n;", f"{call}\nMoveL p,v100,fine,tool0;"
+    with pytest.raises(
+        cl.ClearanceError, match="line 4: the target is not known: 'p' is given a value by find"
+    ):
+        moves_of(body, data % ("PERS", P), skip=["find"])
+    assert len(moves_of(body, data % ("CONST", P), skip=["find"])) == 1
+
+
 def test_a_branch_that_persistent_data_decide_is_doubted():
     body = f"IF isup() THEN MoveL {P},v5,fine,tool0; ENDIF\nMoveL {P},v5,fine,tool0;\nENDPROC\n"
     body += "FUNC bool isup() RETURN up>1; ENDFUNC PROC last()"
