@@ -26,10 +26,12 @@ from clearance.batch.shared_waivers import (
 )
 from clearance.batch.store import Store
 from clearance.codes import coded_of
-from clearance.findings.doubts import UNUSED_WAIVER
+from clearance.findings.doubts import UNUSED_WAIVER, WARNING
 from clearance.findings.finding import NOT_PROVEN
 
-STATUSES = ("clear", "near", UNUSED_WAIVER, NOT_PROVEN, "violated", "contact", "suspect", ERROR)
+STATUSES = (
+    "clear", "near", WARNING, UNUSED_WAIVER, NOT_PROVEN, "violated", "contact", "suspect", ERROR,
+)  # fmt: skip
 """As a case's status can be, the better before the worse."""
 
 BASES = {

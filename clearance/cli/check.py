@@ -71,9 +71,9 @@ def check(
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
     written. With it, the same command resumes an interrupted run. Exit code: 0 clear or near; 1 a
-    limit is violated or not proven, or a waiver is unused or expired; 2 bad or suspect input; 3 the
-    cross-check disagrees. The greatest that applies counts. --baseline does not change it:
-    `clearance compare` has an exit code of its own.
+    limit is violated or not proven, a waiver is unused or expired, or --fail-on-warning finds one;
+    2 bad or suspect input; 3 the cross-check disagrees. The greatest that applies counts.
+    --baseline does not change it: `clearance compare` has an exit code of its own.
     """
     from clearance.files import refuse_inputs
 

@@ -88,6 +88,13 @@ def open_suspects(record: Record) -> tuple[Notice, ...]:
     return tuple(one for one in suspects if one.kind not in record.case.accept)
 
 
+def open_warnings(record: Record) -> tuple[Notice, ...]:
+    """The notices that are warnings and that the case does not accept, with motion of which no proof is asked."""
+    severities = {Severity.WARNING} | ({Severity.UNPROVEN} if record.certificate is None else set())
+    found = (one for one in record.notices if one.severity in severities)
+    return tuple(one for one in found if one.kind not in record.case.accept)
+
+
 def unproven_motion(record: Record) -> tuple[Notice, ...]:
     """The notices of motion that is not proven, where a proof is asked for."""
     if record.certificate is None:
@@ -115,15 +122,13 @@ def not_checked(case: Case) -> Iterator[str]:
 
 
 def _of_input(record: Record) -> Iterator[Doubt]:
-    unaccepted = open_suspects(record)
     for notice in record.notices:
-        if notice.severity is Severity.SUSPECT:
-            kind = SUSPECT if notice in unaccepted else ACCEPTED
-            yield Doubt(kind, notice.kind, notice.text)
-        elif notice in unproven_motion(record):
+        if notice in unproven_motion(record):
             yield Doubt(UNPROVEN_MOTION, notice.about, notice.text)
         elif notice.severity is not Severity.VIOLATED:
-            yield Doubt(WARNING, notice.kind, notice.text)
+            kind = SUSPECT if notice.severity is Severity.SUSPECT else WARNING
+            kind = ACCEPTED if notice.kind in record.case.accept else kind
+            yield Doubt(kind, notice.kind, notice.text)
     robots = (note for placed in record.case.robots for note in placed.robot.notes)
     yield from _notes([*record.case.notes, *robots, *record.notes])
 

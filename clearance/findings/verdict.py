@@ -5,7 +5,7 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from clearance.codes import coded, coded_of
@@ -13,9 +13,11 @@ from clearance.findings.doubts import (
     DISPUTED,
     SUSPECT,
     UNUSED_WAIVER,
+    WARNING,
     not_checked,
     not_checked_code,
     open_suspects,
+    open_warnings,
     unproven_motion,
 )
 from clearance.findings.finding import (
@@ -37,7 +39,7 @@ from clearance.findings.of_budget import tolerance_lines
 from clearance.findings.of_rule import code_of
 from clearance.findings.self_clearance import left_out_lines, self_clearance_lines
 from clearance.record.moment import Moment
-from clearance.record.record import Record
+from clearance.record.record import CrossCheck, Record
 from clearance.record.status import STATUSES, Status
 from clearance.record.wording import (
     clock_text,
@@ -69,9 +71,9 @@ class Verdict:
 
     Attributes:
         status: "clear", "near", "violated", "contact", "suspect" where input is in doubt and not accepted, or
-            "unused waiver" where a waiver has expired, or is not needed, and all else is well; "not proven" where
-            all limits are kept as measured and one is not proven to be with the case's tolerances, or a stretch of
-            a program is not.
+            "unused waiver" where a waiver has expired, or is not needed, and all else is well; "warning" where one
+            fails the run, as the case asks; "not proven" where all limits are kept as measured and one is not
+            proven to be with the case's tolerances, or a stretch of a program is not.
         measured: the status by what was measured alone, less what is waived.
         basis: "motion", "samples" or "pose", of a run of one step.
         reasons: why it is not clear, one line each.
@@ -79,6 +81,7 @@ class Verdict:
         unproven_motion: stretches of a program that are not proven, one line a robot.
         suspects: the notices that make it suspect.
         warnings: what a reader must know beside the clearance; suspect input that is accepted is among it.
+        warned: those that fail the run: the ones that are not accepted, where the case asks for that.
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
@@ -126,6 +129,7 @@ class Verdict:
     unproven_motion: tuple[str, ...] = ()
     beyond: str = ""
     excused: tuple[str, ...] = ()
+    warned: tuple[str, ...] = ()
 
     @property
     def scope(self) -> tuple[str, ...]:
@@ -137,14 +141,14 @@ class Verdict:
 
     @property
     def exit_code(self) -> int:
-        """0 clear or near, 1 violated, contact, not proven with tolerances or of a program, or an unused waiver,
-        2 suspect, 3 a peer disagrees; the greatest that holds."""
+        """0 clear or near, 1 violated, contact, not proven with tolerances or of a program, an unused waiver, or a
+        warning that fails, 2 suspect, 3 a peer disagrees; the greatest that holds."""
         if self.disputed_by is not None:
             return 3
         if self.status == SUSPECT:
             return 2
         failing = self.waiver_faults or self.tolerances == NOT_PROVEN
-        failing = failing or self.unproven_motion
+        failing = failing or self.unproven_motion or self.warned
         return 0 if self.measured in _PASSING and not failing else 1
 
     @property
@@ -155,7 +159,7 @@ class Verdict:
     @property
     def shade(self) -> str:
         """The status whose colour it has: nothing is green that fails, or that only the samples show."""
-        if self.disputed_by or self.status in (UNUSED_WAIVER, NOT_PROVEN):
+        if self.disputed_by or self.status in (UNUSED_WAIVER, NOT_PROVEN, WARNING):
             return str(Status.VIOLATED)
         by_samples = self.basis == SAMPLES and self.status == Status.CLEAR
         return str(Status.NEAR) if by_samples else self.status
@@ -201,7 +205,7 @@ class Verdict:
             text += f", {self.clocks}"
         if self.beyond:
             text += f", {self.beyond}"
-        if self.status in (SUSPECT, UNUSED_WAIVER):
+        if self.status in (SUSPECT, UNUSED_WAIVER, WARNING):
             text = f"{shown(self.status)} (would be {text})"
         return text if self.disputed_by is None else f"{text}, but {self.disputed_by} disagrees"
 
@@ -257,14 +261,12 @@ def verdict_of(
     beside = [*profiles, *broken]
     passes = record.status_of(worst) in _PASSING
     reasons = [*beside, *reasons] if passes else [*reasons, *beside]
-    reasons += (f"suspect {one.kind}: {one.line}" for one in suspects)
-    if disputing is not None:
-        n_steps = count(len(disputing.disagreements), "step")
-        reasons.append(coded_of(f"{disputing.peer} disagrees at {n_steps}", DISPUTED))
+    warned = open_warnings(record) if record.case.fail_on_warning else ()
+    reasons += _in_doubt(suspects, warned, disputing)
     return Verdict(
         status=SUSPECT
         if suspects
-        else _less_open(measured, [*of_tolerances, *not_proven], waiver_faults),
+        else _less_open(measured, [*of_tolerances, *not_proven], waiver_faults, warned),
         measured=measured,
         basis=record.basis,
         worst=worst,
@@ -272,7 +274,8 @@ def verdict_of(
         reasons=tuple(reasons),
         unproven=unproven,
         suspects=suspects,
-        warnings=tuple(_warnings(record, notices)),
+        warnings=tuple(_warnings(record)),
+        warned=tuple(one.line for one in warned),
         disputed_by=None if disputing is None else disputing.peer,
         not_checked=tuple(not_checked(record.case)),
         self_clearance=self_clearance_lines(record),
@@ -293,11 +296,23 @@ def verdict_of(
     )
 
 
-def _less_open(measured: str, open_limits: Sequence[object], waiver_faults: Sequence[str]) -> str:
-    """The status, where no input is suspect."""
+def _in_doubt(
+    suspects: Sequence[Notice], warned: Sequence[Notice], disputing: CrossCheck | None
+) -> Iterator[str]:
+    """Why a run fails whatever was measured, one line each."""
+    yield from (f"suspect {one.kind}: {one.line}" for one in suspects)
+    yield from (f"warning {one.kind}: {one.line}" for one in warned)
+    if disputing is not None:
+        n_steps = count(len(disputing.disagreements), "step")
+        yield coded_of(f"{disputing.peer} disagrees at {n_steps}", DISPUTED)
+
+
+def _less_open(measured: str, *open_things: Sequence[object]) -> str:
+    """The status, where no input is suspect: limits that are open, then waivers, then warnings, decide."""
     if measured not in _PASSING:
         return measured
-    return NOT_PROVEN if open_limits else UNUSED_WAIVER if waiver_faults else measured
+    found = zip((NOT_PROVEN, UNUSED_WAIVER, WARNING), open_things, strict=True)
+    return next((status for status, things in found if things), measured)
 
 
 def _tolerances(case: Case, measured: str, open_limits: Sequence[Finding]) -> str:
@@ -343,14 +358,12 @@ def _nearest(record: Record, worst: Moment) -> str | None:
     return None if nearest is worst or _same(nearest, worst) else moment_line(record, nearest)
 
 
-def _warnings(record: Record, notices: tuple[Notice, ...]) -> list[str]:
-    """Warnings, and suspect input that is accepted; each once."""
-    lines = [one.line for one in notices if one.severity is Severity.WARNING]
-    if record.certificate is None:
-        lines += [one.line for one in notices if one.severity is Severity.UNPROVEN]
+def _warnings(record: Record) -> list[str]:
+    """Warnings, then those and suspect input that are accepted; each once."""
+    lines = [one.line for one in open_warnings(record)]
     lines += [
         f"{one.line} (accepted: {one.kind})"
-        for one in notices
-        if one.severity is Severity.SUSPECT and one.kind in record.case.accept
+        for one in record.notices
+        if one.severity in (Severity.SUSPECT, Severity.WARNING) and one.kind in record.case.accept
     ]
     return list(dict.fromkeys(lines))

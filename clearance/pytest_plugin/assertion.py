@@ -66,5 +66,5 @@ def _doubts(run: Run) -> list[str]:
     """Why what was measured is not to be trusted, whichever pair is asked about."""
     verdict = run.verdict
     lines = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
-    lines += verdict.unproven_motion
+    lines += [*verdict.unproven_motion, *verdict.warned]
     return lines if verdict.disputed_by is None else [*lines, f"{verdict.disputed_by} disagrees"]

@@ -16,7 +16,7 @@ from clearance.receipt.receipt_file import DAMAGED, REMEDY
 from clearance.run import CheckOptions, Question
 from clearance.world.case import Case
 
-OF_THE_CASE = ("levels", "accept", "unproven_ok")
+OF_THE_CASE = ("levels", "accept", "unproven_ok", "fail_on_warning")
 """Fields of a case that a command line can change."""
 
 NOT_RECORDED = ("case", "inside")
@@ -29,9 +29,8 @@ def asked_of(question: Question) -> dict[str, Any]:
     recorded = {name: value for name, value in options.items() if name not in NOT_RECORDED}
     recorded["today"] = None if question.today is None else question.today.isoformat()
     levels = [case.limits.fail, case.limits.warn]
-    return recorded | dict(
-        zip(OF_THE_CASE, (levels, list(case.accept), _unproven_ok(case)), strict=True)
-    )
+    of_the_case = (levels, list(case.accept), _unproven_ok(case), case.fail_on_warning)
+    return recorded | dict(zip(OF_THE_CASE, of_the_case, strict=True))
 
 
 def question_of(case: Case, asked: dict[str, Any]) -> Question:
@@ -44,6 +43,7 @@ def question_of(case: Case, asked: dict[str, Any]) -> Question:
     try:
         fail, warn = asked["levels"]
         own = {"accept": asked["accept"], "unproven_ok": asked["unproven_ok"]}
+        own["fail_on_warning"] = asked.get("fail_on_warning", False)
         question = Question.of(case, CheckOptions(fail=fail, warn=warn, **own, **options))
     except (KeyError, TypeError, ValueError, AttributeError):
         raise BadSyntax(DAMAGED, valid=REMEDY) from None

@@ -51,7 +51,7 @@ def refusal_line(case_file: Path, text: str, root: Path) -> str:
 
 def _of_verdict(verdict: Verdict) -> list[str]:
     lines = [f"suspect {one.kind}: {one.line}" for one in verdict.suspects]
-    lines += [*verdict.unproven_motion, *verdict.waiver_faults]
+    lines += [*verdict.unproven_motion, *verdict.waiver_faults, *verdict.warned]
     if verdict.disputed_by is not None:
         lines.append(f"{verdict.disputed_by} disagrees")
     return lines
@@ -59,7 +59,8 @@ def _of_verdict(verdict: Verdict) -> list[str]:
 
 def _other_lines(verdict: Verdict) -> list[str]:
     """What bears on a verdict and fails nothing."""
-    lines = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
+    lines = [line for line in verdict.warnings if line not in verdict.warned]
+    lines += [*(f"waived: {line}" for line in verdict.waived)]
     if verdict.tolerances == ACCEPTED:
         lines += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
     for basis, unchecked in (

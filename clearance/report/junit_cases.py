@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from clearance.codes import coded_of
-from clearance.findings.doubts import UNUSED_WAIVER, unproven_motion
+from clearance.findings.doubts import UNUSED_WAIVER, open_warnings, unproven_motion
 from clearance.findings.finding import (
     CLEARANCE,
     OF_TOLERANCES,
@@ -234,12 +234,16 @@ _FAULTS = {
 
 
 def _of_notices(record: Record) -> Iterator[TestResult]:
-    """Suspect input fails unless its kind is accepted, and so does a broken rule; a warning passes."""
+    """Suspect input fails unless its kind is accepted, as does a broken rule, and a warning if asked."""
+    warned = open_warnings(record) if record.case.fail_on_warning else ()
     for notice in record.notices:
-        fault = _FAULTS.get(notice.severity, "")
+        fault = "Warning" if notice in warned else _FAULTS.get(notice.severity, "")
         if notice.severity is Severity.SUSPECT and notice.kind in record.case.accept:
             fault = ""
-        if notice.severity is Severity.UNPROVEN and notice not in unproven_motion(record):
+        if notice.severity is Severity.UNPROVEN and notice not in (
+            *unproven_motion(record),
+            *warned,
+        ):
             fault = ""
         name = f"{notice.kind}: {notice.text}"
         yield TestResult(str(notice.severity), name, notice.line, fault)

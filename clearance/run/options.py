@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from clearance.world.case import Case, Limits
     from clearance.world.waiver import Waiver
 
-KIND = Sort("KIND|CODE", "a kind of suspect input, or its code", accepted_kind)
+KIND = Sort("KIND|CODE", "a kind of suspect input or of a warning, or its code", accepted_kind)
 NEEDS = ("steps", "pairs", "limit", "minimum")
 MOTIONS = ("kinematic", "simulated", "recorded")
 METHODS = ("exact", "paper")
@@ -174,7 +174,8 @@ class CheckOptions(QuestionOptions):
 
     Attributes:
         limits: instead of the case's. fail, warn: [m] instead of the case's; rules that give one keep theirs.
-        accept: kinds of suspect input that decide no verdict, beside the case's.
+        accept: kinds of suspect input that decide no verdict, and of warnings, beside the case's.
+        fail_on_warning: a warning that is not accepted fails the run.
         tolerance: instead of the case's: a file, the block of a case file as plain data, or a budget.
         unproven_ok: a limit that is kept, but not proven with the tolerances, does not fail the run.
         waivers: beside the case's: files of them, then waivers.
@@ -194,8 +195,11 @@ class CheckOptions(QuestionOptions):
     accept: tuple[str, ...] = option(
         (),
         KIND,
-        f"Accept suspect input of this kind ({', '.join(KINDS)}), or with this code.",
+        f"Accept suspect input of this kind ({', '.join(KINDS)}), or a warning, by its code.",
         many=True,
+    )
+    fail_on_warning: bool = option(
+        False, SWITCH, "Fail (exit code 1) by any warning that is not accepted."
     )
     tolerance: Budget | Mapping[str, Any] | Path | None = option(
         None, TOLERANCE, "Tolerances of the real machine, instead of the case's."
@@ -253,8 +257,9 @@ class CheckOptions(QuestionOptions):
         """
         limits = with_levels(self.limits or case.limits, self.fail, self.warn)
         accept = tuple(dict.fromkeys([*case.accept, *self.accept]))
-        if limits is not case.limits or accept != case.accept:
-            case = replace(case, limits=limits, accept=accept)
+        fails = case.fail_on_warning or self.fail_on_warning
+        if (limits, accept, fails) != (case.limits, case.accept, case.fail_on_warning):
+            case = replace(case, limits=limits, accept=accept, fail_on_warning=fails)
         case = self._with_recording(self._with_tolerance(self._with_waivers(case)))
         if not self.unproven_ok:
             return case

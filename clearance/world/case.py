@@ -290,7 +290,8 @@ class Case:
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
         notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
-        accept: kinds of suspect input that do not make the verdict suspect.
+        accept: kinds of suspect input that do not make the verdict suspect, and of warnings that are known.
+        fail_on_warning: a warning that is not accepted fails the run.
         waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
         profiles: outlines with which the sweep is compared.
         sign_off: for the report; None where it has no such fields.
@@ -314,6 +315,7 @@ class Case:
     clock: Clock = COMMON
     tolerance: Budget | None = None
     path_error: float = 0.0
+    fail_on_warning: bool = False
 
     def __post_init__(self) -> None:
         if not self.robots:

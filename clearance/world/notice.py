@@ -31,19 +31,25 @@ as written), and goals without a start (then single poses)."""
 
 WRAP, START = "wrap", "start"
 
-CODES_OF_KINDS = tuple(codes()[kind] for kind in KINDS)
+WARNINGS = (
+    "geometry", "equality", "scene", "padding", "program", "carry", "rest", "neighbours", "recorded run",
+    "pairs", "paper", "certificate", "contact", "cross-check",
+)  # fmt: skip
+"""Kinds of warnings alone, which a case can accept too: where warnings fail, these do not then."""
+
+CODES_OF_KINDS = tuple(codes()[kind] for kind in (*KINDS, *WARNINGS))
 """By these a case can accept them too."""
 
 
 def accepted_kind(given: object) -> str:
-    """The kind of suspect input that is given by its name or its code.
+    """The kind of suspect input, or of a warning, that is given by its name or its code.
 
     Raises:
         BadInput: no kind that can be accepted.
     """
     kind = kind_of(given) if isinstance(given, str) else ""
-    if kind not in KINDS:
-        valid = f"kinds of suspect input: {', '.join(KINDS)}, or their codes"
+    if kind not in (*KINDS, *WARNINGS):
+        valid = f"kinds of suspect input: {', '.join(KINDS)}, their codes, or the code of a warning"
         raise BadInput(f"{given!r:.60} is given", valid=valid)
     return kind
 

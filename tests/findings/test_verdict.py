@@ -31,12 +31,12 @@ NOT_KEPT = ProfileAnswer(
 )
 
 
-def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
+def made(limits=NO_LIMITS, notices=(), accept=(), strict=False, **changes) -> Record:
     """The swing, stopped before it touches."""
     whole = record(limits=limits, **changes)
     if limits.fail > 0.0:
         return whole
-    case = dataclasses.replace(whole.case, accept=tuple(accept))
+    case = dataclasses.replace(whole.case, accept=tuple(accept), fail_on_warning=strict)
     short = with_steps(whole, whole.rows.at(slice(8)))
     return dataclasses.replace(short, case=case, notices=tuple(notices))
 
@@ -54,6 +54,10 @@ CASES = {
     "accepted": (made(notices=(UNITS,), accept=("units",)), "clear", 0),
     "another accepted": (made(notices=(UNITS,), accept=("limits",)), "suspect", 2),
     "warned": (made(notices=(WARNING,)), "clear", 0),
+    "warned where that fails": (made(notices=(WARNING,), strict=True), "warning", 1),
+    "warned and accepted": (made(notices=(WARNING,), accept=("geometry",), strict=True), "clear", 0),
+    "accepted where warnings fail": (made(notices=(UNITS,), accept=("units",), strict=True), "clear", 0),
+    "suspect and warned": (made(notices=(UNITS, WARNING), strict=True), "suspect", 2),
     "disputed": (made(cross_check=disagreeing()), "clear", 3),
     "disputed and suspect": (made(notices=(UNITS,), cross_check=disagreeing()), "suspect", 3),
 }  # fmt: skip

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import re
 from dataclasses import replace
 from datetime import date
+from pathlib import Path
 
 import click
 import numpy as np
@@ -13,10 +15,12 @@ import pytest
 import clearance as cl
 from clearance.batch.manifest_file import manifest_of
 from clearance.cli.options import asked_options, said, spelled_by
+from clearance.codes import codes
 from clearance.errors import BadDimension, BadInput, UnknownKey
 from clearance.options import LENGTH, SWITCH, check_values, made, option, options_in
 from clearance.pytest_plugin import PREFIX, pytest_addoption
 from clearance.run import CheckOptions, Question
+from clearance.world.notice import accepted_kind
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 
@@ -37,7 +41,8 @@ EVERY = {
     "today": (date(2026, 11, 1), "--today 2026-11-01", ("today", "2026-11-01")),
     "fail": (0.005, "--fail-mm 5", ("limits", {"fail": 0.005})),
     "warn": (0.02, "--warn-mm 20", ("limits", {"warn": 0.02})),
-    "accept": (("units", "axis"), "--accept units --accept axis", ("accept", ["units", "axis"])),
+    "accept": (("units", "rest"), "--accept units --accept CL429", ("accept", ["units", "CL429"])),
+    "fail_on_warning": (True, "--fail-on-warning", ("fail_on_warning", True)),
     "tolerance": ("t.yaml", "--tolerance t.yaml", ("tolerance", "t.yaml")),
     "unproven_ok": (True, "--unproven-ok", ("unproven_ok", True)),
     "waivers": (("a.yaml",), "--waivers a.yaml", ("waivers", ["a.yaml"])),
@@ -77,6 +82,13 @@ def words(name: str) -> str:
     others = {"motion": "recorded", "recorded": "run.csv"} if "recorded" in name else {}
     beside = " ".join(f"--{one} {value}" for one, value in others.items() if one != name)
     return f"{EVERY[name][1]} {beside}"
+
+
+def test_each_kind_of_warning_that_is_made_can_be_accepted_by_its_code():
+    sources = (path.read_text() for path in Path(cl.__file__).parent.rglob("*.py"))
+    made_of = re.compile(r'Severity\.WARNING[^,]*,\s*"([^"]+)"')
+    kinds = {kind for text in sources for kind in made_of.findall(text)}
+    assert len(kinds) > 10 and {accepted_kind(codes()[kind]) for kind in kinds} == kinds
 
 
 def test_the_table_here_is_of_all_options():

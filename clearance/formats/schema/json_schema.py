@@ -14,7 +14,7 @@ from clearance.formats.schema.joints import STATE
 from clearance.formats.schema.obstacle import SHAPES
 from clearance.formats.schema.strict_model import StrictModel
 from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS, preset_names
-from clearance.world.notice import CODES_OF_KINDS, KINDS
+from clearance.world.notice import CODES_OF_KINDS, KINDS, WARNINGS
 
 _NAMES_OF_STATES = {
     "description": "a state of the SRDF, or of the MJCF without one; or several",
@@ -34,7 +34,7 @@ def case_schema() -> dict[str, Any]:
     parts, keys = made["$defs"], made["properties"]
     _without_nothing(made, parts)
     keys["scene"] = _or_path(keys["scene"], f"a file with the scene ({names_of(Kind.SCENE)})")
-    keys["accept"]["items"]["enum"] = [*KINDS, *CODES_OF_KINDS]
+    keys["accept"]["items"]["enum"] = [*KINDS, *WARNINGS, *CODES_OF_KINDS]
     made["oneOf"] = [{"required": ["robot"]}, {"required": ["robots"]}]
     made["anyOf"] = list(_what_moves())
     factors = parts["Mesh"]["properties"]["scale"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from clearance.findings.doubts import NOTE, doubts_of
+from clearance.findings.doubts import NOTE, WARNING, doubts_of
 from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.of_budget import NOT_WORKED_OUT
 from clearance.findings.verdict import ACCEPTED, FAIL, UNUSED_WAIVER, Verdict
@@ -23,6 +23,7 @@ _TITLES = {
     "contact": "contact",
     "suspect": "suspect input",
     UNUSED_WAIVER: UNUSED_WAIVER,
+    WARNING: WARNING,
     NOT_PROVEN: NOT_PROVEN,
     FAIL: FAIL,
     ACCEPTED: ACCEPTED,
