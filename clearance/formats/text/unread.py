@@ -41,14 +41,18 @@ class Format(NamedTuple):
     """The table of a format.
 
     Attributes:
-        rows: by the name of the element. hidden: names that give a shape or a place, here or in other formats.
-        fault: the class of a refusal.
+        rows: by the name of the element. fault: the class of a refusal.
     """
 
     rows: Mapping[str, Row]
-    hidden: frozenset[str]
     fault: type[BadInput]
 
+
+_PLACES = frozenset(
+    "origin axis mesh xyz rpy pose pos quat size radius radii length scale link filename file uri "
+    "include placement_frame relative_to attached_to".split()
+)
+"""Elements and attributes that give a shape or a place, in one format or another."""
 
 _SOLID = frozenset(
     "link collision visual geometry box sphere cylinder capsule ellipsoid plane mesh".split()
@@ -74,11 +78,11 @@ def unread(element: Element, known: Format) -> Iterator[Unread]:
     """What is not read in an element and in those below that are read.
 
     Raises:
-        BadInput: a name that resembles one that is read, or gives a shape or a place; text that is not read.
+        BadInput: a name that resembles one that is read, or gives a shape or a place; text in place of elements.
     """
     row, where = known.rows[str(element.tag)], _where(element)
     text = (element.text or "").strip()
-    if text and not row.has_text:
+    if text and not (row.has_text or len(element)):
         raise known.fault(f"the text {text!r:.60} is not read", where=where, valid=_valid(row))
     for name, value in element.attrib.items():
         local = _local(name)
@@ -91,7 +95,7 @@ def unread(element: Element, known: Format) -> Iterator[Unread]:
             if child.tag in known.rows:
                 yield from unread(child, known)
         elif _local(child.tag) in passed:
-            is_place = _holds(child, ("geometry",))
+            is_place = _local(child.tag) != "plugin" and _holds(child, ("geometry",))
             yield Unread(child, f"<{_local(child.tag)}>", where, True, is_place)
         else:
             yield _element(child, row, known)
@@ -117,7 +121,7 @@ def _attribute(element: Element, given: tuple[str, str], row: Row, known: Format
     """An attribute that the table does not have there."""
     (name, value), where = given, _where(element)
     meant = meant_name(name, row.attributes.split())
-    if meant or row.closed or name in known.hidden or name in row.children.split():
+    if meant or row.closed or name in _PLACES or name in row.children.split():
         valid = f"did you mean {meant}=?" if meant else _valid(row)
         raise known.fault(f"{name}={value!r:.60} is not read", where=where, valid=valid)
     return Unread(element, f"{name}=", where)
@@ -126,9 +130,9 @@ def _attribute(element: Element, given: tuple[str, str], row: Row, known: Format
 def _element(child: Element, row: Row, known: Format) -> Unread:
     """An element that the table does not have there."""
     name, where = _local(child.tag), _where(child.getparent())
-    is_place = any(_gives_place(one, known) for one in child.iter())
+    is_place = any(_gives_place(one) for one in child.iter())
     meant = meant_name(name, row.children.split()) or name * (name in row.children.split())
-    is_known = name in known.rows or name in known.hidden
+    is_known = name in known.rows or name in _PLACES
     if meant or row.closed or (is_known and is_place) or _holds(child, _SOLID):
         shown = f"{child.prefix}:{name}" if child.prefix else name
         valid = f"did you mean <{meant}>?" if meant else _valid(row)
@@ -136,10 +140,10 @@ def _element(child: Element, row: Row, known: Format) -> Unread:
     return Unread(child, f"<{name}>", where, is_place=is_place)
 
 
-def _gives_place(element: Element, known: Format) -> bool:
+def _gives_place(element: Element) -> bool:
     values = {_local(name): value for name, value in element.attrib.items()}
     values[_local(element.tag)] = element.text or ""
-    return any(name in known.hidden and not _is_nothing(values[name]) for name in values)
+    return any(name in _PLACES and not _is_nothing(values[name]) for name in values)
 
 
 def _holds(element: Element, tags: Collection[str]) -> bool:

@@ -192,6 +192,14 @@ def test_what_is_left_out_is_told(tmp_path):
     assert notice.severity is Severity.WARNING and "not measured: 'm/a'" in notice.text
 
 
+def test_what_is_not_read_stands_in_a_note_or_where_it_may_be_a_place_in_a_warning(tmp_path):
+    shift = "<shift><xyz>0 0 1</xyz></shift>"
+    content = content_of(tmp_path, sdf(model(link(collision(), shift), "<colour>red</colour>")))
+    assert content.notes == ("cell.sdf: not read: <colour>",)
+    (notice,) = content.notices
+    assert notice.severity is Severity.WARNING and notice.text.endswith("<shift> in link 'l'")
+
+
 def test_poses_that_look_like_degrees_are_suspect_and_those_of_plugins_passed_over(tmp_path):
     other = f'<plugin name="p">{link(pose("a b c d e f"))}</plugin>'
     document = sdf(model(pose("0 0 0 0 0 90"), link(collision()), other))
@@ -232,10 +240,15 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
         (sdf(world("<population/>")), "<population> places models at random"),
         (sdf(world(include(uri="https://x/y"))), "nothing is fetched"),
         (sdf(world(include(uri="cell.sdf"))), "cell.sdf includes itself"),
-        (sdf(model(link("<colision/>"))), "link l: <colision> is not read; did you mean <collision>?"),
+        (sdf(model(link("<colision/>"))), "link 'l': <colision> is not read; did you mean <collision>?"),
         (sdf(model(link(collision(), "<psoe>1 0 0 0 0 0</psoe>"))), "<psoe> is not read; did you mean <pose>?"),
-        (sdf(model("<pose relativeto='x'/>", link(collision()))), "relativeto= is not read"),
-        (sdf(model(link(at(1), at(2), collision()))), "link l: two <pose> are given; one"),
+        (sdf(model("<pose relativeto='x'/>", link(collision()))), "model 'm' pose: relativeto='x' is not read"),
+        (sdf(model(link(at(1), at(2), collision()))), "link 'l': two <pose> are given; one"),
+        (sdf(model(link("<collision name='c'>0 0 1</collision>"))), "collision 'c': the text '0 0 1' is not read"),
+        (sdf(model(link(collision(BOX, '<origin pose="0 0 1 0 0 0"/>')))), "collision 'c': <origin> is not read"),
+        (sdf(model(link(collision(BOX.replace("</box>", "<pose>1</pose></box>"))))), "box: <pose> is not read"),
+        (sdf(model(link(collision()), "<geom><box size='1'/></geom>")), "model 'm': <geom> is not read"),
+        (sdf(world("<group>" + model(link(collision())) + "</group>")), "world 'w': <group> is not read"),
         (sdf(model(*["<model name='x'>"] * 60, *["</model>"] * 60)), "40 deep in each other"),
     ],
 )  # fmt: skip

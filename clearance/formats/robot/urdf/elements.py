@@ -99,10 +99,6 @@ _URDF = Format(
         "geometry": Row(ANY, passed="name"),
         **{tag: _leaf(tag) for tag in _LEAVES},
     },
-    hidden=frozenset(
-        "origin axis mesh xyz rpy pose pos quat size radius length scale link filename file uri "
-        "include".split()
-    ),
     fault=BadRobot,
 )
 """Names that are passed over: those of the specification, and of URDF for Gazebo, ros2_control, Bullet, Drake,

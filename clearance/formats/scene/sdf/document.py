@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadScene, BadShape, BadSyntax, MissingKey, NotFinite, meant_name
+from clearance.errors import BadScene, BadShape, BadSyntax, MissingKey, NotFinite
+from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
 from clearance.formats.text.xml_document import plain_root, with_entities
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
@@ -19,38 +20,70 @@ if TYPE_CHECKING:
 NEWEST = (1, 11)
 """The newest version of SDF that is read."""
 
-_READ = {
-    "sdf": ("world", "model"),
-    "world": ("model", "include", "frame", "state", "population"),
-    "model": ("model", "link", "include", "frame", "joint", "pose"),
-    "link": ("collision", "visual", "pose"),
-    "collision": ("pose", "geometry"),
-    "include": ("uri", "name", "pose", "placement_frame"),
-    "frame": ("pose",),
-    "joint": ("child", "pose"),
-    "mesh": ("uri", "scale", "submesh"),
-    "plane": ("normal",),
-    "pose": (),
-}
-"""The elements that are read in each."""
+_TEXT = Row(has_text=True, closed=True)
 
-_ATTRIBUTES = {
-    "pose": ("relative_to", "frame", "rotation_format", "degrees"),
-    "model": ("name", "placement_frame"),
-    "frame": ("name", "attached_to"),
-    "include": ("merge",),
-}
+_SDF = Format(
+    {
+        **dict.fromkeys(("sdf", "gazebo"), Row("world model", "version", "actor light")),
+        "world": Row(
+            "model include frame joint state population",
+            "name",
+            "audio wind gravity magnetic_field atmosphere gui physics scene light road plugin actor "
+            "spherical_coordinates",
+        ),
+        "model": Row(
+            "model link include frame joint pose",
+            "name placement_frame",
+            "canonical_link static self_collide allow_auto_disable enable_wind plugin gripper",
+        ),
+        "link": Row(
+            "collision visual pose",
+            "name",
+            "gravity enable_wind self_collide kinematic must_be_base_link velocity_decay inertial sensor light "
+            "projector audio_sink audio_source battery particle_emitter plugin",
+        ),
+        "collision": Row(
+            "pose geometry",
+            "name",
+            "laser_retro max_contacts surface density auto_inertia_params proximity_properties",
+        ),
+        "include": Row("uri name pose placement_frame", "merge", "static plugin"),
+        "frame": Row("pose", "name attached_to"),
+        "joint": Row(
+            "child pose",
+            "name type",
+            "parent axis axis2 physics sensor screw_thread_pitch thread_pitch gearbox_ratio "
+            "gearbox_reference_body",
+        ),
+        "geometry": Row(ANY),
+        "mesh": Row(
+            "uri scale submesh",
+            passed="optimization convex_decomposition declare_convex",
+            closed=True,
+        ),
+        "plane": Row("normal", passed="size", closed=True),
+        "box": Row("size", closed=True),
+        "sphere": Row("radius", closed=True),
+        "ellipsoid": Row("radii", closed=True),
+        **dict.fromkeys(("cylinder", "capsule"), Row("radius length", closed=True)),
+        "pose": Row("", "relative_to frame rotation_format degrees", has_text=True, closed=True),
+        **dict.fromkeys("uri name placement_frame child".split(), _TEXT),
+        **dict.fromkeys("scale normal size radius radii length".split(), _TEXT),
+    },
+    fault=BadScene,
+)
+"""Source: SDF specification 1.11. A `<visual>` is counted; a `<state>` is compared."""
 
 MOST_BYTES = 32_000_000
 """Files are text of links and names; meshes lie beside them."""
 
 
-def sdf_element(data: bytes) -> Element:
-    """The root element of an SDF document; comments are gone, and nothing in it stands for something else.
+def sdf_element(data: bytes) -> tuple[Element, list[Unread]]:
+    """The root element of an SDF document, without comments and entities; and what is in it beside what is read.
 
     Raises:
-        BadSyntax: not XML, not SDF, an entity or a document type, or too long. BadInput: a newer version, or a
-            name that resembles one that is read.
+        BadSyntax: not XML, not SDF, an entity or a document type, or too long. BadInput: a newer version; a name
+            or text that is not read and may give a shape or a place.
     """
     if len(data) > MOST_BYTES:
         raise BadSyntax(f"{len(data)} bytes are given", valid=f"{MOST_BYTES} or fewer")
@@ -60,24 +93,12 @@ def sdf_element(data: bytes) -> Element:
     if root.tag not in ("sdf", "gazebo"):
         raise BadSyntax(f"the root element is <{root.tag}>", valid="<sdf> is needed")
     _require_version(root.get("version") or "")
-    for element in root.iter(*_READ):
-        _require_spelt(element)
-    return root
-
-
-def _require_spelt(element: Element) -> None:
-    """Refuses what was meant to say something about shape or place."""
-    where = f"{element.tag} {element.get('name') or ''}".strip()
-    for child in map(str, (one.tag for one in element)):
-        meant = meant_name(child, _READ[element.tag])
-        if meant:
-            raise BadScene(f"<{child}> is not read", where=where, valid=f"did you mean <{meant}>?")
-    for given in element.attrib:
-        meant = meant_name(given, _ATTRIBUTES.get(element.tag, ()))
-        if meant:
-            raise BadScene(f"{given}= is not read", where=where, valid=f"did you mean {meant}=?")
-    if len(element.findall("pose")) > 1:
-        raise BadScene("two <pose> are given", where=where, valid="one")
+    found = [*unread(root, _SDF)]
+    for element in root.iter("model", "link", "collision", "include", "frame", "joint"):
+        if len(element.findall("pose")) > 1:
+            where = f"{element.tag} {element.get('name')!r}"
+            raise BadScene("two <pose> are given", where=where, valid="one")
+    return root, found
 
 
 def name_of(element: Element) -> str:

@@ -14,6 +14,7 @@ from clearance.formats.files.mesh_paths import model_path
 from clearance.formats.scene.request import SKIP, SceneRequest
 from clearance.formats.scene.sdf.document import NEWEST, sdf_element, text_of
 from clearance.formats.scene.sdf.scope import IncludedModel
+from clearance.formats.text.unread import Unread
 from clearance.formats.text.yaml_text import flow
 from clearance.world.notice import Notice, Severity, listed
 
@@ -33,6 +34,7 @@ class IncludeReader:
     def __init__(self, asked: SceneRequest) -> None:
         self._asked = asked
         self._roots: dict[Path, Element] = {}
+        self.unread: list[Unread] = []
         self._n_elements = 0
         self.missing_suns = 0
         self._said: dict[str, None] = {}
@@ -51,7 +53,8 @@ class IncludeReader:
         """
         path = path.resolve()
         if path not in self._roots:
-            self._roots[path] = sdf_element(self._asked.files.read(path))
+            self._roots[path], found = sdf_element(self._asked.files.read(path))
+            self.unread += found
         self._n_elements += sum(1 for _ in self._roots[path].iter())
         if self._n_elements > MOST_ELEMENTS:
             raise BadScene(f"more than {MOST_ELEMENTS} elements in all", valid="fewer includes")

@@ -22,6 +22,8 @@ from clearance.formats.scene.sdf.geometry import has_no_size
 from clearance.formats.scene.sdf.include import IncludeReader
 from clearance.formats.scene.sdf.scope import Scope, SdfShape, require_state_as_placed
 from clearance.formats.text.notes import note_on_rounded
+from clearance.formats.text.unread import notes_on as notes_on_unread
+from clearance.formats.text.unread import notices_on
 from clearance.world.notice import Notice, Severity, listed
 
 if TYPE_CHECKING:
@@ -43,6 +45,7 @@ def read_sdf(asked: SceneRequest) -> SceneContent:
         obstacles = [files.obstacle(shape) for shape in shapes]
         renamed, said = _make_unique(obstacles), reader.notices()
     notes = [*notes_on(reader.documents, reader.missing_suns, shapes), *renamed]
+    notes += notes_on_unread(reader.unread)
     odd = [text for document in reader.documents for text in _odd(document)]
     return SceneContent(
         {"obstacles": obstacles},
@@ -53,6 +56,7 @@ def read_sdf(asked: SceneRequest) -> SceneContent:
             *reader.found.notices(),
             *unseen(reader.documents),
             *empty(reader.documents),
+            *notices_on(reader.unread),
         ),
     )
 
