@@ -104,9 +104,12 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
     is_used = np.zeros(len(body.vertices), dtype=bool)
     is_used[body.face_vertices] = True
     points = body.vertices[is_used]
-    volume = body.volume
+    volume, solids = body.volume, [] if body.volume is None else body.solids()
+    solid, missing = _solid(body, solids) if len(solids) > 1 else (None, "")
+    if solid is not None:
+        volume = solid.volume()
     if volume is not None and len(points) > (LITTLE_HULL if rough else MOST_HULL):
-        made = _clearly_concave(body, points, volume)
+        made = _clearly_concave(body, points, volume, solids)
         if made is not None:
             return made
     hull = Polytope(points) if len(points) <= MOST_HULL else envelope(points)
@@ -114,9 +117,10 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
         return _by_hull(hull, None, False, "its surface is not closed")
     if not volume > FLAT * hull.volume:
         return _by_hull(hull, None, False, "its surface holds no volume")
-    if hull.volume - volume <= FLAT * hull.volume:
+    if hull.volume - volume <= FLAT * hull.volume and not missing:
         return _of_convex(hull, body.excess)
-    solid, missing = _solid(body)
+    if len(solids) == 1:
+        solid, missing = _solid(body, solids)
     dented = _dented(body, hull, solid)
     if dented is not None:
         return dented
@@ -129,12 +133,14 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
     return _of_concave(body, hull, solid)
 
 
-def _clearly_concave(body: Polyhedron, points: np.ndarray, volume: float) -> ConvexParts | None:
+def _clearly_concave(
+    body: Polyhedron, points: np.ndarray, volume: float, solids: list[np.ndarray]
+) -> ConvexParts | None:
     """A body that is concave at a glance, without its hull; None if it may be convex or has no solid."""
     if not is_clearly_concave(body, points):
         return None
     outer = envelope(points)
-    solid = _solid(body)[0] if volume > FLAT * outer.volume else None
+    solid = _solid(body, solids)[0] if volume > FLAT * outer.volume else None
     return None if solid is None else _uncut(outer, solid)
 
 
@@ -195,10 +201,11 @@ def _of_convex(hull: Polytope, excess: float) -> ConvexParts:
     return ConvexParts((hull,), _drawn_in(hull, excess), None, True, note, convex=True, tight=True)
 
 
-def _solid(body: Polyhedron) -> tuple[Any, str]:
-    """manifold3d's solid; None where there is none, and in a few words why."""
+def _solid(body: Polyhedron, solids: list[np.ndarray]) -> tuple[Any, str]:
+    """manifold3d's solid, the union of some; None where there is none, and in a few words why."""
     try:
-        return boolean.solid(body.vertices, body.triangles()), ""
+        made = [boolean.solid(body.vertices, triangles) for triangles in solids]
+        return made[0] if len(made) == 1 else boolean.evaluated(boolean.union(made)), ""
     except Unavailable as error:
         return None, f"{error.problem} ({error.valid})"
     except BadPolygon:
@@ -218,7 +225,7 @@ def _uncuttable(body: Polyhedron) -> str:
 
 def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
     try:
-        parts = _grown_to_contain(solid, _cut(body, hull))
+        parts = _grown_to_contain(solid, _cut(body, hull, solid))
     except ClearanceError as error:
         return _by_hull(hull, solid, True, f"concave, not cut into convex parts ({error.problem})")
     surface = body.vertices[body.triangles()]
@@ -239,14 +246,17 @@ def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
     return ConvexParts(tuple(parts), tuple(inner), solid, True, note)
 
 
-def _cut(body: Polyhedron, hull: Polytope) -> list[Polytope]:
+def _cut(body: Polyhedron, hull: Polytope, solid: Any) -> list[Polytope]:
     """CoACD's parts; finer ones where it finds nothing to cut though the hull is much more than the body."""
-    assert body.volume is not None, "only closed bodies are cut"
+    vertices, triangles = body.vertices, body.triangles()
+    if len(body.solids()) > 1:  # CoACD takes no surfaces that go through each other
+        union = boolean.mesh_of(solid)
+        vertices, triangles = union.vertices, union.triangles
     for threshold in decompose.THRESHOLDS:
-        corners = decompose.cut_into_hulls(body.vertices, body.triangles(), threshold)
+        corners = decompose.cut_into_hulls(vertices, triangles, threshold)
         if len(corners) > 1:
             return [Polytope(points) for points in corners]
-        if hull.volume <= MUCH_MORE * body.volume:
+        if hull.volume <= MUCH_MORE * solid.volume():
             break
     return [hull]
 

@@ -1,4 +1,4 @@
-"""Nesting of the closed components of a surface, and which components are inside out.
+"""Nesting of the closed components of a surface: which are inside out, and which make a solid together.
 
 A part is a connected component. Not for: whether a body lies in another one (`kernels.search.containment`).
 """
@@ -45,22 +45,69 @@ def inside_out_components(
     volumes = component_volumes(vertices, triangles, component, len(closed))
     if not (closed & (volumes < 0.0)).any():
         return np.zeros(len(closed), dtype=bool)
-    turned = vertices @ _ASKEW.T
-    order = np.argsort(component, kind="stable")
-    ends = np.searchsorted(component[order], np.arange(len(closed) + 1))
-    found = {
-        i: turned[triangles[order[ends[i] : ends[i + 1]]]] for i in np.flatnonzero(closed).tolist()
-    }
-    parts = {
-        i: _Part(corners, corners.min(axis=1).T.copy(), corners.max(axis=1).T.copy())
-        for i, corners in found.items()
-        if abs(volumes[i]) > _rounding_of_volume(corners)
-    }
+    rows = {i: row for i, row in enumerate(_rows_of(component, len(closed))) if closed[i]}
+    parts = _parts(vertices @ _ASKEW.T, triangles, rows, volumes)
     holders = _holders(parts)
     wrong = np.zeros(len(closed), dtype=bool)
     for i in sorted(parts, key=lambda part: len(holders[part])):
         wrong[i] = _is_wrong(i, holders, volumes, wrong)
     return wrong
+
+
+def solids(
+    vertices: np.ndarray, triangles: np.ndarray, component: np.ndarray, n_components: int
+) -> list[np.ndarray]:
+    """The triangles (k, 3) of each solid: an outer component with the cavities in it, outward.
+
+    Where no boxes of outer components meet, all triangles are one solid. The body is the union of its solids.
+
+    Args:
+        vertices: (n, 3) [m]. triangles: (m, 3) of closed components. component: (m,) of each triangle.
+    """
+    volumes = component_volumes(vertices, triangles, component, n_components)
+    if (volumes > 0.0).sum() < 2:
+        return [triangles]
+    rows = dict(enumerate(_rows_of(component, n_components)))
+    parts = _parts(vertices, triangles, rows, volumes)
+    outer = [i for i in parts if volumes[i] > 0.0]
+    if not _any_boxes_meet([parts[i] for i in outer]):
+        return [triangles]
+    holders, found = _holders(parts), {i: [triangles[rows[i]]] for i in outer}
+    for i in parts.keys() - outer:
+        about = [j for j in holders[i] if volumes[j] > 0.0]
+        if about:
+            found[min(about, key=lambda j: volumes[j])].append(triangles[rows[i]])
+        else:
+            found[i] = [triangles[rows[i]][:, ::-1]]
+    return [np.concatenate(one) for one in found.values()]
+
+
+def _any_boxes_meet(parts: list[_Part]) -> bool:
+    low = np.array([part.low.min(axis=1) for part in parts])
+    high = np.array([part.high.max(axis=1) for part in parts])
+    return any(
+        ((low[i + 1 :] <= high[i]) & (low[i] <= high[i + 1 :])).all(axis=1).any()
+        for i in range(len(parts) - 1)
+    )
+
+
+def _rows_of(component: np.ndarray, n_components: int) -> list[np.ndarray]:
+    """The rows of each component, by (m,) the component of each row."""
+    order = np.argsort(component, kind="stable")
+    ends = np.searchsorted(component[order], np.arange(1, n_components))
+    return np.split(order, ends)
+
+
+def _parts(
+    vertices: np.ndarray, triangles: np.ndarray, rows: dict[int, np.ndarray], volumes: np.ndarray
+) -> dict[int, _Part]:
+    """The components, by their rows, that have a volume."""
+    found = {i: vertices[triangles[row]] for i, row in rows.items()}
+    return {
+        i: _Part(corners, corners.min(axis=1).T.copy(), corners.max(axis=1).T.copy())
+        for i, corners in found.items()
+        if abs(volumes[i]) > _rounding_of_volume(corners)
+    }
 
 
 def _is_wrong(

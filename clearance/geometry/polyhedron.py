@@ -23,7 +23,7 @@ from clearance.geometry.faces import (
     checked_vertices,
     flat_faces,
 )
-from clearance.geometry.nesting import inside_out_components
+from clearance.geometry.nesting import inside_out_components, solids
 from clearance.geometry.planes import Planes, planes_of
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.topology import Topology, component_volumes, topology_of
@@ -265,7 +265,10 @@ class Polyhedron:
 
     @cached_property
     def volume(self) -> float | None:
-        """[m^3] the enclosed volume, less cavities; None unless the surface is closed and oriented."""
+        """[m^3] the enclosed volume, less cavities; None unless the surface is closed and oriented.
+
+        What several components enclose counts for each of them; `cl.contact` counts it once.
+        """
         if not self.closed or not self.oriented:
             return None
         component = self.face_component[self.triangle_faces]
@@ -273,6 +276,11 @@ class Polyhedron:
             self.vertices, self.triangles(), component, len(self.component_closed)
         )
         return float(volumes.sum())
+
+    def solids(self) -> list[np.ndarray]:
+        """The triangles (k, 3) of the solids whose union a closed body is; one but where components overlap."""
+        component = self.face_component[self.triangle_faces]
+        return solids(self.vertices, self.triangles(), component, len(self.component_closed))
 
     @cached_property
     def component_inside_out(self) -> np.ndarray:

@@ -46,7 +46,8 @@ class Contact:
             upper bound of it.
         penetration_at_least: [m] no shorter translation separates them.
         direction: (3,) unit, world frame: the retreat direction of `a`.
-        volume: [m^3] of the region that both fill, or an upper bound. volume_at_least: a lower bound.
+        volume: [m^3] of the region that both fill, or an upper bound. volume_at_least: a lower bound, unless one
+            component of a body goes through itself.
         centroid: (3,) [m] of the region, world frame; the common point where they only touch.
         region: its surface, world frame; empty where they only touch, and for surfaces without an inside that
             of the hulls.

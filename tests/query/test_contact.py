@@ -131,6 +131,38 @@ def test_a_concave_body_is_left_by_its_hollow():
     assert np.array_equal(rough.direction, found.direction)
 
 
+def merged(*boxes):
+    """One surface of axis-parallel boxes (low, high); those whose third item is True are cavities."""
+    parts = []
+    for low, high, *hollow in boxes:
+        low, high = np.array(low), np.array(high)
+        box = cl.box(tuple(high - low))
+        moved = box.transformed(at(*(low + high) / 2.0))
+        parts.append(moved.flipped() if hollow else moved)
+    return cl.Polyhedron.merged(parts)
+
+
+POST, BEAM = ((-1, -1, -3), (1, 1, 3)), ((-3, -1, -1), (3, 1, 1))
+
+
+@WITH_LIBRARIES
+@pytest.mark.parametrize(
+    "boxes, volume",
+    [
+        ([POST, BEAM], 40.0),
+        ([POST, BEAM, ((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5), True)], 40.0),  # the other one fills it
+        ([POST, BEAM, ((-0.5, -0.5, 1.5), (0.5, 0.5, 2.5), True)], 39.0),
+        ([POST, POST], 24.0),
+        ([POST, ((-1, -1, -1), (1, 1, 5))], 32.0),
+        ([POST, ((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))], 24.0),
+    ],
+)
+def test_what_two_components_fill_counts_once(boxes, volume):
+    found = cl.contact(merged(*boxes), cl.box((20.0, 20.0, 20.0)), rough=True)
+    assert found.volume == pytest.approx(volume, rel=1e-12)
+    assert found.volume_at_least == pytest.approx(volume, rel=1e-12)
+
+
 @pytest.mark.parametrize("thin", [1e-13, 1e-10])
 def test_a_sheet_of_overlap_has_a_volume_of_its_area_times_its_depth(thin):
     pose = at(1.0 - thin)
