@@ -12,6 +12,7 @@ import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NoReturn
 
 from clearance.codes import code_of_error, coded
 
@@ -245,6 +246,17 @@ def unwritable(place: Path) -> Iterator[None]:
             where=str(place),
             valid="a folder that can be written, on a disk with room, is needed",
         ) from error
+
+
+def refuse_truth(answer: object, decisive: str) -> NoReturn:
+    """Refuses `bool` of an answer that says yes or no in an attribute: `assert check(…)` would always pass.
+
+    Raises:
+        BadInput: always.
+    """
+    name = type(answer).__name__
+    valid = f"{name.lower()}.{decisive} is needed"
+    raise BadInput(f"a {name} is neither true nor false", valid=valid)
 
 
 def meant_name(given: str, read: Iterable[str]) -> str:

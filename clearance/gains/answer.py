@@ -9,11 +9,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
-from clearance.errors import BadChange, UnknownRobot, nearest_name
+from clearance.errors import BadChange, UnknownRobot, nearest_name, refuse_truth
 from clearance.gains.binding_constraints import (
     bound_by,
     ends_reached,
@@ -105,6 +105,9 @@ class Gain:
     case_file: Path | None = None
     tool_moves: tuple[ToolMove, ...] = ()
     tool_path: ToolPathError | None = None
+
+    def __bool__(self) -> NoReturn:
+        refuse_truth(self, "kept")
 
     def __repr__(self) -> str:
         kept = "kept" if self.kept else "not kept"

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 import numpy as np
 
-from clearance.errors import shown
+from clearance.errors import refuse_truth, shown
 from clearance.receipt.case_data import CaseData
 from clearance.receipt.claims import judged, missing
 from clearance.receipt.proof.depths import depths_reached
@@ -70,6 +71,9 @@ class Verification:
     further: tuple[str, ...] = ()
     not_verified: str = ""
     source: str = ""
+
+    def __bool__(self) -> NoReturn:
+        refuse_truth(self, "proven")
 
     @property
     def proven(self) -> bool:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from clearance.errors import BadInput, Unavailable
+from clearance.errors import BadInput, Unavailable, refuse_truth
 from clearance.extras import is_installed, require
 from clearance.record.certificate import Certificate
 from clearance.record.moment import Moment
@@ -179,6 +179,9 @@ class Run:
     def cross_check(self) -> CrossCheck | None:
         """How a peer's answers compare, if that was asked for."""
         return self.record.cross_check
+
+    def __bool__(self) -> NoReturn:
+        refuse_truth(self, "passed")
 
     def __repr__(self) -> str:
         from clearance.report.notebook import run_text

@@ -9,7 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance import extras
-from clearance.errors import BadDimension, Unavailable
+from clearance.errors import BadDimension, BadInput, Unavailable
 from tests.report.browser import chromium, executable
 
 
@@ -48,6 +48,12 @@ def test_without_a_notebook_the_browser_opens_it(run, page, shell, monkeypatch, 
     shown = run.show()
     assert opened == [shown.path.as_uri()] and str(shown.path) in repr(shown)
     assert shown.path.read_text() == page
+
+
+def test_a_run_is_neither_true_nor_false(run):
+    """`assert cl.check(…)` would pass whatever the verdict is."""
+    with pytest.raises(BadInput, match=r"neither true nor false; run\.passed is"):
+        assert run
 
 
 def test_pandas_is_named_where_it_is_missing(run, monkeypatch):
