@@ -17,8 +17,11 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
     UnknownKey,
+    at,
     meant_name,
+    nearest_name,
 )
+from clearance.formats.text.notes import note_on_rounded
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.names import checked_name
@@ -26,8 +29,19 @@ from clearance.world.names import checked_name
 Message = dict[str, Any]
 
 
+def require_fields(given: Message, *fields: str) -> None:
+    """Refuses a field that a message does not have.
+
+    Raises:
+        UnknownKey: such a field.
+    """
+    for key in given:
+        if key not in fields:
+            raise UnknownKey(f"unknown field {key!r:.60}", valid=nearest_name(str(key), fields))
+
+
 def require_spelt(given: Message, *fields: str) -> None:
-    """Refuses a field whose name resembles one that is read.
+    """Refuses a field whose name resembles one that is read, in a message that may be of several kinds.
 
     Raises:
         UnknownKey: such a field.
@@ -36,6 +50,23 @@ def require_spelt(given: Message, *fields: str) -> None:
         meant = meant_name(str(key), fields)
         if meant:
             raise UnknownKey(f"unknown field {key!r:.60}", valid=f"did you mean {meant!r}?")
+
+
+def header_of(given: Message) -> Message:
+    """The header of a message; an empty one where there is none.
+
+    Raises:
+        UnknownKey: a field that no header has.
+    """
+    header = message(given, "header")
+    with at("header"):
+        require_fields(header, "seq", "stamp", "frame_id")
+    return header
+
+
+def frame_of(given: Message, default: str = "") -> str:
+    """The frame in which a message is given, without a leading slash."""
+    return text(header_of(given), "frame_id", default).lstrip("/")
 
 
 def message(given: object, key: str) -> Message:
@@ -84,9 +115,9 @@ def text(given: Message, key: str, default: str | None = None) -> str:
 
 
 def numbers(value: object, keys: str, where: str) -> list[float]:
-    """The numbers of a vector: a list, or a mapping in which a missing one is 0."""
-    if isinstance(value, dict) and set(value) <= set(keys):
-        value = [value.get(key, 0.0) for key in keys]
+    """The numbers of a vector: a list, or a mapping."""
+    if isinstance(value, dict) and set(value) == set(keys):
+        value = [value[key] for key in keys]
     if not isinstance(value, list) or len(value) != len(keys):
         raise BadShape(
             f"{value!r:.60} is given", where=where, valid=f"{', '.join(keys)} are needed"
@@ -104,22 +135,37 @@ def number(value: object, where: str) -> float:
 
 
 class Poses:
-    """Reads poses, and counts quaternions that are rounded, whose lengths are made 1."""
+    """Reads poses, and counts quaternions that are rounded, whose lengths are made 1, and those of zeros."""
 
     def __init__(self) -> None:
         self.n_rounded = 0
+        self.n_unset = 0
+
+    def notes(self) -> list[str]:
+        """What was made of quaternions that are no rotation as they are written."""
+        were = "quaternion of zeros is" if self.n_unset == 1 else "quaternions of zeros are"
+        unset = [f"{self.n_unset} {were} taken for no rotation, as in MoveIt"]
+        return note_on_rounded(self.n_rounded) + unset * (self.n_unset > 0)
 
     def read(
         self, given: Message, place: str = "position", turn: str = "orientation"
     ) -> np.ndarray:
         """The (4, 4) pose [m] of a Pose or Transform; a quaternion of zeros is no rotation, as in MoveIt.
 
+        Source: MoveIt, planning_scene.cpp (poseMsgToEigen).
+
         Raises:
+            UnknownKey, MissingKey: another field, or a rotation without a place.
             BadPose: a quaternion whose length is not 1 within `tolerance.ROUNDED_ROTATION`.
         """
-        require_spelt(given, place, turn)
-        xyz = numbers(given[place], "xyz", place) if given.get(place) is not None else [0.0] * 3
-        turned = numbers(given[turn], "xyzw", turn) if given.get(turn) is not None else [0.0] * 4
+        require_fields(given, place, turn)
+        if given and given.get(place) is None:
+            raise MissingKey(f"{place!r} is missing", valid="x, y, z")
+        xyz = numbers(given[place], "xyz", place) if given else [0.0] * 3
+        turned = [0.0] * 4
+        if given.get(turn) is not None:
+            turned = numbers(_whole(given[turn]), "xyzw", turn)
+            self.n_unset += not any(turned)
         if not any(turned):
             return pose_from_quaternion(xyz, [0.0, 0.0, 0.0, 1.0])
         unit, n_rounded = of_unit_length(np.array([turned]))
@@ -128,6 +174,12 @@ class Poses:
             return pose_from_quaternion(xyz, unit[0])
         except BadPose as error:
             raise BadPose(error.problem, where=turn, valid=error.valid) from None
+
+
+def _whole(quaternion: object) -> object:
+    """A quaternion with 0 for what is not given of it, as `{w: 1}`: its length shows what was forgotten."""
+    fits = isinstance(quaternion, dict) and {*quaternion} <= {*"xyzw"}
+    return dict.fromkeys("xyzw", 0.0) | quaternion if fits else quaternion
 
 
 def _float(value: float) -> float:

@@ -23,9 +23,7 @@ from clearance.errors import (
     BadTime,
     MissingKey,
     NotFinite,
-    UnknownKey,
     at,
-    nearest_name,
 )
 from clearance.formats.message.documents import (
     MOST_JSON,
@@ -35,6 +33,7 @@ from clearance.formats.message.documents import (
     yaml_documents,
 )
 from clearance.formats.message.times import NANO, nanoseconds_in
+from clearance.formats.message.values import header_of, require_fields, require_spelt
 from clearance.formats.motion.joint_messages import READ, JointMessage, chosen, messages_in
 from clearance.formats.motion.trajectory_file import ReadTrajectory, TrajectoryRequest
 from clearance.world.names import checked_name
@@ -148,9 +147,7 @@ def _point(given: Any, n_joints: int) -> _Point:
         raise BadSyntax(
             f"{described(given)} is given", valid=_WHOLE if given == "..." else "a point is needed"
         )
-    for key in given:
-        if key not in _KEYS:
-            raise UnknownKey(f"unknown key {key!r:.60}", valid=nearest_name(key, _KEYS))
+    require_fields(given, *_KEYS)
     values = {key: _numbers(given[key], key, n_joints) for key in _VALUES if given.get(key)}
     if "positions" not in values and n_joints:
         raise MissingKey("'positions' is missing or empty", valid="a position of each joint")
@@ -300,6 +297,7 @@ def start_of(message: JointMessage) -> StartState | None:
             joints = holder[key].get("joint_state") if isinstance(holder.get(key), Fields) else None
             if isinstance(joints, Fields) and joints.get("name"):
                 with at(f"{path}.joint_state"):
+                    require_fields(joints, "header", "name", "position", "velocity", "effort")
                     return StartState(
                         path, _by_name(joints, "position"), _by_name(joints, "velocity")
                     )
@@ -372,6 +370,9 @@ def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str
 
 
 def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:
+    with at(place):
+        require_spelt(fields, *read, *_STARTS, "header")
+        header_of(fields)
     for key, value in fields.items():
         path = f"{place}.{key}".lstrip(".")
         if key == "header" and isinstance(value, Fields):

@@ -20,7 +20,15 @@ from clearance.formats.message.documents import (
     yaml_documents,
 )
 from clearance.formats.message.times import NANO, nanoseconds_in
-from clearance.formats.message.values import items, message, numbers, text
+from clearance.formats.message.values import (
+    frame_of,
+    header_of,
+    items,
+    message,
+    numbers,
+    require_spelt,
+    text,
+)
 from clearance.formats.motion.pose_file import (
     PoseRequest,
     PoseSamples,
@@ -93,7 +101,8 @@ def _poses_in(given: Any) -> Iterator[_StampedPose]:
 def _pose(given: Any) -> _StampedPose:
     if not isinstance(given, Fields) or not {"header"} < set(given):
         raise MissingKey(f"{described(given)} has no header with a time", valid=_NEEDED)
-    header = message(given, "header")
+    require_spelt(given, "header", "pose", "transform", "child_frame_id")
+    header = header_of(given)
     time = nanoseconds_in(header.get("stamp"))
     if time is None:
         raise BadTime(
@@ -111,7 +120,7 @@ def _pose(given: Any) -> _StampedPose:
             raise MissingKey(f"there is no {key!r}", valid=_NEEDED)
     return _StampedPose(
         time,
-        text(header, "frame_id", "").lstrip("/"),
+        frame_of(given),
         text(given, "child_frame_id", "").lstrip("/"),
         numbers(pose[keys[0]], "xyz", keys[0]),
         numbers(pose[keys[1]], "xyzw", keys[1]),

@@ -8,7 +8,7 @@ import pytest
 
 from clearance import check, load_case
 from clearance.cli import run
-from clearance.errors import BadInput, BadShape, BadTime, MissingKey, UnknownJoint
+from clearance.errors import BadInput, BadTime, MissingKey, UnknownJoint
 from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
 from clearance.world.cubic import positions_along
 from clearance.world.plausibility import notices_of
@@ -204,11 +204,21 @@ def test_a_later_segment_does_not_begin_at_the_start():
         ({"name": ["a"], "position": []}, "trajectory_start.joint_state: position is"),
         ({"name": ["a"], "position": ["x"]}, "a finite number for each name"),
         ({"name": ["a"], "position": [0.0], "velocity": [1, 2]}, "velocity is"),
+        (
+            {"name": ["a"], "position": [0.0], "velocty": [1]},
+            "unknown field 'velocty'; did you mean 'velocity'",
+        ),
     ],
 )
 def test_a_start_that_is_no_state_is_refused(start, says):
-    with pytest.raises(BadShape, match=says):
+    with pytest.raises(BadInput, match=says):
         read(displayed(plan(point(1.0, 0.1), names=("a",)), {"joint_state": start}))
+
+
+def test_a_start_under_a_name_that_is_misspelt_is_refused():
+    message = {"trajectory_strat": state({"shoulder": 0.0}), "trajectory": plan(point(1.0, 0.1))}
+    with pytest.raises(BadInput, match="'trajectory_strat'; did you mean 'trajectory_start'"):
+        read(message)
 
 
 UNREAD = [

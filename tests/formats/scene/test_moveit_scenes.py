@@ -56,6 +56,7 @@ def test_what_may_touch_and_padding_go_into_the_case(tmp_path):
     told = "\n".join(case.notes)
     for said in (
         "the robot's state is not taken",
+        "1 quaternion of zeros is taken for no rotation, as in MoveIt",
         "1 pairs of the scene's file may touch",
         "1 allowed pairs of the scene's file are left out: of two links",
         "bodies that are not there are left out: ghost",
@@ -199,7 +200,7 @@ def test_a_name_that_has_two_rows_in_a_matrix_is_refused(tmp_path):
 
 def test_meshes_are_taken_from_the_message_and_from_files(tmp_path):
     (tmp_path / "cube.stl").write_bytes(cube_stl())
-    corners = "[[0, 0, 0], {x: 1.5}, {y: 1}, {z: 1}]"
+    corners = "[[0, 0, 0], {x: 1.5, y: 0, z: 0}, [0, 1, 0], [0, 0, 1]]"
     faces = "[[0, 2, 1], {vertex_indices: [0, 1, 3]}, [0, 3, 2], [1, 2, 3]]"
     document = f"""world:
   collision_objects:
@@ -249,13 +250,18 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
         (OBJECT % "primitives: [{type: 4, dimensions: [1, 1]}]", "a cone is not read"),
         (OBJECT % "primitives: [{type: 1, dimensions: [1]}]", "1 dimensions of a box; 3"),
         (OBJECT % f"{SPHERE}, primitive_poses: [{{}}, {{}}]", "2 primitive_poses of 1 primitives"),
-        (OBJECT % f"{SPHERE}, pose: {{orientation: [1, 1, 0, 0]}}", "orientation: the quaternion"),
+        (OBJECT % f"{SPHERE}, pose: {{position: [0, 0, 0], orientation: [1, 1, 0, 0]}}", "orientation: the q"),
         (
             OBJECT % "meshes: [{vertices: [[0, 0, 0]], triangles: [[0, 0, 1]]}]",
             "triangle [0, 0, 1] of 1 vertices",
         ),
         (OBJECT % f"{SPHERE}, primitve_poses: [{{}}]", "'primitve_poses'; did you mean 'primitive_poses'?"),
         (OBJECT % f"{SPHERE}, pose: {{postion: [1, 0, 0]}}", "unknown field 'postion'; did you mean 'position'?"),
+        (OBJECT % f"{SPHERE}, pose: {{position: {{x: 1}}}}", "position: {'x': 1} is given; x, y, z are needed"),
+        (OBJECT % f"{SPHERE}, pose: {{orientation: {{w: 1}}}}", "'a': 'position' is missing; x, y, z"),
+        (OBJECT % f"{SPHERE}, frame: base", "'a': unknown field 'frame'; valid: "),
+        (OBJECT.replace("frame_id", "frame_di") % SPHERE, "header: unknown field 'frame_di'; did"),
+        (OBJECT % SPHERE + "link_padding: [{link_name: l, gap: 1}]", "link_padding[0]: unknown field 'gap'"),
         ("world: {collision_object: []}", "world: unknown field 'collision_object'"),
         (OBJECT % "meshes: [{resource: none.stl}]", "there is no mesh 'none.stl'"),
         (OBJECT % SPHERE + "fixed_frame_transforms: [{child_frame_id: map}]", "frames 'base' and 'map' are used"),

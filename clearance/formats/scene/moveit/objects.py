@@ -23,7 +23,7 @@ from clearance.formats.message.values import (
     messages,
     number,
     numbers,
-    require_spelt,
+    require_fields,
     text,
 )
 from clearance.formats.scene.request import SceneRequest, pose_row
@@ -48,7 +48,7 @@ def object_rows(given: Message, frame: np.ndarray, meshes: SceneMeshes, poses: P
     """
     name = text(given, "id")
     with at(repr(name)):
-        require_spelt(given, *_FIELDS)
+        require_fields(given, *_FIELDS)
         if given.get("operation") not in _ADD:
             raise BadScene(
                 f"{given['operation']!r:.40} is given", where="operation", valid="ADD (0)"
@@ -86,7 +86,7 @@ def _placed(
         raise BadShape(f"{len(placed)} {poses_key} of {n_shapes} {key}", valid="one for each")
     for i, (where, shape) in enumerate(messages(given, key)):
         with at(where):
-            require_spelt(shape, *_FIELDS_OF_SHAPE)
+            require_fields(shape, *_FIELDS_OF_SHAPE)
             row = _primitive(shape) if key == "primitives" else _mesh(shape, meshes)
         yield row, placed[i] if placed else np.eye(4)
 

@@ -17,16 +17,16 @@ from clearance.errors import BadDimension, BadScene, BadShape, at
 from clearance.formats.message.values import (
     Message,
     Poses,
+    frame_of,
     items,
     message,
     messages,
     number,
-    require_spelt,
+    require_fields,
     text,
 )
 from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
 from clearance.formats.scene.request import AttachedPart, SceneContent, SceneRequest, pose_row
-from clearance.formats.text.notes import note_on_rounded
 from clearance.world.names import require_own_names
 from clearance.world.rules import pattern_of
 
@@ -47,6 +47,9 @@ _FIELDS = (
 )  # fmt: skip
 
 
+_STATE = ("joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff")
+
+
 def is_planning_scene(raw: object) -> bool:
     """True for plain data that has what no scene of ours has."""
     return isinstance(raw, dict) and not _KEYS.isdisjoint(raw) and "obstacles" not in raw
@@ -59,24 +62,22 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         BadInput: what is not read (scale of links, cone, plane), or is no message; with its field.
     """
     with at(asked.shown):
-        require_spelt(raw, *_FIELDS)
+        require_fields(raw, *_FIELDS)
         meshes, poses = SceneMeshes(asked), Poses()
         frames = _Frames(raw, poses)
         world = message(raw, "world")
         with at("world"):
-            require_spelt(world, "collision_objects", "octomap")
+            require_fields(world, "collision_objects", "octomap")
             obstacles = list(_world(world, frames, meshes, poses))
             obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
         state = message(raw, "robot_state")
         with at("robot_state"):
-            require_spelt(
-                state, "joint_state", "multi_dof_joint_state", "attached_collision_objects"
-            )
+            require_fields(state, *_STATE)
             attached, carried = _attached(state, meshes, poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
         padding = _padding(raw)
     rows = [*obstacles, *attached]
-    notes = [*frames.notes(), *_lost(raw, state), *note_on_rounded(poses.n_rounded)]
+    notes = [*frames.notes(), *_lost(raw, state), *poses.notes()]
     if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
         notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
@@ -98,9 +99,11 @@ class _Frames:
         self._plain: set[str] = set()
         for where, row in messages(raw, "fixed_frame_transforms"):
             with at(where):
+                require_fields(row, "header", "child_frame_id", "transform")
                 self._plain.add(text(row, "child_frame_id", "").lstrip("/"))
-                name = text(message(row, "header"), "frame_id", "").lstrip("/")
-                self._known[name] = poses.read(message(row, "transform"), "translation", "rotation")
+                self._known[frame_of(row)] = poses.read(
+                    message(row, "transform"), "translation", "rotation"
+                )
 
     def of(self, given: Message) -> np.ndarray:
         """(4, 4) [m] the frame of an object.
@@ -108,7 +111,7 @@ class _Frames:
         Raises:
             BadInput: a frame that nothing ties to those of other objects.
         """
-        name = text(message(given, "header"), "frame_id", "").lstrip("/")
+        name = frame_of(given)
         if name in self._known:
             return self._known[name]
         self._plain.add(name)
@@ -149,7 +152,7 @@ def _attached(
     carried: list[AttachedPart] = []
     for where, given in messages(state, "attached_collision_objects"):
         with at(where):
-            require_spelt(given, "link_name", "object", "touch_links", "detach_posture", "weight")
+            require_fields(given, "link_name", "object", "touch_links", "detach_posture", "weight")
             link = text(given, "link_name")
             touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
             for row in _attached_rows(message(given, "object"), link, meshes, poses):
@@ -167,7 +170,7 @@ def _touch_links(given: Message) -> list[str]:
 
 def _attached_rows(attached: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[Row]:
     """The obstacles of what a link holds, in the link's frame."""
-    frame = text(message(attached, "header"), "frame_id", link).lstrip("/")
+    frame = frame_of(attached, link)
     if frame != link:
         raise BadScene(f"it is given in {frame!r}, not in its link", valid=f"frame_id: {link}")
     return object_rows(attached, np.eye(4), meshes, poses)
@@ -206,12 +209,14 @@ def _padding(raw: Message) -> dict[str, float]:
     """
     for where, row in messages(raw, "link_scale"):
         with at(where):
+            require_fields(row, "link_name", "scale")
             if number(row.get("scale", 1.0), "scale") != 1.0:
                 problem = f"link {text(row, 'link_name')!r} is scaled by {row['scale']}"
                 raise BadDimension(problem, valid="1, and padding")
     found = {}
     for where, row in messages(raw, "link_padding"):
         with at(where):
+            require_fields(row, "link_name", "padding")
             padding = number(row.get("padding", 0.0), "padding")
             if padding < 0.0:
                 raise BadDimension(f"padding is {padding} m", valid="0 or more")
@@ -226,6 +231,8 @@ def _octomap_data(world: Message) -> list[object]:
 def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
     """The obstacle of a map with occupied cells, called `OCTOMAP` as in MoveIt."""
     tree = message(given, "octomap")
+    require_fields(given, "header", "origin", "octomap")
+    require_fields(tree, "header", "binary", "id", "resolution", "data")
     if not items(tree, "data"):
         return
     with at("octomap"):
@@ -256,6 +263,8 @@ def _attached_objects(state: Message) -> Iterator[tuple[str, Message]]:
         yield where, message(given, "object")
 
 
+_MATRIX = ("entry_names", "entry_values", "default_entry_names", "default_entry_values")
+
 MOST_NAMES = 2000
 """Of which there are two million pairs."""
 
@@ -275,6 +284,7 @@ def allowed_pairs(matrix: Message) -> list[tuple[str, str]]:
         DuplicateName: two rows of one name.
     """
     with at("allowed_collision_matrix"):
+        require_fields(matrix, *_MATRIX)
         names = _names(matrix, "entry_names")
         if len(names) > MOST_NAMES:
             raise BadScene(f"{len(names)} entry_names are given", valid=f"{MOST_NAMES} or fewer")
@@ -313,7 +323,7 @@ def _names(matrix: Message, key: str) -> list[str]:
 
 
 def _row(given: object, n: int) -> list[bool]:
-    row = given.get("enabled") if isinstance(given, dict) else given
+    row = given.get("enabled") if isinstance(given, dict) and len(given) == 1 else given
     if not isinstance(row, list) or len(row) != n:
         raise BadShape(
             f"{given!r:.60} is given", where="entry_values", valid=f"{n} of true or false"
