@@ -69,6 +69,7 @@ def program_motion(
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
         left_out=read.left_out,
+        contradicted=tuple(f"{shown}: {one}" for one in read.contradicted),
         odd=tuple(f"{shown}: {one}" for one in odd),
     )
     moved = (f"it moves robot {name!r} too" for name in driven)

@@ -24,10 +24,10 @@ class Severity(StrEnum):
 
 KINDS = ("units", "limits", "axis", "inside", "frame", "package", "gaps", "clocks", "wrap", "start")
 """Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
-limits, meshes turned by their file's axis tag, solids of which inside and outside cannot be decided, scenes in the
-frame of a link that moves or stands elsewhere, files read in place of those of a missing package, holes in
-recordings (then bridged straight), tables that never move at the same time, turns that could go either way (then
-as written), and goals without a start (then single poses)."""
+limits, meshes turned by their file's axis tag and programs for other axes, solids of which inside and outside
+cannot be decided, scenes in the frame of a link that moves or stands elsewhere, files read in place of those of
+a missing package, holes in recordings (then bridged straight), tables that never move at the same time, turns
+that could go either way (then as written), and goals without a start (then single poses)."""
 
 WRAP, START = "wrap", "start"
 

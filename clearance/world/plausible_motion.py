@@ -83,12 +83,15 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
 
 
 def _assumed(placed: PlacedRobot) -> list[Notice]:
-    """A warning on each thing that was assumed of a controller."""
-    about = placed.robot.name
-    return [
-        Notice(Severity.WARNING, "program", f"assumed: {one}", about)
-        for one in placed.given_trajectory.assumed
-    ]
+    """A warning on each thing that was assumed of a controller; suspect are points that say the contrary."""
+    about, asked = placed.robot.name, placed.given_trajectory
+    found = [Notice(Severity.WARNING, "program", f"assumed: {one}", about) for one in asked.assumed]
+    if asked.contradicted:
+        first, *others = asked.contradicted
+        more = f" (and {len(others)} more)" if others else ""
+        text = f"CHECK AXES: {first}{more}; give axes, or axes_as, as the controller has them"
+        found.append(Notice(Severity.SUSPECT, "axis", text, about))
+    return found
 
 
 def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:

@@ -94,7 +94,8 @@ def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
 def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
     base = {"on": "base", "rpy": [0, 0, 360]}
     path = controller_case(tmp_path, "a.script", script(), axes=BEND, base=base)
-    (odd,) = [one.text for one in notices_of(cl.load_case(path)) if one.severity == "suspect"]
+    odd, axes = [one.text for one in notices_of(cl.load_case(path)) if one.severity == "suspect"]
+    assert axes.startswith("CHECK AXES: a.script: line 4: the axes beside P1 have the tool ")
     assert odd == f"CHECK UNITS: a.script: base has an angle of 360 rad in its rpy; {IN_DEGREES}"
     bent = {"joint_2": {"offset": -90, "sign": -1}}
     path = controller_case(tmp_path, "b.script", script(), axes=bent)

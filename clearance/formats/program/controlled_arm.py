@@ -107,6 +107,7 @@ class ControlledArm:
             if not said and not self.asked.axes:
                 text = f"joints {', '.join(self.axes.numbers)} are taken to turn as the axes do"
                 yield f"{text}; axes_as: plain in the program says so"
+            yield from self._doubts_on_plain()
             return
         if self.misfit and said:
             valid = "axes: {joint: {sign: …, offset: …}} beside it, or another preset"
@@ -121,13 +122,27 @@ class ControlledArm:
         if convention.doubt and not said and "plus" not in rules[3].model_fields_set:
             yield convention.doubt
 
+    def _doubts_on_plain(self) -> Iterator[str]:
+        """A line where joints are taken for the axes, and the maker's axes turn or count otherwise."""
+        usual = CONVENTIONS.get(self.maker)
+        if usual is None or self.asked.axes_as != "plain" or self.asked.axes:
+            return
+        otherwise = self._misfit_of(usual)
+        if not otherwise and usual.third:
+            otherwise = f"axis 3 of {usual.robots} counts from the horizontal"
+        if otherwise:
+            yield f"joints are taken for the axes (axes_as: plain), but {otherwise}"
+
     @cached_property
     def misfit(self) -> str | None:
         """Why the joints are not those of the controller's axes, empty if they are; None if nobody knows these."""
-        if self.convention is None or len(self.axes.numbers) != 6:
+        return self._misfit_of(self.convention)
+
+    def _misfit_of(self, convention: Convention | None) -> str | None:
+        if convention is None or len(self.axes.numbers) != 6:
             return None
         base = np.eye(4) if self.root_from_base is None else self.root_from_base
-        return self.convention.misfit(self.chain, self.axes, base)
+        return convention.misfit(self.chain, self.axes, base)
 
     @cached_property
     def wrist(self) -> Wrist | None:

@@ -36,6 +36,9 @@ from clearance.world.robot import Robot
 FARTHEST_OFF, MOST_TURNED = 0.01, 0.035
 """[m] and [rad] Where a file gives a pose and its axes: robots differ from their nominal sizes by less."""
 
+FAR_OFF, FAR_TURNED = 0.1, 0.35
+"""[m] and [rad] A point of its own axes is not taught so far from them, nor is a frame that was taught again."""
+
 STANDS = 0.01
 """[degrees or mm] An external axis that moves by less stands: teaching leaves so much."""
 
@@ -44,6 +47,9 @@ FARTHEST = 1e3
 
 NO_WAY = 1e-9
 """[m] and sine of a turn: a move that is shorter is none."""
+
+ONLY_TURNS = "the tool only turns before or after"
+"""Why a corner zone is none where a controller may turn the tool on the way all the same."""
 
 UNTIMED = "the speed of joint moves that no file gives for joints"
 """What the times of a program lack, beside what its reader names."""
@@ -59,7 +65,8 @@ class ConvertedProgram:
     Attributes:
         places: where each of its moves stands. names: of the moves, in reports. notes: a line each on what was
             assumed.
-        assumed: what a verdict rests on, where nothing in the files confirms it, one line each.
+        assumed: what a verdict rests on, where nothing in the files confirms it, one line each. contradicted: the
+            points whose own axes are far from them, where no point confirms axes, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
         left_out: what its times lack: instructions that the case leaves out, and what no file says.
         own: the program, if it is written in our form.
@@ -72,6 +79,7 @@ class ConvertedProgram:
     starts_anywhere: bool = False
     assumed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    contradicted: tuple[str, ...] = ()
     own: schema.Program | None = None
 
 
@@ -114,12 +122,15 @@ def converted(
     checked = validated(schema.Program, {**program, "moves": [*moves]}, asked.file)
     rests_on = (made.arm.assumed,) if made.arm.assumed and has_poses else ()
     unproven = (*rests_on, *on_axes, *made.seeds)
+    contradicted = tuple(made.far_off)
     notes = (*read.notes, *dict.fromkeys((*made.arm.notes, *made.notes)), *made.assumed())
     if made.compared[0] >= 0.0:  # the file itself says that it is so
-        notes, unproven = (*notes, *unproven), ()
+        notes, unproven, contradicted = (*notes, *unproven, *contradicted), (), ()
     rests_on = (*unproven, *made.doubts())
     left_out = (*read.left_out, *([UNTIMED] if made.has_untimed_moves else []))
-    return ConvertedProgram(checked, places, names, notes, starts_anywhere, rests_on, left_out)
+    return ConvertedProgram(
+        *(checked, places, names, notes, starts_anywhere, rests_on, left_out, contradicted)
+    )
 
 
 @dataclass(eq=False)
@@ -129,8 +140,8 @@ class _Conversion:
     Attributes:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
         others: where external axes are that no joint follows. begins_at_first: the tool begins where the first
-            move ends. seeds: a line each on axes that are not those of the pose beside them. waits: a line each on
-            corners before waits.
+            move ends. seeds: a line each on axes that are not those of the pose beside them; far_off: on those of
+            one pose alone that are far from it. cut: a line each on corners that controllers may cut.
     """
 
     read: ControllerProgram
@@ -140,7 +151,8 @@ class _Conversion:
     others: dict[str, float] = field(default_factory=dict)
     begins_at_first: bool = False
     seeds: list[str] = field(default_factory=list)
-    waits: list[str] = field(default_factory=list)
+    far_off: list[str] = field(default_factory=list)
+    cut: list[str] = field(default_factory=list)
     _before: ControllerMove | None = None
 
     @cached_property
@@ -188,11 +200,11 @@ class _Conversion:
         for one, other in zip(self.read.moves, after, strict=True):
             if isinstance(one, ControllerMove):
                 why = self._why_it_stops(before, one, other) if one.zone else ""
-                if why and isinstance(other, ControllerWait) and other.reads_on:
-                    text = "a wait follows a corner zone: the tool is taken to stop"
-                    self.waits.append(
-                        f"{place_of(one)}: {text}, and the controller may cut the corner"
-                    )
+                waits = isinstance(other, ControllerWait) and other.reads_on
+                if why and (waits or why == ONLY_TURNS):
+                    text = "a wait follows a corner zone" if waits else f"a corner zone, and {why}"
+                    text = f"{place_of(one)}: {text}: the tool is taken to stop"
+                    self.cut.append(f"{text}, and the controller may cut the corner")
                 elif why:
                     self.notes.append(f"{place_of(one)}: the tool stops, since {why}")
                 before = replace(one, zone=0.0) if why else one
@@ -217,17 +229,20 @@ class _Conversion:
             with at(place_of(one)):
                 fault = f"it ends in a corner zone, and {place_of(other)} has another tool"
                 raise BadProgram(fault, valid="write it without a zone, or use the same tool")
-        if self._stays(before, one) or self._stays(one, other):
+        moved = self._moved(before, one), self._moved(one, other)
+        if "" in moved:
             return "it does not move before or after"
-        return ""
+        return ONLY_TURNS if "turns" in moved else ""
 
-    def _stays(self, before: ControllerMove | None, one: ControllerMove) -> bool:
-        """True where a move ends where the one before it does: a line with its point, another with the tool."""
+    def _moved(self, before: ControllerMove | None, one: ControllerMove) -> str:
+        """What a move does to the tool: nothing, or it "turns" on a line without its point, or it "moves"."""
         ends = [self.arm.base_from_flange(end, one.to.unit) for end in (before, one)]
         if ends[0] is None or ends[1] is None:
-            return False
+            return "moves"
         off = np.abs((ends[1] - ends[0]) @ one.tool)
-        return bool((off[:3, 3] if one.kind == "lin" else off).max() < NO_WAY)
+        if off.max() < NO_WAY:
+            return ""
+        return "turns" if one.kind == "lin" and off[:3, 3].max() < NO_WAY else "moves"
 
     def _move(self, one: ControllerMove | ControllerWait) -> schema.Move:
         """A move, as `schema.program.Move` has it.
@@ -284,10 +299,12 @@ class _Conversion:
             float(np.arccos(np.clip(0.5 * np.trace(off[:3, :3]) - 0.5, -1.0, 1.0))),
         )
         if way > FARTHEST_OFF or turn > MOST_TURNED:
-            self.seeds.append(
-                f"{place}: the axes beside {to.name or 'its pose'} have the tool {way * 1e3:.3g} mm and "
-                f"{np.degrees(turn):.3g} degrees from it: they are taken for a seed, and confirm no axes or base"
-            )
+            text = f"{place}: the axes beside {to.name or 'its pose'} have the tool {way * 1e3:.4g} mm and "
+            text += f"{np.degrees(turn):.3g} degrees from it"
+            if (way > FAR_OFF or turn > FAR_TURNED) and self._ends_by_axes[to.near] == 1:
+                self.far_off.append(f"{text}, and no point confirms axes, base, link and tools")
+            else:
+                self.seeds.append(f"{text}: they are taken for a seed, and confirm no axes or base")
             return
         self.compared = max(self.compared, (way, turn))
 
@@ -339,13 +356,20 @@ class _Conversion:
     def doubts(self) -> Iterator[str]:
         """A line each on what controllers may do otherwise, whatever confirms axes and base."""
         yield from self.arm.doubts_on_configurations(self._poses)
-        yield from dict.fromkeys(self.waits)
+        yield from dict.fromkeys(self.cut)
         yield from self.read.doubts
 
     @cached_property
     def _poses(self) -> list[PoseTarget]:
         """The ends of moves that are poses."""
         return [one.to for one in self._moves if isinstance(one.to, PoseTarget)]
+
+    @cached_property
+    def _ends_by_axes(self) -> Counter[tuple[float, ...] | None]:
+        """How many targets there are of axes, or poses with such beside them: of a seed there are several."""
+        poses = {(one.near, one.pose.tobytes()) for one in self._poses if one.near is not None}
+        axes = {one.to.axes for one in self._moves if isinstance(one.to, AxisTarget)}
+        return Counter([*(near for near, _ in poses), *axes])
 
     @cached_property
     def names_axes(self) -> bool:

@@ -102,7 +102,13 @@ def test_joints_that_turn_otherwise_are_refused_until_the_case_says_how():
         "joint_6 turns against axis 6, joint_2 is not where axis 2 is at 0; axes: {joint: {sign: -1}} says how "
         "joints follow, or axes_as: plain that they are the axes"
     )
-    assert made(robot, "kuka", axes_as="plain").assumed == ()
+    (told,) = made(robot, "kuka", axes_as="plain").assumed
+    assert told.startswith(
+        "joints are taken for the axes (axes_as: plain), but with the axes of KUKA robots at 0, joi"
+    )
+    (told,) = made(arm(*ARMS["fanuc"]), "fanuc", axes_as="plain").assumed
+    assert told.endswith("but axis 3 of FANUC robots counts from the horizontal")
+    assert made(arm(*ARMS["abb"]), "abb", axes_as="plain").assumed == ()
     with pytest.raises(
         cl.ClearanceError, match="axes_as: with the axes of KUKA robots at 0, joint_1"
     ):
@@ -143,7 +149,7 @@ def test_an_axis_that_counts_from_the_horizontal_is_counted_once(asked, third):
     found = made(arm(*ARMS["fanuc"]), "fanuc", (0, 20, 10, 0, 0, 0), **asked)
     assert degrees_of(found)[2] == pytest.approx(third)
     is_said = "axes_as" in asked or "plus" in asked.get("axes", {}).get("joint_3", {})
-    assert is_said != any("from the horizontal" in one for one in found.assumed)
+    assert is_said != any("J3 is taken to count" in one for one in found.assumed)
 
 
 def test_parallel_bars_keep_the_forearm_as_it_is():

@@ -81,6 +81,10 @@ def test_controllers_stop_where_no_way_follows():
     found = made(HOME, one, two, ControllerWait(8, 0.5), one, two, replace(two, line=5), one)
     zones = [move.lin.zone for move in found.program.moves if move.lin]
     assert zones == [0.01, 0.0, 0.01, 0.0, 0.0, 0.0]
+    turned = replace(two, to=PoseTarget(pose_from_rpy([0.6, 0.0, 0.3], [0.0, 0.0, 0.2])), line=6)
+    for again in ([one, two, turned, one], [one, replace(two, zone=0.0), turned, one]):
+        (told,) = [line for line in made(HOME, *again).assumed if "only turns" in line][:1]
+        assert "the tool is taken to stop, and the controller may cut the corner" in told
     stops = [note for note in found.notes if "the tool stops" in note]
     assert [note.partition(":")[0] for note in stops] == ["line 4", "line 4", "line 5", "line 3"]
 
@@ -93,6 +97,26 @@ def test_a_corner_before_a_wait_that_begins_on_the_way_stands_in_the_headline():
         told = "line 3: a wait follows a corner zone: the tool is taken to stop"
         assert [one.split(",")[0] for one in found.assumed if "wait" in one] == [told] * reads_on
         assert any("no move follows" in note for note in found.notes) != reads_on
+
+
+def test_points_whose_own_axes_are_elsewhere_contradict_the_axes_unless_one_confirms_them():
+    """Axes beside several poses, or that are a target themselves, are a seed and contradict nothing."""
+    one, link = arm("heron6"), {"base": {"on": "base"}, "axes_as": "plain"}
+    near = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    there = one.poses(np.array([near]))[0] @ np.linalg.inv(one.link_from_tool)
+    off = there.copy()
+    off[:3, 3] += [0.0, 0.0, 0.11]
+    far = replace(HOME, to=PoseTarget(off, near=near, name="P1"))
+    start = dict.fromkeys((f"joint_{i}" for i in range(1, 7)), 0.0)
+    (told,) = made(far, start=start, **link).contradicted
+    assert told == (
+        "line 3: the axes beside P1 have the tool 110 mm and 0 degrees from it, and no point confirms axes, base, "
+        "link and tools"
+    )
+    true = replace(HOME, to=PoseTarget(there, near=near))
+    home = replace(HOME, to=AxisTarget(near))
+    for other in (true, home, replace(far, to=PoseTarget(there @ at(0.2, 0, 0), near=near))):
+        assert not made(far, other, start=start, **link).contradicted
 
 
 def test_a_link_called_base_is_the_controllers():
