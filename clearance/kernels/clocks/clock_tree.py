@@ -131,7 +131,8 @@ def _fill_leaf(surface, world, bodies, leaf, middle, tree):
     for column in range(len(bodies)):
         body = bodies[column]
         row = leaf * len(bodies) + column
-        copy_pose(middle.poses[world.frames[body]], tree.poses[row])
+        frame = world.frames[body]
+        copy_pose(middle.poses[frame] if frame >= 0 else world.standing[body], tree.poses[row])
         root = surface.roots[world.solids[body]]
         place_box(surface, root, row, rigid(tree.poses[row]), tree.boxes)
 
@@ -163,8 +164,8 @@ def fill_steps_tree(
 
     Args:
         world: with links of its own, since ball joints are overwritten.
-        path: a `JointPath` of all steps, and one more, so that the last has an arc. bodies: (k,) of the clock,
-            each carried by a link.
+        path: a `JointPath` of all steps, and one more, so that the last has an arc. bodies: (k,) of the clock;
+            a part that is not carried stands still.
     """
     n_leaves = len(tree.poses) // len(bodies)
     middle = new_middle(len(world.links.parents))

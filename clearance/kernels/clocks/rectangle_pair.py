@@ -26,6 +26,7 @@ from clearance.kernels.motion.interval_middle import (
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.twist import CertificateGoal, prove_while_moving
+from clearance.kernels.motion.world import pose_of
 from clearance.kernels.search.carried import Carried, no_front
 from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.scratch import Scratch
@@ -99,7 +100,7 @@ def _side_of(surface, clocks, tree, body, node, whole, part):
     )  # the other side may have overwritten them
     motion = loosened_motion_bound_in(surface, world, balls, body, part)
     box = box_of(surface, surface.roots[world.solids[body]])
-    return rigid(part.poses[world.frames[body]]), motion, GROWTH * motion_bound_of_box(box, motion)
+    return pose_of(world, body, part.poses), motion, GROWTH * motion_bound_of_box(box, motion)
 
 
 @inline

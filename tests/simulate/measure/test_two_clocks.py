@@ -14,6 +14,7 @@ from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.timing import Window
 from tests.cells import cell, pose_at
+from tests.gains.gantries import along_x, gantry, standing
 
 CLOCK = {
     "left": 0,
@@ -35,6 +36,12 @@ def loose(seed: int, slack: float) -> cl.Case:
         Carry("part", "left/boom", Window(4.0)),
     )
     return replace(case, carries=carries, clock=Clock(slack))
+
+
+def pose_of(x: float) -> np.ndarray:
+    pose = np.eye(4)
+    pose[0, 3] = x
+    return pose
 
 
 def clock_of(name: str) -> int | None:
@@ -103,6 +110,20 @@ def test_more_slack_is_no_farther():
     runs = [cl.check(loose(4, slack), certify=False) for slack in (0.0, 0.3, 2.0, np.inf)]
     least = [run.record.worst.clearance for run in runs]
     assert all(b <= a + 1e-12 for a, b in zip(least, least[1:], strict=False))
+
+
+@pytest.mark.parametrize("slack", [0.0, 0.2, np.inf])
+def test_a_part_is_met_where_it_lies_before_it_is_picked_up(slack):
+    """A block passes it at 50 mm, half a metre from its own link."""
+    one, two = gantry("one"), gantry("two")
+    off = cl.Body("tool", cl.box((0.1, 0.1, 0.1)).transformed(pose_of(0.5)))
+    passing = along_x(replace(two, bodies=(off,)), start=-1.5, end=0.5, y=0.15)
+    robots = along_x(one, start=3.0, end=3.5), passing
+    part = standing("part", cl.box((0.1, 0.1, 0.1)), (0.3, 0.0, 0.0))
+    carries = (Carry("part", "one/tool", Window(0.975)),)
+    case = cl.Case("lies", robots, (part,), cl.Limits(fail=0.01), carries=carries)
+    worst = cl.check(replace(case, clock=Clock(slack))).record.worst
+    assert worst.clearance == pytest.approx(0.05, abs=1e-12)
 
 
 def test_what_needs_one_time_is_refused():
