@@ -70,6 +70,21 @@ def test_an_obstacle_moves_without_the_program_that_may_work_on_it():
     ]
 
 
+def test_an_obstacle_that_a_change_puts_into_another_is_said():
+    """The left wall goes 20 mm farther from the bar: one block is 10 mm behind it, one 30 mm."""
+    near, far = (
+        standing(name, cl.box((0.1, 0.1, 0.1)), (0.0, 0.55 + gap, z))
+        for name, gap, z in (("near", 0.01, 0.0), ("far", 0.03, 0.5))
+    )
+    case = slot()
+    found = cl.gain(
+        replace(case, obstacles=(*case.obstacles, near, far)), "obstacle", obstacle="left"
+    )
+    said = [line for label, line in lines_of(found) if label == "warning"]
+    assert found.kept and [line for line in said if "'near'" in line and "'left'" in line]
+    assert not [line for line in said if "'far'" in line]
+
+
 @pytest.mark.parametrize("fail", [0.02, 0.1])
 def test_the_least_delay_of_two_that_cross(fail):
     found = gain(crossing(fail), "timing", robot="one")
