@@ -107,7 +107,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     multiple=True,
     type=KeysParamType(),
     metavar="YAML",
-    help="Other keys of the program: 'beside: [HOME.LS]', 'zones: {CNT: 0.05}'. May be given again.",
+    help="Other keys of the program: 'axes_as: abb, zones: {CNT: 0.05}'. May be given again.",
 )
 @click.option(
     "--start",

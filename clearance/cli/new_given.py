@@ -66,7 +66,10 @@ class KeysParamType(click.ParamType):
         try:
             found = plain_data(value.encode())
         except ClearanceError as error:
-            self.fail(f"{value!r}: {error}", param, ctx)
+            try:  # several keys, with commas between them
+                found = plain_data(f"{{{value}}}".encode())
+            except ClearanceError:
+                self.fail(f"{value!r}: {error}", param, ctx)
         if not isinstance(found, dict):
             self.fail(f"{value!r} has no keys; as in 'zones: {{CNT: 0.05}}'", param, ctx)
         return found
@@ -115,7 +118,11 @@ def given_of(keys: dict[str, Any]) -> dict[str, Any]:
 
 
 def merged(parts: list[dict[str, Any]]) -> dict[str, Any]:
-    """All keys; lists and mappings of one key go together."""
+    """All keys; lists and mappings of one key go together.
+
+    Raises:
+        UsageError: two values of one key.
+    """
     found: dict[str, Any] = {}
     for key, value in (pair for one in parts for pair in one.items()):
         match found.get(key), value:
@@ -123,6 +130,8 @@ def merged(parts: list[dict[str, Any]]) -> dict[str, Any]:
                 found[key] = {**old, **new}
             case list(old), list(new):
                 found[key] = [*old, *new]
+            case old, new if key in found and old != new:
+                raise click.UsageError(f"{key} is given twice: {old} and {new}; one of them")
             case _:
                 found[key] = value
     return found

@@ -155,6 +155,10 @@ TIP = ["--flange", "tool_tip"]
         (TIP, "movel(p[0.4,0,0.4,0,0,0])", "; --program-keys '{tools: {tcp: {xyz: […]}}}'"),
         (["--program-keys", "[1]"], HOME, "'[1]' has no keys; as in 'zones: {CNT: 0.05}'"),
         (["--program-keys", "a: b: c"], HOME, "'a: b: c': line 1: not YAML"),
+        (["--program-keys", "file: cell/other.script, axes_as: ur"], HOME,
+         "file is given twice: cell/move.script and cell/other.script; one of them"),
+        (TIP, "set_tcp(p[0,0,0,0,0,0])\n" + HOME, "--program: cell/move.script: axes: with the axes of Universal "
+         "Robots at 0, "),
     ],
 )  # fmt: skip
 def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told, capsys):
@@ -187,7 +191,7 @@ def test_what_a_program_lacks_is_said_by_its_keys(capsys):
     robot = str(FILES["heron6"])
     assert new(*words, "--program-keys", "zones: {CNT: 0.05}", robot=robot) == 2
     assert "--program-keys '{beside: [HOME.LS]}'" in capsys.readouterr().err
-    keys = ["zones: {CNT: 0.05}", "beside: [cell/HOME.LS]"]
+    keys = ["zones: {CNT: 0.05}, beside: [cell/HOME.LS]"]
     keys += ["axes: {joint_5: {sign: -1}}", "axes: {joint_4: {sign: -1}}"]
     said = [word for one in keys for word in ("--program-keys", one)]
     assert new(*words, *said, robot=robot) == 0

@@ -55,7 +55,8 @@ class AxisMap:
             if joint.kind is JointKind.PRISMATIC and joint.name in numbers:
                 text = f"joint {joint.name!r} slides, and axes are read as angles"
                 raise BadProgram(
-                    text, valid=f"axes: {{{joint.name}: {{axis: E1}}}}, if it is external"
+                    text,
+                    valid=f"if it is external, program: {{axes: {{{joint.name}: {{axis: E1}}}}}}",
                 )
         if len(set(external.values())) != len(external):
             raise BadProgram("an external axis is there twice", valid="each once")
@@ -72,7 +73,7 @@ class AxisMap:
             raise BadProgram(
                 f"{len(target.axes)} axes are given, and the arm has {len(self.numbers)} joints "
                 f"({', '.join(self.numbers)})",
-                valid="another flange (link), or joints that are external axes (axes: {…: {axis: E1}})",
+                valid="another flange (link), or joints that are external axes: program: {axes: {…: {axis: E1}}}",
             )
         axes, offset, matrix = np.array(target.axes), *self._linear
         found = dict(zip(self.numbers, (matrix @ axes + offset).tolist(), strict=True))

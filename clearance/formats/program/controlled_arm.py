@@ -17,7 +17,7 @@ from clearance.formats.program.controller_program import ControllerMove, PoseTar
 from clearance.formats.program.conventions import CONVENTIONS, Convention
 from clearance.formats.program.wrist import Wrist, wrist_of
 from clearance.formats.schema import program as schema
-from clearance.formats.schema.program_file import ProgramFile
+from clearance.formats.schema.program_file import Axis, ProgramFile
 from clearance.geometry.pose import inverse
 from clearance.geometry.quaternions import quaternions_of
 from clearance.world.kinematic_chain import KinematicChain, chain_between
@@ -113,14 +113,28 @@ class ControlledArm:
             valid = "axes: {joint: {sign: …, offset: …}} beside it, or another preset"
             raise BadProgram(self.misfit, where="axes_as", valid=valid)
         if self.misfit and not self.asked.axes:
-            how = "axes: {joint: {sign: -1}} says how joints follow, or axes_as: plain that they are the axes"
-            raise BadProgram(self.misfit, where="axes", valid=how)
+            raise BadProgram(self.misfit, where="axes", valid=self._fitting(convention))
         else:
             text = f"joints turn as the axes of {convention.robots}"
             self.notes.append(self.misfit or text)
-        rules = {number: self.axes.rules[name] for name, number in self.axes.numbers.items()}
-        if convention.doubt and not said and "plus" not in rules[3].model_fields_set:
+        (third,) = (name for name, number in self.axes.numbers.items() if number == 3)
+        own = self.axes.rules[third].model_fields_set
+        if convention.doubt and not said and not ("plus" in own or (own and not convention.third)):
             yield convention.doubt
+
+    def _fitting(self, convention: Convention) -> str:
+        """What is valid where joints are not a maker's axes: signs and offsets with which they are, if any."""
+        base = np.eye(4) if self.root_from_base is None else self.root_from_base
+        rules = convention.rules(self.chain, self.axes, base)
+        plain = "axes_as: plain is right only if the controller shows the joints' own angles"
+        if not rules:
+            return f"how joints follow axes, as program: {{axes: {{joint: {{sign: -1, offset: 90deg}}}}}}; {plain}"
+        written = ", ".join(
+            f"{name}: {_written(one)}" for name, one in rules.items() if _written(one)
+        )
+        (last,) = (name for name, number in self.axes.numbers.items() if number == 6)
+        text = f"if {last} and its axis are 0 together, program: {{axes: {{{written}}}}}"
+        return f"{text}; {plain}"
 
     def _doubts_on_plain(self) -> Iterator[str]:
         """A line where joints are taken for the axes, and the maker's axes turn or count otherwise."""
@@ -211,7 +225,7 @@ class ControlledArm:
         if chain_between(self.robot, root, link).masters:
             link = root
         if self.doubt and link != BASE_LINK:
-            valid = "where it is, as base: {on: base, xyz: [0, 0, …]}, seen from the robot's root"
+            valid = "where it is, seen from the robot's root, as program: {base: {on: base, xyz: [0, 0, …]}}"
             raise MissingKey(self.doubt, where="base", valid=valid)
         text = f"poses are seen from link {link!r}, taken for the controller's base"
         if link == BASE_LINK:
@@ -252,6 +266,14 @@ def _overlaps(ends: list[float], other: list[float]) -> list[list[float]]:
     turns = (0.0, 2.0 * np.pi, -2.0 * np.pi)
     both = ([max(ends[0] + by, other[0]), min(ends[1] + by, other[1])] for by in turns)
     return [one for one in both if one[0] < one[1]]
+
+
+def _written(rule: Axis) -> str:
+    """Sign and offset of a rule, as a case has them, to a tenth of a degree; empty where it has none."""
+    degrees = round(np.degrees(rule.offset), 1)
+    parts = {"offset": f"{degrees:g}deg" if degrees else "", "sign": "-1" if rule.sign < 0 else ""}
+    shown = ", ".join(f"{key}: {value}" for key, value in parts.items() if value)
+    return f"{{{shown}}}" if shown else ""
 
 
 def _shown(ends: list[float]) -> str:

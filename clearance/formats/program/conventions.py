@@ -6,11 +6,12 @@ abb_experimental 20b9cf8 (13), abb_driver f3068b9 (parallel bars: J3' = J3 - J2)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from clearance.formats.program.axes import AxisMap
+from clearance.formats.schema.program_file import Axis
 from clearance.world.kinematic_chain import KinematicChain
 
 ALONG = 0.99
@@ -50,11 +51,47 @@ class Convention:
                 found.append(f"{names[number]} turns against axis {number}")
             elif along < ALONG:
                 found.append(f"{names[number]} turns about another line than axis {number}")
-        arm = places[3] - places[2]
-        arm -= (arm @ ways[2]) * ways[2]
+        arm = _across(places[3] - places[2], ways[2])
         if arm @ _WAYS[self.upper_arm] < ALONG * np.linalg.norm(arm):
-            found.append(f"{names[2]} is not where axis 2 is at 0")
+            off = np.degrees(_turn_to(arm, _WAYS[self.upper_arm], ways[2]))
+            found.append(f"{names[2]} is {abs(off):.3g} degrees from where axis 2 is at 0")
         return f"with the axes of {self.robots} at 0, {', '.join(found)}" if found else ""
+
+    def rules(
+        self, chain: KinematicChain, axes: AxisMap, root_from_base: np.ndarray
+    ) -> dict[str, Axis]:
+        """By joint, signs and offsets with which six joints are these axes; none if there are no such, or several.
+
+        Each joint but the last is turned so that the next axis lies as at 0, or the upper arm. The flange says
+        nothing: the last one has no offset.
+        """
+        names = {number: name for name, number in axes.numbers.items()}
+        now = replace(axes, rules=dict.fromkeys(axes.rules, Axis()), third=self.third)
+        for number, turn in enumerate(self.turns.split(), 1):
+            ways, places = _at_zero(chain, now, root_from_base)
+            rule = Axis(sign=1 if ways[number] @ _WAYS[turn] > 0.0 else -1)
+            if number < 6:
+                after, next_turn = ways[number + 1], self.turns.split()[number]
+                probe, to = after, _WAYS[next_turn] * np.sign(after @ _WAYS[next_turn] or 1.0)
+                if number == 2:
+                    probe, to = places[3] - places[2], _WAYS[self.upper_arm]
+                probe = _across(probe, ways[number])
+                if np.linalg.norm(probe) < 1.0 - ALONG:
+                    return {}
+                off = _turn_to(probe, to, ways[number])
+                rule = rule.model_copy(update={"offset": float(off)})
+            now = replace(now, rules={**now.rules, names[number]: rule})
+        return {} if self.misfit(chain, now, root_from_base) else dict(now.rules)
+
+
+def _across(vector: np.ndarray, way: np.ndarray) -> np.ndarray:
+    """The part of a vector at right angles to a direction."""
+    return np.asarray(vector - (vector @ way) * way)
+
+
+def _turn_to(vector: np.ndarray, other: np.ndarray, about: np.ndarray) -> float:
+    """[rad] From a vector to another one about a direction, to both of which it is at right angles."""
+    return float(np.arctan2(about @ np.cross(vector, other), vector @ other))
 
 
 def _at_zero(

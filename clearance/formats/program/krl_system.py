@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, MissingKey
 from clearance.formats.program.krl_settings import FIRST, SAVED, Settings
-from clearance.formats.program.krl_values import MM, frame_of, matrix_of
+from clearance.formats.program.krl_values import MM, frame_of, matrix_of, why
 from clearance.formats.program.statements import Assign, Statement, assigned, within
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
@@ -48,7 +48,8 @@ def require_followed(settings: Settings) -> None:
         raise BadProgram("$WORLD is set", valid="leave $WORLD as it is, and set $ROBROOT")
     functions = settings.value("$TECH")
     if not isinstance(functions, Mapping):
-        raise BadProgram(f"$TECH is not known: {functions}", valid="$TECH[…].MODE = #OFF")
+        valid = "set $TECH[…].MODE = #OFF, or take the line out"
+        raise BadProgram(f"$TECH is not known: {why(functions)}", valid=valid)
     for number, one in functions.items():
         if not isinstance(one, Mapping) or one.get("MODE", "#OFF") != "#OFF":
             fault = f"$TECH[{number}] is on: it moves the tool beside its path, which is not read"
@@ -59,7 +60,7 @@ def _frame(settings: Settings, name: str) -> np.ndarray:
     value = settings.value(name)
     if not isinstance(value, Mapping):
         raise BadProgram(
-            f"{name} is not known: {value}", valid="give it a value that the files decide"
+            f"{name} is not known: {why(value)}", valid="give it a value that the files decide"
         )
     return matrix_of(value, name)
 
@@ -94,8 +95,8 @@ class RobotRoot:
             x, y, z, a, b, c = frame_of(inverse(self.pose)).values()
             xyz = ", ".join(f"{one * MM + 0.0:.6g}" for one in (x, y, z))
             rpy = ", ".join(f"{math.radians(one) + 0.0:.6g}" for one in (c, b, a))
-            world = f"base: {{on: base, xyz: [{xyz}], rpy: [{rpy}]}}"
-            valid = f"where $WORLD is, as {world} where the robot's root is its foot"
+            world = f"program: {{base: {{on: base, xyz: [{xyz}], rpy: [{rpy}]}}}}"
+            valid = f"where $WORLD is; if the robot's root is its foot, {world}"
             raise MissingKey(text, where="base", valid=valid)
         yield f"{text}; base in the program is taken for $WORLD"
 

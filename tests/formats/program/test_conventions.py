@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.formats.program.controlled_arm import ControlledArm
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
     ControllerProgram,
     PoseTarget,
 )
+from clearance.formats.program.conventions import CONVENTIONS
 from clearance.formats.program.conversion import ConvertedProgram, converted
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
-from clearance.geometry.pose import pose_from_rpy
+from clearance.geometry.pose import pose_from_rotation_vector, pose_from_rpy
 from clearance.world.robot import Joint, JointKind, Robot
 
 X, Y, Z = np.eye(3)
@@ -99,9 +102,14 @@ def test_joints_that_turn_otherwise_are_refused_until_the_case_says_how():
         made(robot, "kuka")
     assert str(refused.value).endswith(
         "axes: with the axes of KUKA robots at 0, joint_1 turns against axis 1, joint_4 turns against axis 4, "
-        "joint_6 turns against axis 6, joint_2 is not where axis 2 is at 0; axes: {joint: {sign: -1}} says how "
-        "joints follow, or axes_as: plain that they are the axes"
+        "joint_6 turns against axis 6, joint_2 is 90 degrees from where axis 2 is at 0; if joint_6 and its axis "
+        "are 0 together, program: {axes: {joint_1: {sign: -1}, joint_2: {offset: 90deg}, joint_3: "
+        "{offset: -90deg}, joint_4: {sign: -1}, joint_6: {sign: -1}}}; axes_as: plain is right only if the "
+        "controller shows the joints' own angles"
     )
+    how = r"how joints follow axes, as program: \{axes: \{joint: \{sign: -1, offset: 90deg"
+    with pytest.raises(cl.ClearanceError, match=how):
+        made(arm(*ARMS["ur"]), "kuka")
     (told,) = made(robot, "kuka", axes_as="plain").assumed
     assert told.startswith(
         "joints are taken for the axes (axes_as: plain), but with the axes of KUKA robots at 0, joi"
@@ -152,6 +160,13 @@ def test_an_axis_that_counts_from_the_horizontal_is_counted_once(asked, third):
     assert is_said != any("J3 is taken to count" in one for one in found.assumed)
 
 
+def test_a_rule_for_joint_3_says_how_it_counts_where_it_is_whole():
+    robot = arm(*ARMS["abb"])
+    assert (
+        made(robot, "abb").assumed and not made(robot, "abb", axes={"joint_3": {"sign": 1}}).assumed
+    )
+
+
 def test_parallel_bars_keep_the_forearm_as_it_is():
     robot = arm(*ARMS["abb"])
     found = made(robot, "abb", (0, 20, 10, 0, 0, 0), axes_as="abb_parallel")
@@ -178,3 +193,34 @@ def test_axes_and_pose_of_a_published_point_agree():
     found = converted(ControllerProgram((*moves,), maker="fanuc"), asked, robot, {})
     assert any("agree with the robot within 0.0" in note for note in found.notes), found.notes
     assert found.assumed == ()  # the point confirms how J3 counts
+
+
+@pytest.mark.parametrize("maker", ARMS)
+def test_joints_with_other_signs_and_zeros_are_told_by_how_much(maker):
+    """Of an arm whose URDF counts joints from elsewhere, and the other way: of its maker's, once it is said so."""
+    random = np.random.default_rng(3)
+    turns, places = ARMS[maker]
+    offsets, signs = random.uniform(-1.2, 1.2, 6) * [1, 1, 1, 1, 1, 0], random.choice([-1, 1], 6)
+    robot, joints = arm(turns, places), []
+    for joint in robot.joints[:6]:
+        i = len(joints)
+        turned = pose_from_rotation_vector(
+            [0.0] * 3, (-offsets[i] * joint.axis * signs[i]).tolist()
+        )
+        joints.append(
+            replace(
+                joint,
+                parent_from_joint=joint.parent_from_joint @ turned,
+                axis=signs[i] * joint.axis,
+            )
+        )
+    odd = replace(robot, joints=(*joints, *robot.joints[6:]))
+    arm_of = ControlledArm(validated(ProgramFile, {"file": "a"}, "program"), odd, maker=maker)
+    rules = CONVENTIONS[maker].rules(arm_of.chain, arm_of.axes, np.eye(4))
+    if (
+        maker == "ur"
+    ):  # its axes 2, 3 and 4 are parallel, so that their directions do not say where 3 is
+        assert not rules
+        return
+    assert [one.sign for one in rules.values()] == signs.tolist()
+    assert [one.offset for one in rules.values()] == pytest.approx(offsets.tolist(), abs=1e-9)

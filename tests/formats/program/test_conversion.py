@@ -224,7 +224,9 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
     asked = validated(ProgramFile, {"file": "a.ls", "link": "tool_tip"}, "program")
     line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
     assert converted(ControllerProgram((HOME,), base="at axis 2"), asked, robot, {}).program.moves
-    with pytest.raises(cl.ClearanceError, match="base: at axis 2; where it is, as base: "):
+    with pytest.raises(
+        cl.ClearanceError, match="base: at axis 2; where it is, seen from the robot's root, as"
+    ):
         converted(ControllerProgram((HOME, line), base="at axis 2"), asked, robot, {})
 
 

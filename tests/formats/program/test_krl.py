@@ -229,7 +229,10 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             FRAMES + "$TECH[1].MODE=#CYCLE\nLIN XP1",
             "line 10: $TECH[1] is on: it moves the tool beside its path",
         ),
-        (FRAMES + "$TECH=wave\nLIN XP1", "line 10: $TECH is not known"),
+        (
+            FRAMES + "$TECH=wave\nLIN XP1",
+            "line 10: $TECH is not known: 'WAVE' is in no file that is given; set $TECH",
+        ),
         (FRAMES + "$WORLD.X=1.0\nPTP XP1", "line 10: $WORLD is set"),
         (FRAMES + "PTP XP1\n$ROBROOT.Z=1.0\nPTP XP1", "line 11: $ROBROOT changes between moves"),
         (
