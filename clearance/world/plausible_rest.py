@@ -10,7 +10,7 @@ from clearance.world.robot import Joint, Robot
 
 
 def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
-    """A warning where most joints are left out, or one between two that are given: a column may be missing.
+    """A warning that names all that are left out, those between two that are given first: a column may be missing.
 
     Args:
         before: what stands before the names of joints.
@@ -20,14 +20,14 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
         return []
     given = {*asked.joint_names, *placed.fixed_positions}
     resting = [joint for joint in joints if joint.name not in given]
-    between = _between(placed.robot, resting, {*asked.joint_names})
-    if not between and 2 * len(resting) <= len(joints):
+    if not resting:
         return []
+    between = _between(placed.robot, resting, {*asked.joint_names})
     names = [repr(before + one.name) for one in sorted(resting, key=lambda one: one not in between)]
-    text = f"{len(resting)} of {len(joints)} joints are given by nobody and stay at 0: {listed(names, 4)}; "
-    if between:
-        text += f"joints on both sides of {names[0]} are given, is its column missing? "
-    text += "robot: {joints: {NAME: …}} says where they are"
+    are = "is given by nobody and stays" if len(resting) == 1 else "are given by nobody and stay"
+    text = f"{len(resting)} of {len(joints)} joints {are} at 0: {listed(names, 4)}; "
+    text += f"joints on both sides of {names[0]} are given, " if between else ""
+    text += "is a column missing? robot: {joints: {NAME: …}} says where they are"
     return [Notice(Severity.WARNING, "rest", text, placed.robot.name)]
 
 

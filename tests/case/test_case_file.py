@@ -16,6 +16,7 @@ from clearance.errors import (
     UnknownKey,
 )
 from clearance.world.pairs import measured_pairs
+from clearance.world.plausibility import notices_of
 from tests.formats.making import ARM, CASE, cube_stl, signed_volume, write_case
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_cell import load_cell
@@ -139,14 +140,14 @@ def test_allow_takes_a_part_before_a_link_of_several_robots(tmp_path):
     assert case.allow[1].window.end == 0.5
 
 
-def test_joints_that_nobody_names_are_zero_with_a_note(tmp_path):
+def test_joints_that_nobody_names_are_zero_with_a_warning(tmp_path):
     case = load_small(tmp_path, urdf=TWO_JOINTS)
-    assert "stay at 0: lift" in case.notes[0]
+    assert "stays at 0: 'lift'" in notices_of(case)[0].text
     case = load_small(
         tmp_path, changed("arm.urdf", "arm.urdf, joints: {lift: 0.05}"), urdf=TWO_JOINTS
     )
     assert case.robots[0].fixed_positions == {"lift": 0.05}
-    assert case.notes == ()
+    assert case.notes == notices_of(case) == ()
 
 
 @pytest.mark.parametrize("turns", [1001.0, -1e7])

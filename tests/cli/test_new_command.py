@@ -244,10 +244,8 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
     assert "#   lift: 0.0  # assumed: nothing moves it" in text and "urdf: ../cell/arm.urdf" in text
     assert "file: ../cell/cube.stl" in Path("out/scene.yaml").read_text()
     assert run(["check", "out/case.yaml"]) in (0, 1)
-    assert (
-        "joints given neither by the trajectory nor by robot.joints stay at 0: lift"
-        in capsys.readouterr().out
-    )
+    warned = "warning     1 of 2 joints is given by nobody and stays at 0: 'lift'"
+    assert warned in capsys.readouterr().out
 
 
 def test_limits_are_those_that_are_given(capsys):

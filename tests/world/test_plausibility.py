@@ -213,29 +213,33 @@ def test_a_joint_that_is_too_fast_once_jumps_and_one_that_often_is_is_fast():
     assert told(1.5, times=close, ways={21: 0.049}) == ["warning"]
 
 
-def test_joints_that_nobody_gives_are_a_warning_where_a_column_may_be_lost():
-    """A chain of five: the middle is lost, the last is a gripper, and two of five are given."""
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("01234", None),
+        ("0123", "1 of 5 joints is given by nobody and stays at 0: 'j4'; is a column missing?"),
+        ("1234", "1 of 5 joints is given by nobody and stays at 0: 'j0'; is a column missing?"),
+        (
+            "013",
+            "2 of 5 joints are given by nobody and stay at 0: 'j2', 'j4'; joints on both sides of 'j2'",
+        ),
+        ("01", "3 of 5 joints are given by nobody and stay at 0: 'j2', 'j3', 'j4'; is a column"),
+    ],
+)
+def test_joints_that_nobody_gives_are_a_warning_since_a_column_may_be_lost(given, told):
     joints = tuple(replace(one, mimic=None) for one in chain(5).joints)
-    robot, still = replace(chain(5), joints=joints), {"j4": 0.1}
+    names = tuple(f"j{i}" for i in given)
+    asked = Trajectory(np.array([0.0, 1.0]), names, np.full((2, len(names)), [[0.0], [0.5]]))
+    placed = PlacedRobot(replace(chain(5), joints=joints), asked)
 
-    def told(*names, **more):
-        asked = Trajectory(np.array([0.0, 1.0]), names, np.full((2, len(names)), [[0.0], [0.5]]))
-        placed = PlacedRobot(robot, asked, **more)
-        return [
-            one.text
-            for one in notices_of(replace(case_of(), robots=(placed,)))
-            if one.kind == "rest"
-        ]
+    def texts(**changes):
+        case = replace(case_of(), robots=(replace(placed, **changes),))
+        return [one.text for one in notices_of(case) if one.kind == "rest"]
 
-    assert not told("j0", "j1", "j2", "j3")
-    (text,) = told("j0", "j1", "j3")
-    assert text.startswith(
-        "2 of 5 joints are given by nobody and stay at 0: 'j2', 'j4'; joints on both sides of 'j2'"
-    )
-    assert not told("j0", "j1", "j3", fixed_positions={"j2": 0.3})
-    (text,) = told("j0", "j1")
-    assert text.startswith("3 of 5 joints") and "both sides" not in text
-    assert not told("j0", "j1", fixed_positions=still)
+    assert [one.startswith(str(told)) for one in texts()] == [True] * (told is not None)
+    case_says = {f"j{i}": 0.1 for i in "01234" if i not in given}
+    assert not texts(fixed_positions=case_says)
+    assert not texts(trajectory=None)
 
 
 def test_a_robot_that_need_not_move_is_checked_too():
