@@ -36,7 +36,7 @@ GIVEN = {
     "CL401": "NoTrajectory", "CL402": "BadMotion", "CL403": "BadTime", "CL404": "NotSimulated",
     "CL420": "start", "CL421": "gaps", "CL422": "clocks", "CL423": "wrap", "CL424": "limits",
     "CL425": "joint limits", "CL426": "recorded run", "CL427": "program", "CL428": "carry", "CL429": "rest",
-    "CL430": "neighbours",
+    "CL430": "neighbours", "CL431": "columns",
     "CL501": "clearance", "CL502": "profile",
     "CL510": "unused waiver", "CL511": "BadWaiver", "CL520": "NothingToMeasure", "CL521": "pairs",
     "CL522": "paper",

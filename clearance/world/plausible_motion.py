@@ -50,6 +50,7 @@ def notices_on_motion(
         *_suspect(texts),
         *_way_in(placed),
         *_assumed(placed),
+        *_unread(placed),
     ]
 
 
@@ -92,6 +93,13 @@ def _assumed(placed: PlacedRobot) -> list[Notice]:
         text = f"CHECK AXES: {first}{more}; give axes, or axes_as, as the controller has them"
         found.append(Notice(Severity.SUSPECT, "axis", text, about))
     return found
+
+
+def _unread(placed: PlacedRobot) -> list[Notice]:
+    """A warning on columns that the case leaves out, though they look like motion."""
+    unread, about = placed.given_trajectory.unread, placed.robot.name
+    text = f"columns that look like motion of robot {about!r} are not read: {listed(unread, 6)}"
+    return [Notice(Severity.WARNING, "columns", text, about)] if unread else []
 
 
 def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:

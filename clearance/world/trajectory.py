@@ -107,6 +107,7 @@ class Trajectory:
         assumed: of a program's controller, where nothing confirms it, one line each. left_out: its instructions
             that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
         contradicted: the points of a program whose own axes are far from them, one line each.
+        unread: columns of its table that look like motion, and are not read.
         moves: of a program, when each is made. frames: the obstacles and links that its work frames are on.
         corners: stretches on which a controller may leave the path, and how far links may then be off.
         unproven: stretches of a program that are not proven.
@@ -138,6 +139,7 @@ class Trajectory:
     left_out: tuple[str, ...] = ()
     odd: tuple[str, ...] = ()
     contradicted: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
     unproven: tuple[UnprovenSpan, ...] = ()
     drives: tuple[str, ...] = ()
 

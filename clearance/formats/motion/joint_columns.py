@@ -9,14 +9,14 @@ their quaternions.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from difflib import get_close_matches
 
 import numpy as np
 
 from clearance.errors import BadMotion, UnknownJoint
 from clearance.formats.motion.pose_table_file import refuse_off_length_one
-from clearance.formats.table.column_units import VELOCITY, Column
+from clearance.formats.table.column_units import UNITS, VELOCITY, Column
 from clearance.formats.table.csv_table import TIME, UNNAMED, TextTable, line_of_row
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.text.yaml_text import flow
@@ -51,7 +51,11 @@ def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column
     try:
         require_moving_joints(robot, [name for name in joints if name not in following])
     except UnknownJoint as error:
-        error.valid += f"; {remedy(robot, columns)}"
+        known = {joint.name for joint in robot.joints}
+        moving = [joint.name for joint in robot.moving_joints]
+        meant = quantity(next((name for name in joints if name not in known), ""), moving)
+        said = f"did you mean {meant!r}?" if meant else error.valid
+        error.valid = f"{said}; {remedy(robot, columns)}"
         raise
 
 
@@ -104,21 +108,83 @@ def remedy(robot: Robot, columns: Sequence[Column]) -> str:
     own = [one for one in columns if one.name.removesuffix(VELOCITY) in joints]
     times = [one.header for one in columns if one.name == TIME]
     found = {one.name: one.header for one in own}
-    unfound = [joint for joint in joints if joint not in found]
-    renamed = _misspelt(unfound, columns, own) if own else {}
-    if own and times and not renamed:
+    others = [one.header for one in columns if one not in own]
+    chosen = found | (_renamed(joints, found, others) if own else {})
+    chosen = chosen or _joints_alike(joints, columns)
+    chosen |= _rates(chosen, _by_quantity(others, joints))
+    if own and times and chosen == found:
         mapping = flow([*times, *(one.header for one in own)])
         return f"columns: {mapping} reads these columns only (--columns)"
-    found = found | renamed or _joints_alike(joints, columns)
-    mapping = flow({TIME: times[0] if times else _time_alike(columns)} | found)
+    mapping = flow({TIME: times[0] if times else _time_alike(columns)} | chosen)
     return f"columns: {mapping} maps each joint to its column (--columns)"
 
 
-def _misspelt(
-    joints: Sequence[str], columns: Sequence[Column], own: Sequence[Column]
+def left_out(robot: Robot, header: Sequence[str], columns: Sequence[Column]) -> list[str]:
+    """Columns that are not read though they look like motion of the robot, each with what it looks like.
+
+    Args:
+        columns: those that are read.
+    """
+    joints = [joint.name for joint in robot.moving_joints]
+    read = {one.name for one in columns}
+    others = [name for name in header if name not in {one.header for one in columns}]
+    alike = _by_quantity(others, joints) | _renamed(joints, read, others)
+    missed = {name: given for name, given in alike.items() if name not in read}
+    return [f"{given!r} ({name})" for name, given in missed.items()]
+
+
+ACCELERATION = "/acceleration"
+
+_ENDINGS = {"pos": "", "ang": "", "vel": VELOCITY, "speed": VELOCITY, "acc": ACCELERATION}
+"""Of a joint's name, by how words of such columns begin."""
+
+_OTHER = ("eff", "torque", "force", "curr", "temp", "target", "err", "status", "mode")
+"""How words begin that say what is no motion."""
+
+
+def quantity(header: str, joints: Sequence[str]) -> str:
+    """What a column's name looks like: `j1`, `j1/velocity` or `j1/acceleration` of a joint; nothing for others."""
+    for joint in sorted(joints, key=len, reverse=True):
+        part = rf"(.*[^a-z0-9])?{re.escape(joint)}([^a-z0-9].*)?"
+        found = re.fullmatch(part, header, re.IGNORECASE)
+        if found:
+            before, behind = (re.findall("[a-z]+", (one or "").lower()) for one in found.groups())
+            words = [*before, *behind]
+            endings = {_ENDINGS[one] for one in _ENDINGS for word in words if word.startswith(one)}
+            if any(word.startswith(_OTHER) for word in words) or len(endings) > 1:
+                return ""
+            is_said = bool(endings) or UNITS.keys() >= {*behind}
+            return joint + "".join(endings) if is_said else ""
+    return ""
+
+
+def _by_quantity(headers: Sequence[str], joints: Sequence[str]) -> dict[str, str]:
+    """The column of each quantity that only one looks like."""
+    said = [(quantity(header, joints), header) for header in headers]
+    names = [name for name, _ in said]
+    return {name: header for name, header in said if name and names.count(name) == 1}
+
+
+def _renamed(
+    joints: Sequence[str], found: Collection[str], others: Sequence[str]
 ) -> dict[str, str]:
+    """The column of each joint that has none, but one that looks like it or is misspelt."""
+    unfound = [joint for joint in joints if joint not in found]
+    alike = _by_quantity(others, joints)
+    return _misspelt(unfound, others) | {one: alike[one] for one in unfound if one in alike}
+
+
+def _rates(chosen: Mapping[str, str], alike: Mapping[str, str]) -> dict[str, str]:
+    """The columns of velocities, if all joints that are chosen have one."""
+    rates = [name + VELOCITY for name in chosen if not name.endswith(VELOCITY)]
+    if not all(name in alike or name in chosen for name in rates):
+        return {}
+    return {name: alike[name] for name in rates if name not in chosen}
+
+
+def _misspelt(joints: Sequence[str], headers: Sequence[str]) -> dict[str, str]:
     """The column for each joint that has none but is spelt nearly like one, with the same numbers."""
-    headers, found = [one.header for one in columns if one not in own], {}
+    found = {}
     for joint in joints:
         near = get_close_matches(joint, headers, 1, ALIKE)
         if near and re.findall(r"\d+", near[0]) == re.findall(r"\d+", joint):
@@ -134,27 +200,21 @@ def _time_alike(columns: Sequence[Column]) -> str:
 
 def _joints_alike(joints: Sequence[str], columns: Sequence[Column]) -> dict[str, str]:
     """A column for each joint: one whose name has the joint's in it, or one of as many numbered ones."""
-    found = {joint: _column_alike(joint, columns) for joint in joints}
-    if any(found.values()):
-        return {joint: header for joint, header in found.items() if header}
+    alike = _by_quantity([one.header for one in columns], joints)
+    found = {joint: alike[joint] for joint in joints if joint in alike}
+    if found:
+        return found
     groups: dict[str, list[str]] = {}
     for one in columns:
         numbered = _NUMBERED.fullmatch(one.header)
         if numbered:
             groups.setdefault(numbered[1], []).append(one.header)
-    alike = [names for names in groups.values() if len(names) == len(joints) > 1]
-    alike.sort(key=lambda names: "actual_q_" not in names[0])  # as robots of UR log where they are
-    columns_of = alike[0] if alike else [f"column of {joint}" for joint in joints]
+    numbers = [names for names in groups.values() if len(names) == len(joints) > 1]
+    numbers.sort(
+        key=lambda names: "actual_q_" not in names[0]
+    )  # as robots of UR log where they are
+    columns_of = numbers[0] if numbers else [f"column of {joint}" for joint in joints]
     return dict(zip(joints, columns_of, strict=True))
-
-
-def _column_alike(joint: str, columns: Sequence[Column]) -> str | None:
-    """The column whose name contains the joint's, alone or with a word for position."""
-    part = re.compile(rf"(?:.*[^a-z0-9])?{re.escape(joint)}(?:[^a-z0-9].*)?", re.IGNORECASE)
-    headers = [one.header for one in columns if part.fullmatch(one.header)]
-    positions = [one for one in headers if "pos" in one.lower().replace(joint.lower(), "")]
-    headers = positions or [one for one in headers if one.lower().endswith(joint.lower())]
-    return headers[0] if len(headers) == 1 else None
 
 
 PARTS, ANGLES = ("/qx", "/qy", "/qz", "/qw"), ("/yaw", "/pitch", "/roll")

@@ -8,6 +8,7 @@ Not for: which joints the robot has (`case.motion_notes`), nor how a table is pa
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from clearance.errors import BadMotion, BadShape, BadSyntax, MissingKey, nearest
 from clearance.formats.motion.joint_columns import (
     by_angles,
     joints_by_angles,
+    left_out,
     remedy,
     require_joints,
     turned_joints,
@@ -78,6 +80,9 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
         joints, notes = joints_by_angles(joints, turned), [*notes, *on_angles]
     velocities = moving[1] if len(moving) > 1 else None
     trajectory = Trajectory(times[:, 0], joints, moving[0], velocities, odd=odd)
+    if choice.columns is not None and request.robot is not None:
+        unread = left_out(request.robot, header, columns)
+        trajectory = replace(trajectory, unread=tuple(unread))
     return ReadTrajectory(trajectory, tuple(notes))
 
 

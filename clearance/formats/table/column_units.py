@@ -230,20 +230,34 @@ def chosen_columns(
             itself is what its header says. turns, units: as `columns_in`.
 
     Raises:
-        MissingKey: a column that is not in the header. BadInput, DuplicateName: as `columns_in`.
+        MissingKey: a column that is not in the header. DuplicateName: one that is given twice. BadInput: one that
+            is called as another joint, or as `columns_in`.
     """
-    for name in chosen.values():
-        if name not in header:
-            raise MissingKey(
-                f"there is no column {name!r}, which `columns` names",
-                valid=nearest_name(name, header),
-            )
+    for name, given in chosen.items():
+        _require_own(name, given, header, turns)
+        if list(chosen.values()).count(given) > 1:
+            raise DuplicateName(f"`columns` gives {given!r} twice", valid="each column once")
     own = [name for name, given in chosen.items() if name == given]
     found = {one.header: one for one in with_time(columns_in(own, turns, units), turns)}
     for name, given in chosen.items():
         if name != given:
             found[name] = in_kind(given, name, turns, units)
     return [found[name] for name in chosen]
+
+
+def _require_own(name: str, given: str, header: Sequence[str], turns: Mapping[str, bool]) -> None:
+    """Nothing, if there is such a column, which is not called as another joint of the robot."""
+    if given not in header:
+        raise MissingKey(
+            f"there is no column {given!r}, which `columns` names",
+            valid=nearest_name(given, header),
+        )
+    owner = given.removesuffix(VELOCITY).removesuffix(POSITION)
+    if owner in turns and owner != name.removesuffix(VELOCITY):
+        raise BadInput(
+            f"`columns` gives {given!r}, which has the name of joint {owner!r}, to {name!r}",
+            valid="each joint its own column; one that is called wrongly is renamed in the table",
+        )
 
 
 def notes_on_names(header: Sequence[str], columns: Sequence[Column]) -> list[str]:

@@ -5,9 +5,18 @@ import io
 import numpy as np
 import pytest
 
-from clearance.errors import BadInput, BadPose, BadShape, BadSyntax, MissingKey, UnknownJoint
+from clearance.errors import (
+    BadInput,
+    BadPose,
+    BadShape,
+    BadSyntax,
+    DuplicateName,
+    MissingKey,
+    UnknownJoint,
+)
 from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.world.plausible_motion import notices_on_motion
 from tests.formats.making import ARM
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 
@@ -113,6 +122,9 @@ NOT_TAKEN = [
     ("time_from_start,shoulder,lift", "{time: time_from_start, shoulder: shoulder, lift: lift}"),
     ("Zeit,Shoulder,Lift", "{time: Zeit, shoulder: Shoulder, lift: Lift}"),
     ("time,shoulder_pos,lift_pos", "{time: time, shoulder: shoulder_pos, lift: lift_pos}"),
+    ("time,shoulder,Lift", "{time: time, shoulder: shoulder, lift: Lift}"),
+    ("time,shoulder,lift,shoulder_velocity,vel_lift", "{time: time, shoulder: shoulder, lift: lift, "
+     "shoulder/velocity: shoulder_velocity, lift/velocity: vel_lift}"),
     ("time,shoulder,lift,shoulder/velocity,lift/velocity,shoulder/effort,lift/effort",
      "[time, shoulder, lift, shoulder/velocity, lift/velocity]"),
 ]  # fmt: skip
@@ -132,6 +144,30 @@ def test_each_error_on_a_header_has_columns_that_can_be_pasted(tmp_path, header,
     assert sorted(asked.joint_names) == ["lift", "shoulder"] and asked.n_steps == 3
 
 
+def test_an_unknown_column_is_told_by_what_it_looks_like(tmp_path):
+    for name, meant in (("Lift", "lift"), ("shoulder_speed", "shoulder/velocity")):
+        with pytest.raises(UnknownJoint, match=f"unknown joint '{name}'; did you mean '{meant}'"):
+            load_small(tmp_path, urdf=TWO_JOINTS, trajectory=f"time,shoulder,{name}\n0,0,0\n")
+
+
+def test_columns_that_look_like_motion_and_are_left_out_stand_in_the_headline(tmp_path):
+    table = "time,shoulder,Lift,shoulder_vel,shoulder_acc,lift_effort\n0,0,0,0,0,0\n1,0,0,0,0,0\n"
+    for columns, left_out in (
+        (
+            "[time, shoulder]",
+            "'Lift' (lift), 'shoulder_vel' (shoulder/velocity), 'shoulder_acc' (shoulder/acceleration)",
+        ),
+        (
+            "{time: time, shoulder: shoulder, lift: Lift}",
+            "'shoulder_vel' (shoulder/velocity), 'shoulder_acc' (shoulder/acceleration)",
+        ),
+    ):
+        case = changed("path.csv", f"path.csv, columns: {columns}")
+        made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=table)
+        told = [one.text for one in notices_on_motion(made.robots[0])]
+        assert told == [f"columns that look like motion of robot 'arm' are not read: {left_out}"]
+
+
 def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():
     text = "stamp_ms,q0 [deg],q1_mm\n0,90,20\n1000,180,30\n"
     columns = (("time", "stamp_ms"), ("shoulder", "q0 [deg]"), ("lift", "q1_mm"))
@@ -144,13 +180,16 @@ def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():
     ("columns", "fault", "says"),
     [
         ("[time, sholder]", MissingKey, "'sholder', which `columns` names; did you mean 'shoulder'"),
+        ("{time: time, lift: shoulder}", BadInput, "which has the name of joint 'shoulder', to 'lift'"),
+        ("{time: time, shoulder: q, lift: q}", DuplicateName, "`columns` gives 'q' twice"),
         ("[shoulder]", MissingKey, "`columns` names no 'time'"),
         ("[]", BadInput, "trajectory.columns: [] is given; 1 values are needed"),
     ],
 )  # fmt: skip
 def test_columns_that_are_not_there_are_refused(tmp_path, columns, fault, says):
     with pytest.raises(fault) as caught:
-        load_small(tmp_path, changed("path.csv", f"path.csv, columns: {columns}"))
+        case = changed("path.csv", f"path.csv, columns: {columns}")
+        load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory="time,shoulder,q\n0,0,0\n")
     assert says in str(caught.value)
 
 
