@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from clearance.cli.commands import clearance as command
 from clearance.errors import ClearanceError
 from clearance.planar.biarcs import biarcs
 from clearance.planar.curve import Curve
@@ -108,24 +106,6 @@ def test_deviation_profile():
     tent = deviation(Curve.line([0, 0], [1, 1]), Curve.line([0, 0], [1, 0]), samples=1000)
     assert tent.mean == pytest.approx(0.5, abs=1e-9)
     assert tent.percentile(90) == pytest.approx(0.9, abs=2e-3)
-
-
-@pytest.mark.slow
-def test_compare_prints_and_draws_the_same_bytes(tmp_path):
-    pytest.importorskip("matplotlib")
-    one, two = tmp_path / "a.yaml", tmp_path / "b.yaml"
-    one.write_text("curves:\n  - line: {start: [0, 0], end: [4, 0]}\n")
-    two.write_text("curves:\n  - polyline: {points: [[0, 1], [2, 3], [4, 1]]}\n")
-    shown = []
-    for name in ("x.svg", "y.svg", "z.png"):
-        out = CliRunner().invoke(
-            command, ["profile", "compare", str(one), str(two), "--out", str(tmp_path / name)]
-        )
-        assert out.exit_code == 0 and "the outlines differ by 3 (unit of the files)" in out.output
-        shown.append((tmp_path / name).read_bytes())
-    assert shown[0] == shown[1] and b"<svg" in shown[0] and shown[2].startswith(b"\x89PNG")
-    out = CliRunner().invoke(command, ["profile", "compare", str(one), str(two), "--limit", "2"])
-    assert out.exit_code == 1 and "beyond" in out.output
 
 
 @pytest.mark.parametrize(

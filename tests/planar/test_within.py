@@ -52,20 +52,27 @@ def test_undecided_is_an_error_of_ours_in_one_line(monkeypatch):
     assert caught.value.lower <= 3e-11 <= caught.value.upper
 
 
-def test_compare_fails_where_the_limit_is_not_decided(tmp_path):
+@pytest.mark.slow
+def test_compare_fails_where_the_limit_is_not_decided_and_draws_the_same_bytes(tmp_path):
     """A limit that is the distance itself, to the last bit: neither within nor beyond is proven."""
+    pytest.importorskip("matplotlib")
     one, two = tmp_path / "a.yaml", tmp_path / "b.yaml"
     one.write_text("curves:\n  - line: {start: [0, 0], end: [4, 0]}\n")
     two.write_text("curves:\n  - polyline: {points: [[0, 1], [2, 3], [4, 1]]}\n")
-    for limit, code, said in [("2", 1, "beyond"), ("4", 0, "within"), ("3", 1, "undecided")]:
-        out = CliRunner().invoke(
-            command, ["profile", "compare", str(one), str(two), "--limit", limit]
-        )
+    for limit, code, said, name in [
+        ("2", 1, "beyond", "x.svg"), ("4", 0, "within", "y.svg"), ("3", 1, "undecided", "z.png")
+    ]:  # fmt: skip
+        asked = ["profile", "compare", str(one), str(two), "--out", str(tmp_path / name)]
+        out = CliRunner().invoke(command, [*asked, "--limit", limit])
         assert out.exit_code == code and out.output.startswith(f"{said} {limit} (")
+        assert "the outlines differ by 3 " in out.output
     assert "which counts as beyond" in out.output
+    drawn, again, picture = ((tmp_path / name).read_bytes() for name in ("x.svg", "y.svg", "z.png"))
+    assert drawn == again and b"<svg" in drawn and picture.startswith(b"\x89PNG")
 
 
 def waves(n, seed):
+    """Two cubic B-splines of `n` control points that wave side by side, as in the paper's experiment."""
     random = np.random.default_rng(seed)
     c = np.stack([np.arange(n) * 1.0, np.cumsum(random.normal(size=n))], axis=1)
     return Curve.bspline(c), Curve.bspline(c + [0.0, 0.3] + 0.8 * random.normal(size=(n, 2)))
