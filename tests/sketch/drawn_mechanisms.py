@@ -8,15 +8,6 @@ from clearance.sketch import Sketch
 from tests.sketch.drawn_outlines import of_kind, ring
 
 
-def four_bar():
-    s = Sketch()
-    p, _ = ring(s, [(0, 0), (1, 2), (4, 3), (5, 0)])
-    for k, span in enumerate((2.0, 3.5, 3.0)):
-        s.distance(p[k], p[k + 1], span)
-    s.fix(p[0]), s.fix(p[3])
-    return s
-
-
 def peaucellier():
     """The inversor: seven bars of three lengths; its point runs on a straight line."""
     s = Sketch()
@@ -58,17 +49,6 @@ def belt(apart=5.0):
     s.radius(c, 1.0), s.radius(d, 2.0)
     if apart:
         s.distance(c.center, d.center, apart)
-    return s
-
-
-def chain_of_arcs():
-    """An S of two arcs that meet in a point with one tangent: their centres and the joint lie in line."""
-    s = Sketch()
-    a, j, b = s.point(-1, 0), s.point(0, 0.02), s.point(1, 0)
-    m, n = s.point(-0.5, 0), s.point(0.5, 0)
-    one, two = s.arc(m, j, a), s.arc(n, j, b)
-    s.tangent(one, two, inside=False)
-    s.radius(one, 0.5), s.radius(two, 0.6)
     return s
 
 
@@ -124,12 +104,6 @@ def coincident_twice():
     return s
 
 
-def lone_point():
-    s = coincident_chain()
-    s.point(5, 5)
-    return s
-
-
 def two_pieces():
     """Two rigid triangles: the second may lie anywhere."""
     s = Sketch()
@@ -140,19 +114,7 @@ def two_pieces():
     return s
 
 
-def truss():
-    """A triangulated girder of eight bays, top and bottom chord level."""
-    s = Sketch()
-    low = [s.point(k, 0.02 * k) for k in range(9)]
-    high = [s.point(k + 0.5, 0.9) for k in range(8)]
-    for a, b in zip(low, low[1:], strict=False):
-        s.distance(a, b, 1.0), s.horizontal(a, b)
-    for k, h in enumerate(high):
-        s.distance(h, low[k], 1.0), s.distance(h, low[k + 1], 1.0)
-    return s
-
-
-def desargues():
+def desargues_line():
     """Two triangles in perspective from a point: the three meets of their sides lie on a line, by theorem."""
     s = Sketch()
     o = s.point(0, 0)
@@ -173,14 +135,5 @@ def desargues():
         )
         meets.append(s.point(*m))
         s.incident(meets[-1], e), s.incident(meets[-1], f)
-    return s, meets
-
-
-def desargues_points():
-    return desargues()[0]
-
-
-def desargues_line():
-    s, meets = desargues()
     s.incident(meets[2], s.line(meets[0], meets[1]), name="desargues")
     return s

@@ -29,18 +29,6 @@ def rectangle(w=None, h=None, square=3, rough=0.1):
     return s, p, e
 
 
-def rectangle_free():
-    return rectangle()[0]
-
-
-def rectangle_given():
-    return rectangle(4.0, 2.0)[0]
-
-
-def rectangle_four_right_angles():
-    return rectangle(4.0, 2.0, square=4)[0]
-
-
 def rectangle_and_its_diagonal():
     s, p, _ = rectangle(4.0, 3.0)
     s.distance(p[0], p[2], 5.0, name="diagonal")
@@ -50,22 +38,6 @@ def rectangle_and_its_diagonal():
 def rectangle_and_a_wrong_diagonal():
     s, p, _ = rectangle(4.0, 3.0)
     s.distance(p[0], p[2], 5.5, name="diagonal")
-    return s
-
-
-def centred_rectangle():
-    """Both diagonals have one middle, which is fixed: a parallelogram; a right angle, one side."""
-    s = Sketch()
-    p, e = ring(s, [(-2, -1), (2.1, -1), (2, 1.1), (-2, 1)])
-    m = s.point(0, 0)
-    s.fix(m), s.midpoint(m, p[0], p[2]), s.midpoint(m, p[1], p[3])
-    s.perpendicular(e[0], e[1]), s.distance(p[0], p[1], 4.0)
-    return s
-
-
-def square_by_equal_sides():
-    s, _, e = rectangle(3.0)
-    s.equal_length(e[0], e[1])
     return s
 
 
@@ -117,19 +89,8 @@ def slot(given=True, level=False):
     return s
 
 
-def slot_free():
-    return slot(False)
-
-
 def slot_given():
     return slot()
-
-
-def rounded_rectangle():
-    """Four equal fillets; width, depth and radius are free."""
-    from scenes.sketches.make_zones import rounded
-
-    return rounded((0, 0), (6, 4), 0.5)
 
 
 def fixed_rounded_rectangle():
@@ -137,18 +98,6 @@ def fixed_rounded_rectangle():
     from scenes.sketches.make_zones import rounded
 
     return rounded((0, 0), (6, 4), 0.5, held=True)
-
-
-def fillet_of_given_radius_in_a_given_corner(extra=False):
-    s = Sketch()
-    o, x, y = s.point(0, 0), s.point(5, 0), s.point(0, 4)
-    e, f = s.line(o, x), s.line(o, y)
-    s.fix(o), s.fix(x), s.fix(y)
-    c = s.circle((1.2, 0.9), 1.0)
-    s.tangent(e, c), s.tangent(f, c), s.radius(c, 1.1)
-    if extra:
-        s.distance(c.center, e, 1.1, name="height")
-    return s
 
 
 def bracket():
@@ -166,20 +115,4 @@ def bracket_with_a_wrong_inner_length():
     s = bracket()
     p = of_kind(s, "point")
     s.distance(p[2], p[3], 3.7, name="inner")
-    return s
-
-
-def mirrored_half():
-    """Half an outline and its mirror image in a vertical axis; two dimensions lack."""
-    s = Sketch()
-    axis = s.line((0, 0), (0, 1))
-    s.fix(axis)
-    half = [s.point(x, y) for x, y in ((1, 0), (2, 1), (1.5, 3), (0.5, 3.2))]
-    other = [s.point(-x + 0.1, y) for x, y in ((1, 0), (2, 1), (1.5, 3), (0.5, 3.2))]
-    for p, q in zip(half, other, strict=True):
-        s.symmetric(p, q, axis)
-    for p, q in zip(half, half[1:], strict=False):
-        s.distance(p, q)
-    s.distance(half[0], axis, 1.0), s.distance(half[3], axis, 0.6)
-    s.distance(half[1], axis, 2.0)
     return s

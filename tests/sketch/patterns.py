@@ -29,6 +29,27 @@ def truth(n, seed, extra=0, missing=0, off=0.03, place=(0.0, 0.0), scale=1.0, tu
     return s, p, points, edges
 
 
+def again(s, without=(), driven=(), changes=None):
+    """The sketch once more: some constraints left out, some only measured, some with other values."""
+    t = Sketch()
+    for name, e in s.entities.items():
+        if e.what == "point":
+            t.point(*e.position, name=name)
+    for name, e in s.entities.items():
+        if e.what in ("line", "segment"):
+            foot = e.offset * np.array([-e.direction[1], e.direction[0]])
+            t.line(foot, foot + e.direction, name=name)
+            t.entity(name).ends = tuple(t.entity(p.name) for p in e.ends) if e.ends else None
+        elif e.what in ("circle", "arc"):
+            t.circle(t.entity(e.center.name), e.radius, name=name)
+    for name, c in s.constraints.items():
+        if name not in without and not c.driven:
+            value = (changes or {}).get(name, c.number) if c.given is not None else None
+            own = c.options | {"driven": True} if name in driven else c.options
+            t.add(c.kind, *(e.name for e in c.entities), value=value, name=name, **own)
+    return t
+
+
 def shape(p):
     x = np.array([q.position for q in p])
     return np.linalg.norm(x[:, None] - x[None], axis=2)

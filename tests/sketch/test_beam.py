@@ -96,9 +96,3 @@ def checked(seed, n):
 @pytest.mark.parametrize("seed", [3, 11, 16, 17, 19])
 def test_patches_whose_plan_finds_no_place_are_solved_from_the_drawing(seed):
     checked(seed, 300)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 17])
-def test_large_patches(seed):
-    checked(seed, 1000)

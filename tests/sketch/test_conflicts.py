@@ -4,19 +4,7 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
-from tests.sketch.patterns import truth
-
-
-def rebuilt(s, leave_out=(), changes=None):
-    """The sketch's points and distances anew, some left out, some with other values."""
-    t = Sketch()
-    for name, e in s.entities.items():
-        t.point(*e.position, name=name)
-    for name, c in s.constraints.items():
-        if name not in leave_out:
-            value = (changes or {}).get(name, c.number)
-            t.distance(*(e.name for e in c.entities), value, name=name)
-    return t
+from tests.sketch.patterns import again, truth
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -29,12 +17,12 @@ def test_one_wrong_dimension(seed):
     assert result.status == "inconsistent" and "wrong" in result.conflicts
     assert s._lists.numbers == drawn
     others = [n for n in s.constraints if n not in result.conflicts]
-    assert not rebuilt(s, others).solve().solved
+    assert not again(s, others).solve().solved
     for name in result.conflicts:
-        assert rebuilt(s, [*others, name]).solve().solved, name
+        assert again(s, [*others, name]).solve().solved, name
     assert result.repairs[0].size <= min(r.size for r in result.repairs)
     for repair in result.repairs:
-        assert rebuilt(s, changes=repair.changes).solve().solved, repair
+        assert again(s, changes=repair.changes).solve().solved, repair
     single = [r for r in result.repairs if list(r.changes) == ["wrong"]]
     right = float(np.linalg.norm(points[a] - points[b]))
     assert single and single[0].changes["wrong"] == pytest.approx(right, abs=1e-9)
@@ -58,7 +46,7 @@ def test_a_wrong_dimension_that_is_too_short_for_no_chain():
     assert result.status == "inconsistent" and "freedom" in result.reason
     assert "wrong" in result.conflicts and len(result.conflicts) < 40
     others = [n for n in s.constraints if n not in result.conflicts]
-    assert not rebuilt(s, others).solve().solved
+    assert not again(s, others).solve().solved
     for name in result.conflicts:
         left = [s.constraints[n].index for n in result.conflicts if n != name]
         assert result._diagnosis._trial.solvable(left), name

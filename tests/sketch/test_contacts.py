@@ -17,34 +17,30 @@ def verdict(s):
     return result.status, result.freedom, result.redundant
 
 
-def fillet(*, radius=None, corner=False, off=0.0):
-    """Two segments at an angle, joined by an arc that touches both."""
+def fillet():
+    """Two lines at an angle and an arc of radius 1 that touches both."""
     s, half = Sketch(), 0.35 * math.pi
-    r, reach = 1.0, 1.0 / math.tan(half)
+    reach = 1.0 / math.tan(half)
     d, e = np.array([1.0, 0.0]), np.array([math.cos(2.0 * half), math.sin(2.0 * half)])
     o = s.point(0.0, 0.0, name="o")
     p, q = s.point(*(5.0 * d), name="p"), s.point(*(4.0 * e), name="q")
     a, b = s.point(*(reach * d), name="a"), s.point(*(reach * e), name="b")
-    c = s.point(reach + off, r - off, name="c")
-    arc = s.arc(c, b, a, name="round")
-    one, other = (s.line(o, p), s.line(o, q)) if corner else (s.segment(a, p), s.segment(b, q))
-    if corner:
-        s.incident(a, one), s.incident(b, other)
+    arc = s.arc(s.point(reach, 1.0, name="c"), b, a, name="round")
+    one, other = s.line(o, p), s.line(o, q)
+    s.incident(a, one), s.incident(b, other)
     s.tangent(one, arc, name="t1"), s.tangent(other, arc, name="t2")
-    if radius:
-        s.radius(arc, radius)
+    s.radius(arc, 1.0)
     return s
 
 
 def test_one_contact_said_twice_is_implied():
     """The radius to the tangent point is perpendicular already."""
-    s = fillet(corner=True, radius=1.0)
+    s = fillet()
     spoke = s.line(s.entity("c"), s.entity("a"), name="spoke")
     s.perpendicular(spoke, s.entity("line1"), name="square")
     status, freedom, redundant = verdict(s)
     assert status == "over" and len(redundant) == 1
-    t = fillet(corner=True, radius=1.0)
-    assert freedom == verdict(t)[1]
+    assert freedom == verdict(fillet())[1]
 
 
 def test_a_flat_four_bar_linkage_has_one_freedom():

@@ -98,20 +98,6 @@ def test_circles_touch_inside_and_outside(inside):
     assert gap == pytest.approx(2.0 if inside else 4.0, abs=1e-12)
 
 
-def test_apollonius_a_circle_from_three_tangencies():
-    s = Sketch()
-    p = [s.point(*q) for q in ((0, 0), (4, 0), (1, 3))]
-    lines = [s.line(p[i], p[(i + 1) % 3]) for i in range(3)]
-    for q in p:
-        s.fix(q)
-    c = s.circle((1.6, 0.9), 0.5)
-    for line in lines:
-        s.tangent(line, c)
-    assert s.solve().status == "well"
-    sides = [np.linalg.norm(p[i].position - p[(i + 1) % 3].position) for i in range(3)]
-    assert c.radius == pytest.approx(2.0 * 6.0 / sum(sides), rel=1e-12)
-
-
 def test_expressions_follow_their_parameters():
     s = Sketch()
     s.parameter("w", 3.0)

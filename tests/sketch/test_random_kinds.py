@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from clearance.sketch import Sketch
 from tests.examples import examples
 from tests.sketch.independent import Numbers
+from tests.sketch.patterns import again
 
 SOME = examples(40)
 
@@ -128,8 +129,6 @@ def _height(p, line):
 
 def _generic(s, least):
     """Whether the true place is regular: no singular value of the equations near the border of the rank."""
-    from tests.sketch.independent import Numbers
-
     numbers = Numbers(s)
     x, h = np.array(numbers.free), 1e-6
     columns = [
@@ -174,31 +173,8 @@ def test_under_constrained(count, seed, missing):
     b.grow(count)
     if not _generic(b.s, 2e-2):
         return
-    t, left = Sketch(), missing
-    for name, e in b.s.entities.items():
-        if e.what == "point":
-            t.point(*e.position, name=name)
-    for name, e in b.s.entities.items():
-        if e.what == "line":
-            foot = e.offset * np.array([-e.direction[1], e.direction[0]])
-            ends = [t.entity(p.name) for p in e.ends] if e.ends else [foot, foot + e.direction]
-            t.line(*ends, name=name)
-        elif e.what == "circle":
-            t.circle(t.entity(e.center.name), e.radius, name=name)
-    for name, c in b.s.constraints.items():
-        if c.built_in:
-            continue
-        driven = left > 0 and c.given is not None and c.index > 3
-        left -= driven
-        value = c.number if c.given is not None else None
-        t.add(
-            c.kind,
-            *(e.name for e in c.entities),
-            value=value,
-            name=name,
-            driven=driven,
-            **c.options,
-        )
+    given_ones = [n for n, c in b.s.constraints.items() if c.given is not None and c.index > 3]
+    t = again(b.s, driven=given_ones[:missing])
     random = np.random.default_rng(seed)
     for k in range(len(t._lists.numbers)):
         t._lists.numbers[k] += random.uniform(-0.01, 0.01) * (
