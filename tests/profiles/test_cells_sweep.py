@@ -15,17 +15,16 @@ from clearance.profiles.plane import Plane
 from clearance.profiles.swept_bodies import over_time, swept_bodies
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
-from clearance.world.case import Case, PlacedRobot, ReservedSpace
+from clearance.world.case import ReservedSpace
 from clearance.world.motion import kinematic_motion
-from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from clearance.world.rules import matches
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Timing, Window
-from clearance.world.trajectory import Trajectory
 from tests import cells
 from tests.examples import examples
 from tests.oracle.outlines import inside
+from tests.profiles.finely import assert_within_chord_and_turn
 from tests.profiles.moving import rows
 
 shapely = pytest.importorskip("shapely")
@@ -123,30 +122,6 @@ def test_the_outline_is_nowhere_far_from_what_is_swept(seed):
     )  # the samples' own steps
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["door", "crate", "right/tool"])
-def test_a_section_holds_every_point_cut(name):
-    case, rng = cells.cell(4), np.random.default_rng(4)
-    times = np.linspace(0.0, end_of(case), 1000)
-    poses = np.array([cells.pose_at(case, name, t) for t in times])
-    height = float(np.median(poses[:, 2, 3]))
-    names = ([name], []) if name in LINKS else ([], [name])
-    found = cl.swept_profile(
-        case, section=height, tolerance=1e-2, links=names[0], obstacles=names[1]
-    )
-    low, high = body_of(case, name).bounds
-    box = found.curve.box
-    on_plane = rng.uniform(box[0] - 0.05, box[1] + 0.05, (1500, 2))
-    world = np.column_stack([on_plane, np.full(len(on_plane), height)])
-    local = np.einsum("nji,npj->npi", poses[:, :3, :3], world[None] - poses[:, None, :3, 3])
-    cut = ((local >= low) & (local <= high)).all(axis=2).any(axis=0)
-    if name == "right/tool":  # what it has in hand is in the section as well
-        assert {one.label for one in swept_bodies(over_time(case), [name], [])} >= {name, "part"}
-    assert cut.sum() >= 10
-    chosen = rows(found)
-    assert all(inside(point, chosen) for point in on_plane[cut][:60])
-
-
 @examples(10)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate", "part", "lid"]))
 def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, name):
@@ -158,21 +133,9 @@ def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, n
         if one.label != name or one.chain is None:
             continue
         knots = knots_of(one.chain, one.body.shape, PLANE, 0.5, solid=False)
-        share = np.linspace(0.0, 1.0, 21)
-        for k in range(len(knots.chord)):
-            instants = knots.instant[k] + share * (knots.instant[k + 1] - knots.instant[k])
-            poses = one.chain.poses_at(instants)[:, -1]
-            path = PLANE.coordinates(
-                one.body.shape.vertices @ poses[:, :3, :3].transpose(0, 2, 1)
-                + poses[:, None, :3, 3]
-            )
-            chord = path[0] + share[:, None, None] * (path[-1] - path[0])
-            assert (
-                np.linalg.norm(path - chord, axis=2).max() <= knots.chord[k] * (1 + 1e-12) + 1e-13
-            )
-            toward = poses[:, :3, :3].transpose(0, 2, 1) @ np.cross(*PLANE.axes)
-            turned = np.arccos(np.clip(toward @ toward[10], -1, 1)).max()
-            assert turned <= knots.turn[k] + 1e-7
+        assert_within_chord_and_turn(
+            knots, one.body.shape, PLANE, lambda at, one=one: one.chain.poses_at(at)[:, -1], 1e-13
+        )
 
 
 @examples(5)
@@ -189,25 +152,6 @@ def test_a_chain_is_where_its_body_is(seed, name):
         poses = one.chain.poses_at(instants)[1:-1, -1]
         for t, pose in zip(times[1:-1], poses, strict=True):
             assert pose == pytest.approx(cells.pose_at(case, name, t), abs=1e-9)
-
-
-def standing_and_mounted(seed):
-    """A robot on an obstacle that stands, and the same robot where that puts it."""
-    rng = np.random.default_rng(seed)
-    below, on = cells.pose(rng), cells.pose(rng, 0.5)
-    robot, asked = cells.arm("arm", rng), cells.trajectory(rng, 3.0)
-    plate = Obstacle(Body("plate", cl.box((0.1, 0.1, 0.1))), below)
-    return (
-        Case("made", (PlacedRobot(robot, asked, mount=Mount("plate", on)),), (plate,)),
-        Case("made", (PlacedRobot(robot, asked, below @ on),), (plate,)),
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1))
-def test_a_robot_on_what_stands_sweeps_what_it_would_standing_there(seed):
-    mounted, standing = (cl.swept_profile(case, "xz") for case in standing_and_mounted(seed))
-    assert rows(mounted) == rows(standing) and mounted.bound == standing.bound
 
 
 def carrying(**changes):
@@ -290,20 +234,3 @@ def test_what_is_absent_sweeps_nothing():
     )
     assert found.area == pytest.approx(0.2 * 1.2, abs=1e-3)
     assert {found.maker(i)[1] for i in range(found.n_pieces)} == {0}
-
-
-def test_a_turntable_carries_its_robot_round():
-    """A bar on an arm that stands still, on a plate that turns: a sector."""
-    from tests.profiles.moving import slab, turning
-
-    plate = turning(slab([0, 0, 0], [0.1, 0.1, 0.1]), [0.0, 1.3]).robots[0]
-    plate = replace(plate, robot=replace(plate.robot, name="plate"))
-    bar = turning(slab([0.2, -0.05, 0], [1.0, 0.05, 0.1]), [0.0]).robots[0]
-    still = Trajectory(np.array([0.0]), ("j0",), np.zeros((1, 1)))
-    bar = replace(
-        bar, robot=replace(bar.robot, name="bar"), trajectory=still, mount=Mount("plate/l1")
-    )
-    found = cl.swept_profile(Case("made", (plate, bar), ()), links=["bar/l1"])
-    corner_sq = 1.0 + 0.05**2
-    area = 0.8 * 0.1 + 0.5 * 1.3 * (corner_sq - 0.2**2)
-    assert area <= found.area <= area + found.bound * found.length

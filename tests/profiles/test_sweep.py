@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
-from clearance.profiles.chain import positions_at
+from clearance.profiles.chain import chain_of, positions_at
+from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
 from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import link_poses
@@ -18,7 +19,13 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.robot import JointKind
 from tests.examples import examples
 from tests.oracle.outlines import inside
-from tests.profiles.finely import assert_within_chord_and_turn, finely_swept, strays, sweeps
+from tests.profiles.finely import (
+    assert_within_chord_and_turn,
+    finely_swept,
+    interpolated,
+    strays,
+    sweeps,
+)
 from tests.profiles.moving import (
     Z,
     joint,
@@ -115,10 +122,13 @@ def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
 
 
 @pytest.mark.peer
-@examples(6)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
-def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
-    rng, case = sweeps(seed)
+@examples(8)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]), st.booleans()
+)  # fmt: skip
+def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name, bent):
+    """Of motions on lines, and on cubics."""
+    rng, case = sweeps(seed, bent=bent)
     found = cl.swept_profile(case, name, tolerance=2e-3)
     sampled, truth = finely_swept(case, Plane.of(name), 100)
     assert sampled.difference(found.region).area == 0.0
@@ -139,9 +149,9 @@ def test_a_long_bar_spinning_about_its_middle_is_a_double_wedge_not_its_hull():
 
 @pytest.mark.slow
 @examples(10)
-@given(st.integers(0, 2**32 - 1))
-def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):
-    rng, case = sweeps(seed)
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed, bent):
+    rng, case = sweeps(seed, bent=bent)
     motion = kinematic_motion(case.robots[0])
     height = float(motion.poses()[:, -1, 2, 3].mean())
     try:
@@ -171,12 +181,69 @@ def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):
     assert away.max() <= found.bound + 5e-4  # the dense samples' own steps
 
 
+@examples(30)
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, bent):
+    _, case = sweeps(seed, bent=bent)
+    (placed,), plane = case.robots, Plane.of("xz")
+    motion, shape = kinematic_motion(placed), placed.robot.bodies[1].shape
+    knots = knots_of(chain_of(case, (motion,), 2), shape, plane, 1.0, solid=False)
+
+    def poses_at(instants):
+        return link_poses(placed, interpolated(motion, instants))[:, 2]
+
+    assert_within_chord_and_turn(knots, shape, plane, poses_at, 1e-13)
+
+
+def test_a_box_that_swings_out_between_two_equal_steps_is_swept_where_it_was():
+    """Linear joints would stand still: q(s) = v s (1 - s) reaches v / 4 at half time."""
+    case = moved(
+        [joint(0, JointKind.PRISMATIC, (1.0, 0.0, 0.0))],
+        {1: slab([0, 0, 0], [0.3, 0.2, 0.1])},
+        [[0.0], [0.0]],
+        np.array([[0.8], [-0.8]]),
+    )
+    found = cl.swept_profile(case)
+    low, high = found.curve.bounding_box
+    for value, wanted in zip([*low, *high], [0.0, 0.0, 0.5, 0.2], strict=True):
+        assert abs(value - wanted) <= found.bound
+    assert (low <= 0.0).all() and (high >= [0.5, 0.2]).all()
+    assert found.bound <= 5e-4
+
+
 @examples(20)
-@given(st.integers(0, 2**32 - 1))
-def test_points_stay_within_the_chord_bound(seed):
-    _, case = sweeps(seed)
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_the_course_is_the_motion(seed, bent):
+    _, case = sweeps(seed, bent=bent)
     motion = kinematic_motion(case.robots[0])
-    assert_within_chord_and_turn(case, motion, lambda at: positions_at(motion, at), slack=1e-15)
+    low = np.array([0.0, 0.25, 1.0, 1.5])
+    high = low + np.array([1.0, 0.25, 0.5, 0.125])
+    course = chain_of(case, (motion,), 2).course(low, high)
+    for s in (-1.0, -0.3, 0.0, 0.7, 1.0):
+        reported = course.position + s * (
+            course.speed + s * (course.bend / 2 + s * course.jerk / 6)
+        )
+        at = 0.5 * (low + high) + 0.5 * s * (high - low)
+        assert reported[:, 1:] == pytest.approx(interpolated(motion, at), abs=1e-12)
+        assert positions_at(motion, at) == pytest.approx(interpolated(motion, at), abs=1e-12)
+    assert (positions_at(motion, np.arange(3.0)) == motion.positions).all()
+
+
+@pytest.mark.parametrize("kind", [JointKind.REVOLUTE, JointKind.PRISMATIC])
+@pytest.mark.parametrize(("speeds", "bulge"), [((0.01, -0.01), 0.25), ((0.01, 0.01), 3**0.5 / 18)])
+def test_what_alone_bends_or_alone_jerks_is_in_the_bound(kind, speeds, bulge):
+    """Between equal steps the chords stand still; a joint leaves them by `bulge` times its speed."""
+    case = moved(
+        [joint(0, kind, Z if kind is JointKind.REVOLUTE else (0.0, 1.0, 0.0))],
+        {1: slab([1.0, -1e-4, 0], [1.001, 1e-4, 0.1])},
+        [[0.0], [0.0]],
+        np.array(speeds)[:, None],
+    )
+    motion, body = kinematic_motion(case.robots[0]), case.robots[0].robot.bodies[0]
+    chain = chain_of(case, (motion,), 1)
+    knots = knots_of(chain, body.shape, Plane.of("xy"), 1.0, solid=False)
+    assert len(knots.chord) == 1 and knots.moves.all()
+    assert 0.01 * bulge <= knots.chord[0] <= 0.01 * 2.7 * bulge
 
 
 @pytest.mark.parametrize(
