@@ -1,4 +1,4 @@
-"""A case whose machine is off, at any time, in numpy alone: what samples of errors leave, at best as bad as found.
+"""A case whose machine is off, at any time, by formulas of its own: what samples of errors leave.
 
 Joints may follow cubics and each other, tables may loop, anything may stand on anything, parts change hands
 (`HandlingMachine`).
@@ -12,46 +12,18 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+import clearance as cl
 from clearance.world.case import Case
-
-
-def turn(v: np.ndarray) -> np.ndarray:
-    """(3, 3) of a rotation vector."""
-    size = float(np.linalg.norm(v))
-    if size < 1e-300:
-        return np.eye(3)
-    x, y, z = v / size
-    k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(size) * k + (1.0 - np.cos(size)) * k @ k
+from tests.cells import positions_at, table_at
 
 
 def pose_of(t: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(4, 4)."""
+    """(4, 4) of a shift and a rotation vector."""
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turn(v), t
+    pose[:3, :3], pose[:3, 3] = Rotation.from_rotvec(v).as_matrix(), t
     return pose
-
-
-def quaternion_turn(q: np.ndarray) -> np.ndarray:
-    """(3, 3) of a unit quaternion, the scalar last."""
-    x, w = q[:3], q[3]
-    k = np.array([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]])
-    return np.eye(3) + 2.0 * w * k + 2.0 * k @ k
-
-
-def along_table(times: np.ndarray, values: np.ndarray, rates: np.ndarray | None, time: float):
-    """Values at a time; where rates are given on Hermite's cubics."""
-    time = min(max(time, times[0]), times[-1])
-    i = min(int(np.searchsorted(times, time, side="right")) - 1, len(times) - 2)
-    h = times[i + 1] - times[i]
-    s = (time - times[i]) / h
-    if rates is None:
-        return (1.0 - s) * values[i] + s * values[i + 1]
-    a, b, s2 = values[i], values[i + 1], s * s
-    s3 = s2 * s
-    near, far = 2 * s3 - 3 * s2 + 1, -2 * s3 + 3 * s2
-    return near * a + far * b + h * ((s3 - 2 * s2 + s) * rates[i] + (s3 - s2) * rates[i + 1])
 
 
 class SampledMachine:
@@ -74,8 +46,8 @@ class SampledMachine:
             self._add("clock", obstacle.name, "", own.timing)
             self._add_place(obstacle.name, "", own.place)
         self.shapes = {
-            f"{p.robot.name}/{b.name}": _Shape(b.shape) for p in case.robots for b in p.robot.bodies
-        } | {o.name: _Shape(o.body.shape) for o in case.obstacles}
+            f"{p.robot.name}/{b.name}": b.shape for p in case.robots for b in p.robot.bodies
+        } | {o.name: o.body.shape for o in case.obstacles}
 
     def _add(self, kind: str, owner: str, part: str, most: float, n: int = 1) -> None:
         if most > 0.0:
@@ -129,7 +101,8 @@ class SampledMachine:
                 continue
             below = below @ one.world_from_body
             if one.moves is not None:
-                below = below @ self._on_table(one.moves, time + self._clock(errors, one.name))
+                late = time + self._clock(errors, one.name)
+                below = below @ table_at(one.moves, late, left=False)
             found[one.name] = below @ self._off(errors, one.name)
         return found
 
@@ -141,28 +114,12 @@ class SampledMachine:
     def _clock(self, errors, owner: str) -> float:
         return float(np.sum(errors.get(("clock", owner, ""), 0.0)))
 
-    def _on_table(self, table, time: float) -> np.ndarray:
-        pose = np.eye(4)
-        pose[:3, 3] = along_table(table.times, table.positions, None, time)
-        times = table.times
-        time = min(max(time, times[0]), times[-1])
-        i = min(int(np.searchsorted(times, time, side="right")) - 1, len(times) - 2)
-        a, b = quaternion_turn(table.quaternions[i]), quaternion_turn(table.quaternions[i + 1])
-        between = a.T @ b
-        skew = 0.5 * (between - between.T)
-        axis = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
-        sine = float(np.linalg.norm(axis))
-        angle = np.arctan2(sine, 0.5 * (np.trace(between) - 1.0))
-        share = (time - times[i]) / (times[i + 1] - times[i])
-        pose[:3, :3] = a @ turn(axis / max(sine, 1e-300) * angle * share)
-        return pose
-
     def _robot(self, placed, root, time: float, errors, found) -> None:
         name, own = placed.robot.name, placed.trajectory
         time = time + self._clock(errors, name)
         asked = dict(placed.fixed_positions)
         if own is not None:
-            row = along_table(own.times, own.positions, own.velocities, time)
+            row = positions_at(placed, time, left=False)
             asked |= zip(own.joint_names, row, strict=True)
         by_name = {joint.name: joint for joint in placed.robot.joints}
 
@@ -186,11 +143,14 @@ class SampledMachine:
                 pose = pose @ pose_of(np.zeros(3), position(joint) * np.asarray(joint.axis))
             found[f"{name}/{joint.child}"] = pose
 
-    def left(self, time: float, errors, pair: tuple[str, str]) -> float:
-        """[m] of a pair, less surfaces; of bodies that cut each other no more than what it was before."""
-        poses = self.poses(time, errors)
-        a, b = (self.shapes[name].at(poses[name]) for name in pair)
-        return distance(a, b) - self.surfaces(pair)
+    def left(self, time: float, errors, pair: tuple[str, str], parts=None) -> float:
+        """[m] of a pair, less surfaces."""
+        poses = self.poses(time, errors, parts)
+        one, other = pair
+        near = cl.distance(
+            self.shapes[one], self.shapes[other], pose_a=poses[one], pose_b=poses[other]
+        )
+        return near.distance - self.surfaces(pair)
 
     def random(self, rng: np.random.Generator):
         """Errors, most of them at their greatest size."""
@@ -268,9 +228,7 @@ class HandlingMachine(SampledMachine):
 
     def left_in(self, start: float, time: float, errors, pair: tuple[str, str]) -> float:
         """[m] as `left`, in a phase that begins at `start`."""
-        there = self.poses(time, errors[self.NOW], self.parts_at(start, errors))
-        a, b = (self.shapes[name].at(there[name]) for name in pair)
-        return distance(a, b) - self.surfaces(pair)
+        return self.left(time, errors[self.NOW], pair, self.parts_at(start, errors))
 
     def nearer(self, start: float, time: float, pair, errors):
         """[m] the least that is left when one error of one moment after the other is made as bad as it can be."""
@@ -293,57 +251,3 @@ class HandlingMachine(SampledMachine):
 
 def _least(found) -> float:
     return found[0]
-
-
-class _Shape:
-    """Vertices, edges and triangles of a surface."""
-
-    def __init__(self, shape) -> None:
-        self.vertices = np.asarray(shape.vertices)
-        faces = [
-            shape.face_vertices[i:k].tolist() for i, k in itertools.pairwise(shape.face_starts)
-        ]
-        self.edges = np.array(
-            sorted({tuple(sorted(e)) for f in faces for e in zip(f, f[1:] + f[:1], strict=True)})
-        )
-        self.triangles = np.array(
-            [(f[0], f[i], f[i + 1]) for f in faces for i in range(1, len(f) - 1)]
-        )
-
-    def at(self, pose: np.ndarray):
-        """Its vertices in place (n, 3), edges and triangles."""
-        return self.vertices @ pose[:3, :3].T + pose[:3, 3], self.edges, self.triangles
-
-
-def distance(a, b) -> float:
-    """[m] of two surfaces that do not cut each other."""
-    return min(_over_faces(a[0], b), _over_faces(b[0], a), _edge_to_edge(a, b))
-
-
-def _over_faces(points: np.ndarray, other) -> float:
-    p, q, r = (other[0][other[2][:, k]] for k in range(3))
-    n = np.cross(q - p, r - p)
-    n /= np.linalg.norm(n, axis=1, keepdims=True)
-    height = np.abs(np.einsum("ik,ijk->ji", n, points[None] - p[:, None]))
-    inside = np.ones_like(height, dtype=bool)
-    for u, v in ((p, q), (q, r), (r, p)):
-        inward = np.cross(n, v - u)
-        inside &= np.einsum("ik,ijk->ji", inward, points[None] - u[:, None]) >= 0.0
-    return float(np.min(height, where=inside, initial=np.inf))
-
-
-def _edge_to_edge(a, b) -> float:
-    p, u = a[0][a[1][:, 0]][:, None], (a[0][a[1][:, 1]] - a[0][a[1][:, 0]])[:, None]
-    q, v = b[0][b[1][:, 0]][None], (b[0][b[1][:, 1]] - b[0][b[1][:, 0]])[None]
-    least = np.inf
-    w = p - q
-    uu, vv, uv = (u * u).sum(-1), (v * v).sum(-1), (u * v).sum(-1)
-    uw, vw = (u * w).sum(-1), (v * w).sum(-1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = np.clip(np.nan_to_num((uv * vw - vv * uw) / (uu * vv - uv * uv)), 0.0, 1.0)
-    for first in (s, np.zeros_like(s), np.ones_like(s)):
-        t = np.clip((uv * first + vw) / vv, 0.0, 1.0)
-        again = np.clip((uv * t - uw) / uu, 0.0, 1.0)
-        gap = w + again[..., None] * u - t[..., None] * v
-        least = min(least, float(np.sqrt((gap * gap).sum(-1)).min()))
-    return least

@@ -115,16 +115,6 @@ def test_a_turn_of_the_shoulder_takes_the_chord(angle):
     assert nominal - left == pytest.approx(chord, abs=EXACT)
 
 
-@pytest.mark.parametrize("angle", [0.001, 0.05])
-def test_a_turn_of_the_elbow_takes_the_chord_about_the_elbow(angle):
-    elbow = np.array([UPPER, 0.0])
-    pin = pin_beyond(elbow + TIP, angle, 0.2, elbow)
-    nominal, left = proven(two_links(shape=thorn()), (0.0, 0.0), pin, joints(elbow=angle))
-    chord = 2.0 * np.sin(0.5 * angle) * np.linalg.norm(TIP)
-    assert nominal == pytest.approx(0.2, abs=EXACT)
-    assert nominal - left == pytest.approx(chord, abs=EXACT)
-
-
 def test_turns_of_the_base_and_the_shoulder_about_one_place_are_one_turn():
     """Both about the origin: the worst is the turn by their sum, of which two chords are no less."""
     corner = np.array([UPPER, 0.0]) + TIP
@@ -142,19 +132,6 @@ def test_what_turns_about_the_line_to_the_wall_takes_the_second_order_only():
     reach = np.hypot(UPPER + FORE, 0.5 * WIDTH)
     worst = reach * np.cos(corner - 0.001) - (UPPER + FORE)
     assert worst - EXACT <= nominal - left <= worst + 2e-6
-
-
-def test_errors_without_a_lever_take_nothing():
-    """What lies on an axis does not move when it turns about it."""
-    needle = Robot(
-        "arm", ("base", "upper"),
-        (Joint("shoulder", JointKind.REVOLUTE, "base", "upper", at(), X),),
-        (Body("upper", cl.box([0.5, 1e-6, 1e-6]).transformed(at(0.25))),),
-    )  # fmt: skip
-    trajectory = Trajectory(np.zeros(1), ("shoulder",), np.zeros((1, 1)))
-    case = Case("hand", (PlacedRobot(needle, trajectory),), (wall(1.0),))
-    ((_, found, _, steps, _),) = proven_sections(replace(case, tolerance=joints(shoulder=0.1)))
-    assert found.clearance[0] - steps.proven[0] <= 1e-7
 
 
 def test_another_pair_than_the_nearest_is_the_worst():

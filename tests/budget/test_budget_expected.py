@@ -18,7 +18,7 @@ from tests.budget.sampled_machine import SampledMachine
 from tests.simulate.measure.test_between_steps import PAST, THROUGH, sweeping
 
 COVERAGE = 3.0
-N_SAMPLES = 2000
+N_SAMPLES = 1000
 
 
 def nearest_points(case, section, step: int):
@@ -43,9 +43,7 @@ def drawn(most: float, n: int, normal: bool, rng: np.random.Generator) -> np.nda
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("seed", "normal"), [(0, False), (2, False), (6, True), (8, False), (10, True)]
-)
+@pytest.mark.parametrize(("seed", "normal"), [(0, False), (2, False), (6, True)])
 def test_deviation_is_that_of_drawn_errors(seed, normal):
     """Of points that the bodies carry: the spread of how far they are apart at errors drawn at random."""
     case = random_case(seed)

@@ -30,7 +30,7 @@ GAP, ROUNDING = 1e-3, 1e-12
 
 N_STEPS = 7
 
-N_RANDOM = 5
+N_RANDOM = 3
 """Errors that are drawn, the last of which are made worse."""
 
 
