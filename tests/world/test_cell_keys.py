@@ -1,4 +1,4 @@
-"""What follows from a cell alone is worked out once for all its trajectories, and never for another cell."""
+"""What is worked out of one cell is never taken for another."""
 
 from dataclasses import replace
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from clearance.world.case import Limits
-from clearance.world.cell import once_a_cell
 from clearance.world.rules import Rule
 from tests.formats.making_case import load_small
 
@@ -14,15 +13,6 @@ from tests.formats.making_case import load_small
 @pytest.fixture
 def case(tmp_path):
     return load_small(tmp_path)
-
-
-def moved(case, positions=((0.0,), (0.4,))):
-    return case.with_trajectory(np.arange(len(positions)), np.array(positions))
-
-
-def test_another_trajectory_name_or_note_is_the_same_cell(case):
-    assert moved(case).cell is case.cell
-    assert replace(case, name="other", notes=("a note",)).cell is case.cell
 
 
 def test_whatever_else_is_changed_is_another_cell(case):
@@ -42,18 +32,3 @@ def test_whatever_else_is_changed_is_another_cell(case):
     ]
     cells = [case.cell, *(changed.cell for changed in changes)]
     assert len(set(cells)) == len(cells)
-
-
-def test_one_answer_a_cell_and_question(case):
-    asked = []
-
-    @once_a_cell(2)
-    def answer(case, more=0):
-        asked.append((case.name, more))
-        return object()
-
-    first = answer(case)
-    assert answer(moved(case)) is first and answer(case, 1) is not first
-    assert asked == [(case.name, 0), (case.name, 1)]
-    answer(replace(case, limits=Limits(0.1)))  # the third: the first is let go
-    assert answer(case, 1) is answer(moved(case), 1) and answer(case) is not first

@@ -39,7 +39,7 @@ def poses_in(phase, link_poses):
     ]
 
 
-@pytest.mark.parametrize("seed", first_fast(range(16), 4))
+@pytest.mark.parametrize("seed", first_fast(range(10), 4))
 def test_bodies_are_where_their_tables_and_hands_say(seed):
     case = cell(seed)
     line = timeline(case)
@@ -69,24 +69,6 @@ def test_steps_are_all_samples_and_the_ends_of_windows(seed):
     for wanted in asked:
         inside = wanted[(wanted >= times[0]) & (wanted <= times[-1])]
         assert np.isin(inside, times).all()
-
-
-@pytest.mark.slow
-def test_a_part_that_changes_hands_does_not_jump():
-    for seed in range(20):
-        line = timeline(cell(seed))
-        for before, after in zip(line.phases, line.phases[1:], strict=False):
-            for name in ("part", "lid"):
-                held = [forest_of(p.case).link_called(p.case, name) for p in (before, after)]
-                ends = [
-                    poses_in(p, link_poses_at(p.case, p.motions, slice(i, i + 1 or None))[0])[
-                        NAMES.index(name)
-                    ]
-                    for p, i in ((before, -1), (after, 0))
-                ]
-                changes = before.carried.get("part") is not after.carried.get("part")
-                if (changes and "part" in before.carried) or held[0] == WORLD:
-                    assert np.allclose(*ends, rtol=0.0, atol=1e-9)
 
 
 def test_what_is_absent_and_all_on_it_is_gone_before_and_after():

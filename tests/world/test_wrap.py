@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from clearance import Body, Case, Obstacle, PlacedRobot, Trajectory, box, check
 from clearance.errors import BadInput
-from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
 from clearance.world.notice import Severity
 from clearance.world.plausibility import notices_of
@@ -151,27 +150,3 @@ def test_by_the_shortest_way_a_table_goes_as_the_one_unwrapped_by_hand(made):
     by_hand = kinematic_motion(case_of(course).robots[0])
     poses = kinematic_motion(shortest).poses()  # of what follows at half the speed too
     assert np.abs(poses - by_hand.poses()).max() < 1e-11
-
-
-@pytest.mark.slow
-@settings(max_examples=25)
-@given(turned(), st.booleans())
-def test_the_answers_are_those_of_the_table_unwrapped_by_hand_and_of_the_table_as_it_is(
-    made, cubic
-):
-    course, written = made
-    rates = 0.3 * np.gradient(course) if cubic and len(course) > 1 else None
-    by_hand, as_is = (
-        least(case_of(course, velocities=rates)),
-        least(case_of(written, velocities=rates)),
-    )
-    assert least(case_of(written, "shortest", rates)) == pytest.approx(by_hand, abs=1e-9)
-    assert least(case_of(written, "as_written", rates)) == as_is
-
-
-def test_what_follows_goes_along():
-    """Half as fast: the shortest way takes it a quarter turn on, where the numbers take it back."""
-    shortest = case_of([3.0, 3.2 - 2 * np.pi], "shortest").robots[0]
-    poses = link_poses(shortest, shortest.trajectory.positions)[:, 2]
-    angles = np.arctan2(poses[:, 1, 0], poses[:, 0, 0])
-    assert angles.tolist() == pytest.approx([1.5, 1.6])
