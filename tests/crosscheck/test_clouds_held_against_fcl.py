@@ -12,7 +12,6 @@ from clearance.crosscheck import cross_check
 from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import triangle_soup
 from tests.crosscheck.sliding import box, rail_record
-from tests.examples import share_of
 from tests.query.test_clouds import GRID, KINDS, answer, scan, solid_of
 
 pytestmark = pytest.mark.peer
@@ -29,7 +28,7 @@ def record_of(given, near):
 @pytest.mark.parametrize("kind", KINDS)
 def test_right_answers_agree_and_wrong_ones_do_not(n, kind):
     """The other way round as well: a distance where a point is inside, contact where none is."""
-    for seed in range(share_of(4)):
+    for seed in range(2):
         given = scan(np.random.default_rng(seed), n, kind)
         true, near = answer(given, np.eye(4))
         record = record_of(given, near)

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.peer
 
 @pytest.mark.parametrize("name", sorted(FAMILIES))
 def test_triangles_are_as_far_apart_as_the_oracle_says(name: str) -> None:
-    for p, q in zip(*FAMILIES[name](np.random.default_rng(5), 12), strict=True):
+    for p, q in zip(*FAMILIES[name](np.random.default_rng(5), 6), strict=True):
         given = [placed(np.asarray(x, dtype=float)[:3], np.eye(4)) for x in (p, q)]
         assert triangles_sq(*given) == oracle.polygon_distance_sq(p[:3], q[:3])
 
@@ -101,7 +101,8 @@ def test_points_on_needles_are_on_them() -> None:
         positions = np.concatenate(
             [random.normal(scale=0.7, size=(3, 3)), random.uniform(-3, 3, (3, 3))], axis=1
         )
-        record = check(flying("needles", link, [(obstacle, np.eye(4))], positions)).record
+        case = flying("needles", link, [(obstacle, np.eye(4))], positions)
+        record = check(case, certify=False).record
         found = cross_check(record)
         assert found.agrees and found.worst_witness_error <= found.tolerance
         in_floats.append(
