@@ -14,6 +14,7 @@ from tests import oracle
 from tests.examples import examples
 from tests.made_cases import torus
 from tests.oracle.box_clouds import GridBox, distances_sq
+from tests.oracle.rationals import posed
 from tests.strategies import QUARTER_TURNS, boxes, poses
 
 QUARTERS = st.integers(-12, 12).map(lambda n: n / 4.0)
@@ -43,17 +44,6 @@ def truth(cloud, verts, faces, pose_a, pose_b):
     if any(oracle.contains(x, verts, faces, pose_b) for x in posed(cloud.vertices, pose_a)):
         return Fraction(0)
     return oracle.polyhedron_distance_sq(cloud.vertices, alone, verts, faces, pose_a, pose_b)
-
-
-def posed(vertices, pose):
-    exact = [[Fraction(float(x)) for x in row] for row in pose[:3]]
-    return [
-        tuple(
-            row[3] + sum(r * Fraction(float(x)) for r, x in zip(row[:3], v, strict=True))
-            for row in exact
-        )
-        for v in vertices
-    ]
 
 
 @given(points(), RADII, boxes(), poses(), poses())
@@ -127,13 +117,6 @@ def test_a_solid_round_points_is_in_contact(n):
             assert near.inside == "yes"
             assert np.abs(near.point_a).max() <= 0.4
     assert not distance(solid, PointCloud(outside, 0.001)).contact
-
-
-def test_a_hollow_round_points_is_not():
-    shell = Polyhedron.merged([box([3.0, 3.0, 3.0]), box([2.0, 2.0, 2.0]).flipped()])
-    near = distance(shell, PointCloud(np.random.default_rng(1).uniform(-0.5, 0.5, (300, 3)), 0.1))
-    assert not near.contact and near.distance > 0.3
-    assert distance(shell, PointCloud([[0.0, 0.0, 0.0], [1.2, 0.0, 0.0]], 0.1)).contact
 
 
 def without(solid, omitted):
@@ -257,7 +240,7 @@ def answer(given_scan, pose):
 
 @given(
     st.integers(0, 2**32 - 1),
-    st.sampled_from([1, 7, 60, 400]),
+    st.sampled_from([1, 7, 60, 400, 3000]),
     st.sampled_from(KINDS),
     st.sampled_from(QUARTER_TURNS),
 )
@@ -269,18 +252,3 @@ def test_contact_and_distance_are_those_of_all_points(seed, n, kind, turn):
     true, near = answer(scan(random, n, kind), pose)
     assert near.contact == (true == 0.0)
     assert abs(near.distance - true) <= near.error_bound + 4 * np.spacing(true)
-
-
-@pytest.mark.parametrize("n", [100, 3000])
-def test_a_small_box_about_any_of_many_points_is_in_contact(n):
-    """However many groups of points there are, and wherever in the file the point stands."""
-    random = np.random.default_rng(n)
-    points = random.uniform(-1.0, 1.0, (n, 3))
-    cloud, small = PointCloud(points, 0.004), box((0.03, 0.03, 0.03))
-    apart = []
-    for i in random.integers(n, size=40).tolist():
-        pose = np.eye(4)
-        pose[:3, 3] = points[i]
-        if not distance(small, cloud, pose_a=pose).contact:
-            apart.append(i)
-    assert apart == []

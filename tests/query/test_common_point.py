@@ -12,7 +12,6 @@ from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
-from tests.examples import some_slow
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
 
@@ -27,19 +26,6 @@ def certificate_is_right(bodies, proof) -> bool:
     rows = [bodies[k].half_spaces[f] for k, f in zip(proof.parts, proof.faces, strict=True)]
     total = proof.weights @ np.array(rows)
     return len(rows) <= 4 and np.abs(total[:3]).max() < 1e-12 and total[3] > -1e-12
-
-
-@pytest.mark.parametrize("m", some_slow([2, 3, 8, 64], {64}))
-def test_the_deepest_point_is_strictly_inside_all(m):
-    for seed in range(6):
-        rng = np.random.default_rng([m, seed])
-        bodies = [ball(20, 100 * seed + i, rng.normal(size=3) * 0.2) for i in range(m)]
-        met = common_point(bodies)
-        if met.relation == "overlap":
-            levels = [(b.offsets_about(met.point) / b.face_widths).min() for b in bodies]
-            assert min(levels) == pytest.approx(met.level, rel=1e-9)
-        else:
-            assert certificate_is_right(bodies, met.certificate)
 
 
 def test_apart_bodies_have_a_certificate_and_two_a_separating_plane():

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance
-from clearance.geometry.shapes import sphere
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
@@ -82,26 +81,6 @@ def test_far_from_the_origin_nothing_is_lost():
         assert oracle.error(near.distance, sq) <= Fraction(2) ** -52 * oracle.root(sq)
 
 
-@pytest.mark.slow
-def test_tree_and_brute_force_agree_bit_for_bit():
-    """Each face alone as a body, so that nothing is pruned; least faces first."""
-    random = np.random.default_rng(13)
-    a, b = sphere(0.5, tolerance=0.06), sphere(0.3, tolerance=0.04)
-    faces_a = [Polyhedron(a.face(i), [range(len(a.face(i)))]) for i in range(a.n_faces)]
-    faces_b = [Polyhedron(b.face(i), [range(len(b.face(i)))]) for i in range(b.n_faces)]
-    for _ in range(1):
-        pose = pose_of(random, 0.0)
-        pose[:3, 3] = random.normal(size=3)
-        pose[:3, 3] *= 1.2 / np.linalg.norm(pose[:3, 3])
-        near = distance(a, b, pose_b=pose)
-        every = [
-            (distance(one, other, pose_b=pose).distance, i, j)
-            for i, one in enumerate(faces_a)
-            for j, other in enumerate(faces_b)
-        ]
-        assert (near.distance, near.face_a, near.face_b) == min(every)
-
-
 OCTAHEDRON = np.array(
     [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float
 )
@@ -135,18 +114,6 @@ def test_rays_through_corners_and_edges_are_no_special_case(turn):
         )
         assert near.contact == (sq == 0)
         assert (near.face_a == -1) == (max(x, y, z) < 5.0)
-
-
-@pytest.mark.parametrize("ulps", [-1, 1])
-def test_one_ulp_inside_or_outside(ulps):
-    """A cube an ulp inside another's face is contact, an ulp outside it is not."""
-    inner = np.nextafter(1.0 - 0.25, np.inf * ulps) if ulps < 0 else np.nextafter(1.25, np.inf)
-    pose = at(inner, 0.0, 0.0)
-    near = distance(cube(1.0), cube(0.25), pose_b=pose)
-    sq = oracle.solid_distance_sq(
-        CUBE_CORNERS, BOX_FACES, CUBE_CORNERS * 0.25, BOX_FACES, None, pose
-    )
-    assert near.contact == (sq == 0) == (ulps < 0)
 
 
 @given(poses(reach=1.0), poses(reach=1.0), st.sampled_from([1.0, 0.25, 0.01]), st.booleans())
@@ -201,7 +168,7 @@ def test_rays_through_many_faces_like_the_oracle():
     ring = torus(1.0, 0.4, 14, 7)
     faces = ring.face_vertices.reshape(-1, 3).tolist()
     n_inside = 0
-    for _ in range(120):
+    for _ in range(60):
         pose_a, pose_b = np.eye(4), np.eye(4)
         pose_a[:3, :3] = rotations(random, 1)[0]
         pose_a[:3, 3] = random.normal(size=3)
@@ -211,4 +178,4 @@ def test_rays_through_many_faces_like_the_oracle():
         corner = [Fraction(x) + Fraction(2) ** -20 for x in pose_b[:3, 3].tolist()]
         assert near.contact == oracle.contains(corner, ring.vertices, faces, pose_a)
         n_inside += near.contact
-    assert 20 < n_inside < 100
+    assert 10 < n_inside < 50

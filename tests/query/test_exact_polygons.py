@@ -43,29 +43,14 @@ def measured(name):
 
 
 @pytest.mark.parametrize("name", sorted(FAMILIES))
-def test_contact_is_decided_like_the_oracle(name):
-    wrong = [i for i, (_, _, near, sq) in enumerate(measured(name)) if near.contact != (sq == 0)]
-    assert not wrong
-
-
-@pytest.mark.parametrize("name", sorted(FAMILIES))
-def test_the_error_bound_is_never_violated(name):
-    for _, _, near, sq in measured(name):
-        assert oracle.error(near.distance, sq) <= Fraction(near.error_bound)
-
-
-@pytest.mark.parametrize("name", sorted(FAMILIES))
-def test_every_digit_is_right_where_the_distance_is_a_number(name):
+def test_contact_every_digit_its_bound_and_the_witness_points_are_like_the_oracle(name):
     """To an ulp, or to 2^-96 of the polygons' size; a plain kernel loses six digits at a millionth of it."""
     for p, q, near, sq in measured(name):
+        assert near.contact == (sq == 0)
+        assert oracle.error(near.distance, sq) <= Fraction(near.error_bound)
         if sq > Fraction(2) ** -900:
             noise = Fraction(2) ** -96 * Fraction(np.ptp(np.concatenate([p, q]), axis=0).max())
             assert oracle.error(near.distance, sq) <= Fraction(2) ** -52 * oracle.root(sq) + noise
-
-
-@pytest.mark.parametrize("name", sorted(FAMILIES))
-def test_witness_points_are_on_their_polygons_and_realise_the_distance(name):
-    for p, q, near, _ in measured(name):
         ulp = 8 * np.spacing(max(np.abs(p).max(), np.abs(q).max()))
         gap = np.linalg.norm(near.point_a - near.point_b)
         assert abs(gap - near.distance) <= near.error_bound + ulp

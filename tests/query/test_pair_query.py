@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.compile.decorators import DISABLED
 from clearance.errors import BadPose, BadShape, NotFinite
 from clearance.kernels.search.pair_query import nearest_at_poses
 from tests.examples import examples
@@ -135,17 +134,6 @@ def test_boxes_anywhere_and_back_again(a, b, asked):
         )
 
 
-def test_what_comes_near_after_a_long_way_is_seen():
-    """Small steps that never are a jump bring another end of a long bar near: what was left far must be asked."""
-    bar, ball = cl.box((2.0, 0.1, 0.1)), cl.sphere(radius=0.1, tolerance=0.001)
-    query = cl.Query(bar, ball)
-    stand = np.eye(4)
-    stand[:3, 3] = [1.3, 0.0, 0.0]
-    for angle in np.linspace(0.0, 2.0 * np.pi, 400):
-        turn = turned([0.0, 0.0, 1.0], angle)
-        assert_same(query.distance(turn, stand), cl.distance(bar, ball, pose_a=turn, pose_b=stand))
-
-
 def test_a_body_that_stands_is_given_once_or_not_at_all():
     a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5))
     walked = np.tile(np.eye(4), (3, 1, 1))
@@ -231,18 +219,3 @@ def test_threads_that_share_a_query_get_their_own_answers():
     with ThreadPoolExecutor(4) as threads:
         list(threads.map(ask, range(4)))
     assert not wrong
-
-
-@pytest.mark.skipif(DISABLED, reason="nothing is compiled")
-def test_a_query_lets_go_of_its_memory():
-    import resource
-
-    a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5))
-    for _ in range(20):
-        cl.Query(a, b).distance()
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    for _ in range(300):
-        cl.Query(a, b).distance()
-    assert (
-        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000
-    )  # kB; a query holds 500

@@ -1,6 +1,4 @@
-"""The paper's loop over face pairs: what it measures, what its rules lose, and its own two
-checks.
-"""
+"""The paper's loop over face pairs: what it measures, and what its rules lose."""
 
 import itertools
 import math
@@ -8,51 +6,18 @@ import math
 import numpy as np
 import pytest
 
+from clearance.geometry import shapes
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import box
 from clearance.query.paper import distance_paper, polygon_distance_paper
 from tests import oracle
-from tests.made_cases import faces_of
-from tests.strategies import BOX_FACES, rotations
+from tests.made_cases import at, faces_of
+from tests.strategies import rotations
 
 
-def box(x: float, y: float, z: float) -> Polyhedron:
-    """A box about the origin, 6 faces."""
-    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * (x, y, z)
-    return Polyhedron(corners, BOX_FACES)
-
-
-def ring_body(radii, heights, n: int, hollow: bool = False) -> Polyhedron:
-    """A surface of rings about z joined by quads; closed by two n-gons, or onto itself where
-    `hollow`."""
-    angles = 2 * np.pi * np.arange(n) / n
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    rings = [np.c_[r * circle, np.full(n, h)] for r, h in zip(radii, heights, strict=True)]
-    pairs = [(i, i + 1) for i in range(len(rings) - 1)]
-    pairs += [(len(rings) - 1, 0)] if hollow else []
-    faces = [
-        (n * i + k, n * i + (k + 1) % n, n * j + (k + 1) % n, n * j + k)
-        for i, j in pairs
-        for k in range(n)
-    ]
-    if not hollow:
-        top = n * (len(rings) - 1)
-        faces += [tuple(range(n))[::-1], tuple(range(top, top + n))]
-    return Polyhedron(np.concatenate(rings), faces)
-
-
-def pipe(inner: float, outer: float, length: float, n: int = 16) -> Polyhedron:
-    """A concave body of 4 n quads: outer wall, top, inner wall, bottom."""
-    half = length / 2
-    return ring_body([outer, outer, inner, inner], [-half, half, half, -half], n, hollow=True)
-
-
-def pose(x: float = 0, y: float = 0, z: float = 0, turn: np.ndarray | None = None) -> np.ndarray:
-    """(4, 4) world_from_body."""
-    matrix = np.eye(4)
-    matrix[:3, 3] = x, y, z
-    if turn is not None:
-        matrix[:3, :3] = turn
-    return matrix
+def pipe(n: int) -> Polyhedron:
+    """A concave body of 4 n quads."""
+    return shapes.pipe(inner_radius=0.3, outer_radius=0.35, length=1.0, sections=n)
 
 
 def true_distance(a, b, pose_a=None, pose_b=None) -> float:
@@ -65,11 +30,11 @@ def true_distance(a, b, pose_a=None, pose_b=None) -> float:
 def motion(seed: int, n: int):
     """Poses moving past the origin with a wave, at one random attitude."""
     turn = rotations(np.random.default_rng(seed), 1)[0]
-    return [pose(x, 0.3 * math.sin(3 * x), 0.9, turn) for x in np.linspace(-2, 2, n)]
+    return [at(x, 0.3 * math.sin(3 * x), 0.9, turned=turn) for x in np.linspace(-2, 2, n)]
 
 
 def test_without_rules_it_is_the_least_of_all_polygon_pairs():
-    a, b = box(0.5, 0.4, 0.3), pipe(0.3, 0.35, 1.0, n=6)
+    a, b = box((0.5, 0.4, 0.3)), pipe(6)
     for b_pose in motion(4, 5):
         moved = b.vertices @ b_pose[:3, :3].T + b_pose[:3, 3]
         least = min(
@@ -82,15 +47,15 @@ def test_without_rules_it_is_the_least_of_all_polygon_pairs():
 
 
 def test_never_nearer_than_the_truth_and_witnesses_lie_on_the_named_faces():
-    a, b = box(0.5, 0.4, 0.3), pipe(0.3, 0.35, 1)
+    a, b = box((0.5, 0.4, 0.3)), pipe(16)
     for a_pose, b_pose in zip(motion(5, 12), motion(6, 12)[::-1], strict=True):
         found = distance_paper(a, b, a_pose, b_pose)
         assert found.distance >= true_distance(a, b, a_pose, b_pose) - 1e-14
-        for body, at, face, point in (
+        for body, pose, face, point in (
             (a, a_pose, found.face_a, found.point_a),
             (b, b_pose, found.face_b, found.point_b),
         ):
-            corners = body.face(face) @ at[:3, :3].T + at[:3, 3]
+            corners = body.face(face) @ pose[:3, :3].T + pose[:3, 3]
             assert oracle.point_polygon_distance_sq(point, corners) < 1e-28
         assert math.dist(found.point_a, found.point_b) == pytest.approx(found.distance, abs=1e-15)
 
@@ -102,13 +67,13 @@ def test_counterexample_rule_2_cuts_every_pair_of_a_knife_over_a_slab():
     lower side faces the slab's top, but the top's centre (0, 0, 0) is behind that side's plane; its
     upper side faces away. Every other pair is perpendicular or looks away.
     """
-    slab = box(2, 2, 0.02)
+    slab = box((2, 2, 0.02))
     profile = np.array([(0.9, 0.001), (1.9, 1.0), (1.9, 1.2)])
     knife = Polyhedron(
         np.array([(x, y, z) for y in (-0.2, 0.2) for x, z in profile]),
         [(0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (0, 2, 5, 3), (1, 4, 5, 2)],
     )
-    lying = pose(0, 0, -0.01)
+    lying = at(z=-0.01)
     assert true_distance(slab, knife, lying) == pytest.approx(0.001, rel=1e-12)
     found = distance_paper(slab, knife, lying)
     assert found.distance == math.inf
@@ -121,7 +86,7 @@ def test_the_example_of_figure_1():
     """Two faces that look at each other, and two that look away, whose normals are opposite as well: in the text
     n2 and n3, where n2 . v1 is positive, and n4 and n8, where n4 . v1 is negative.
     """
-    left, right = box(1, 1, 1), box(1, 1, 1)
+    left, right = box((1, 1, 1)), box((1, 1, 1))
     faces = {side: {tuple(n): i for i, n in enumerate(shape.normals.round().tolist())}
              for side, shape in (("left", left), ("right", right))}  # fmt: skip
 
@@ -130,7 +95,7 @@ def test_the_example_of_figure_1():
 
     n2, n3 = one(left, "left", 1.0), one(right, "right", -1.0)
     n4, n8 = one(left, "left", -1.0), one(right, "right", 1.0)
-    beside = pose(3.0, 0.0, 0.0)
+    beside = at(3.0)
     facing, away = distance_paper(n2, n3, None, beside), distance_paper(n4, n8, None, beside)
     assert (facing.tally["measured"], facing.distance) == (1, 2.0)
     assert (away.tally["cut_by_rule_2"], away.tally["measured"], away.distance) == (1, 0, math.inf)

@@ -45,30 +45,6 @@ def test_depth_is_that_of_fractions():
     assert n_deep > 20
 
 
-def test_depth_of_many_corners_is_that_of_all_normals():
-    random = np.random.default_rng(3)
-    for n in (20, 60):
-        a = cl.Polytope(random.normal(size=(n, 3)) * [1.0, 0.5, 0.2])
-        b = cl.Polytope(random.normal(size=(n, 3)) + [0.4, 0.1, 0.0])
-        found = penetration(a, b)
-        assert found.depth == pytest.approx(by_all_normals(a, b), rel=1e-13)
-        assert 0.0 <= found.depth - found.at_least <= 1e-13
-
-
-def by_all_normals(a, b):
-    crossed = np.cross(edges(a)[:, None], edges(b)[None]).reshape(-1, 3)
-    lengths = np.linalg.norm(crossed, axis=1)
-    crossed = crossed[lengths > 1e-9] / lengths[lengths > 1e-9, None]
-    normals = np.concatenate([b.normals, -a.normals, crossed, -crossed])
-    return ((normals @ b.vertices.T).max(axis=1) - (normals @ a.vertices.T).min(axis=1)).min()
-
-
-def edges(body):
-    rings = np.split(body.face_vertices, body.face_starts[1:-1])
-    pairs = {tuple(sorted(two)) for r in rings for two in zip(r, np.roll(r, -1), strict=True)}
-    return np.array([body.vertices[j] - body.vertices[i] for i, j in sorted(pairs)])
-
-
 def ball(n, random, centre=(0.0, 0.0, 0.0), radius=1.0):
     points = random.normal(size=(n, 3))
     return cl.Polytope(radius * points / np.linalg.norm(points, axis=1)[:, None] + centre)
@@ -90,13 +66,6 @@ def test_a_box_pushed_into_a_box_by_d_is_d_deep(deep):
     found = penetration(a, b)
     assert found.depth == pytest.approx(deep, abs=1e-15)
     assert found.direction.tolist() == [-1.0, 0.0, 0.0]
-
-
-def test_touching_and_apart_are_0_deep():
-    a = cl.Polytope.from_polyhedron(cl.box((1.0, 1.0, 1.0)))
-    for shift in ([1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [3.0, 2.0, 0.0]):
-        found = penetration(cl.Polytope(a.vertices + shift), a)
-        assert (found.depth, found.at_least) == (0.0, 0.0)
 
 
 def test_needles_and_sheets_have_their_depth():
@@ -183,7 +152,7 @@ def test_rough_bounds_hold_those_of_cut_bodies_apart(seed):
     assert cl.distance(a, b, pose_a=moved).distance > 0.0
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_an_envelope_holds_its_points(seed):
     points = np.random.default_rng(seed).normal(size=(300, 3)) * [1.0, 0.3, 0.01] + [
         10.0,

@@ -40,22 +40,6 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
         assert any(is_in_ball(packed, *(0.9 * x)) for x in on_surface)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
-def test_random_families_agree_with_one_hull_over_all_half_spaces(seed):
-    rng = np.random.default_rng(seed)
-    m = int(rng.integers(2, 65))
-    n = int(np.exp(rng.uniform(np.log(4), np.log(min(5000, 40000 / m)))))
-    bodies = cluster(m, n, seed)
-    found = intersect(bodies)
-    if found.relation == "overlap":
-        assert found.volume == pytest.approx(intersect(bodies, "dual").volume, rel=1e-12)
-        ends = sum(map(len, found.faces))
-        assert 2 * (len(found.vertices) + len(found.faces) - 2) == ends
-    else:
-        assert found.volume == 0.0 and found.common.certificate is not None
-
-
 def test_a_moved_body_is_the_hull_of_the_moved_corners():
     rng = np.random.default_rng(5)
     pose = np.eye(4)

@@ -76,7 +76,8 @@ def test_flat_needle_like_and_huge_bodies(scale):
             assert found == pytest.approx(exact, rel=1e-13, abs=0.0)
 
 
-def test_regular_solids_share_regular_solids():
+@pytest.mark.parametrize("method", ["cut", "dual"])
+def test_regular_solids_share_regular_solids(method):
     cube, octahedron = 2.0 * CUBE - 1.0, OCTAHEDRON
     tetrahedron = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
     cases = (
@@ -92,7 +93,7 @@ def test_regular_solids_share_regular_solids():
     )
     for bodies, volume, n_corners, n_faces in cases:
         for seed in range(3):
-            found = intersect([Polytope(turned(points, seed)) for points in bodies])
+            found = intersect([Polytope(turned(points, seed)) for points in bodies], method)
             assert found.volume == pytest.approx(volume, rel=1e-14)
             assert (len(found.vertices), len(found.faces)) == (n_corners, n_faces)
 
@@ -106,6 +107,8 @@ def test_many_bodies_both_ways(m, n):
         assert cut.relation == dual.relation and cut.volume >= 0.0
         assert cut.volume == pytest.approx(dual.volume, rel=1e-11, abs=0.0)
         assert cut.common.passes < MAX_PASSES and cut.common.n_faces < 16 * m
+        if cut.relation == "overlap":
+            assert 2 * (len(cut.vertices) + len(cut.faces) - 2) == sum(map(len, cut.faces))
 
 
 def test_bytes_do_not_depend_on_the_number_of_threads(monkeypatch):
