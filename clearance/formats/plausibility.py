@@ -82,6 +82,13 @@ def odd_in_program(*given: BaseModel | None) -> list[str]:
         if isinstance(one, Axis) and not isinstance(one.axis, str)
         if _looks_like_degrees(abs(one.offset))
     ]
+    turned += [
+        f"{where}.hold has {name} go to {value:g} rad"
+        for where, one in models
+        if isinstance(one, PathMove)
+        for name, value in one.hold.items()
+        if _is_round_in_degrees(abs(value))
+    ]
     radii = [
         (f"{where}.zone", one.zone)
         for where, one in models
@@ -138,8 +145,11 @@ def _looks_like_degrees(angle: float) -> bool:
 
     Programs that write angles from 0 to a full turn write all digits; who writes 5 or 4.5 thinks of degrees.
     """
-    if angle > 2.0 * np.pi + ROUND_ANGLE:
-        return True
+    return angle > 2.0 * np.pi + ROUND_ANGLE or _is_round_in_degrees(angle)
+
+
+def _is_round_in_degrees(angle: float) -> bool:
+    """True above a half turn for a number that is round in decimals and no part of a turn."""
     if angle <= np.pi + ROUND_ANGLE or round(angle, 2) != angle:
         return False
     eighths = angle / (np.pi / 4)

@@ -1,4 +1,6 @@
-"""Which bodies move by one clock: those of a tree, of what stands on it, and of what it carries at any time."""
+"""Which bodies move by one clock: those of a tree, of what stands on it, of what it carries at any time, and of
+robots that its program moves too.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,7 @@ def clocks_of(case: Case) -> dict[_Thing, int]:
     below = list(_below(case))
     moving = _moving(case, below)
     clocks = {thing: i for i, thing in enumerate(_things(case))}
-    for thing, carrier in below:
+    for thing, carrier in (*below, *_driven(case)):
         if carrier in moving:
             old, new = clocks[thing], clocks[carrier]
             clocks |= {one: new for one, clock in clocks.items() if clock == old}
@@ -73,6 +75,14 @@ def _below(case: Case) -> Iterator[tuple[_Thing, _Thing]]:
     for thing, mount in mounted:
         if mount is not None:
             yield thing, owner_of(case, mount)
+
+
+def _driven(case: Case) -> Iterator[tuple[_Thing, _Thing]]:
+    """The robots that the program of another one moves, each with that one: one controller has one clock."""
+    numbers = {placed.robot.name: i for i, placed in enumerate(case.robots)}
+    for i, placed in enumerate(case.robots):
+        for name in placed.trajectory.drives if placed.trajectory is not None else ():
+            yield (False, numbers[name]), (False, i)
 
 
 def _moving(case: Case, below: Sequence[tuple[_Thing, _Thing]]) -> set[_Thing]:

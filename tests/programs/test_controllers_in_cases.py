@@ -11,6 +11,7 @@ import yaml
 
 import clearance as cl
 from clearance.formats.plausibility import IN_DEGREES, odd_in_program
+from clearance.formats.schema.program import Program
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.quaternions import quaternions_of
@@ -107,6 +108,12 @@ def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
         f"tools.TCP has an angle of 90 rad in its rpy; {IN_DEGREES}",
         "zones.CNT is 50 m; lengths are in metres, is this millimetres?",
     ]
+    held = {"lin": {"to": {"frame": "base", "xyz": [0, 0, 0]}, "hold": {"turn": 5}}}
+    turns = {
+        "lin": {"to": {"frame": "base", "xyz": [0, 0, 0]}, "hold": {"turn": 12.57, "slide": 0.5}}
+    }
+    table = validated(Program, {"tool": {"link": "tip"}, "moves": [held, turns]}, "program")
+    assert odd_in_program(table) == [f"moves[0].lin.hold has turn go to 5 rad; {IN_DEGREES}"]
     move = {
         "lin": {"to": {"frame": "base", "xyz": tool_at(START)[:3, 3].tolist(), "rpy": [0, 0, 45]}}
     }

@@ -138,6 +138,13 @@ def test_a_program_that_leaves_out_waits_is_suspect_beside_others_that_move(tmp_
     assert not reported(replace(case, obstacles=tuple(one for one in case.obstacles if one.stands)))
 
 
+def test_a_robot_that_a_program_moves_too_has_its_clock():
+    drives = cl.Trajectory(np.arange(2.0), (), np.zeros((2, 0)), drives=("turn",))
+    arm = replace(robot("arm"), trajectory=drives)
+    clocks = clocks_of(case(robot("turn"), arm, robot("other"), robot("jig", "turn/base")))
+    assert clocks[False, 0] == clocks[False, 1] == clocks[False, 3] != clocks[False, 2]
+
+
 def two_recordings(folder, apart, *changes):
     """Both arms by recordings of which the right one's first stamp is some seconds after the left one's."""
     files = "joints: {shoulder: 0.2}", "trajectory: path.csv"

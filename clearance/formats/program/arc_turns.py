@@ -44,6 +44,7 @@ def turn_on_path(start: np.ndarray, via: np.ndarray, end: np.ndarray) -> Literal
         return "tangent"
     if abs(angle + left @ normal) >= np.pi - TILT:
         raise BadProgram(
-            "the tool turns by half a turn or more on the arc", valid="divide it into two arcs"
+            "seen along the arc, the tool turns by half a turn or more, either way",
+            valid="divide it into two arcs",
         )
     return "to"

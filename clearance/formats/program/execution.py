@@ -36,7 +36,7 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.language import Language
 from clearance.formats.program.persistent import PersistentValues
-from clearance.formats.program.remarks import LEFT_OUT, WAITS, Remarks
+from clearance.formats.program.remarks import LEFT_OUT, STILL, WAITS, Remarks
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -103,7 +103,7 @@ class Execution(Remarks):
 
     def pass_over(self, call: Call) -> None:
         """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
-        what = WAITS if self.language.waits(call) else "instructions that move nothing"
+        what = WAITS if self.language.waits(call) else STILL
         self.note(what, f"{call.name} ({call.line})")
         for part in (*call.args, *call.named.values()):
             if any(one.name in self.routines for one in calls_in(part)):

@@ -11,6 +11,7 @@ from clearance.world.notice import listed
 
 LEFT_OUT = "left out as asked"
 WAITS = "instructions that take a time which no file says are taken to take none"
+STILL = "instructions that move nothing"
 UNSAID = "speeds that no file says are assumed"
 
 
@@ -33,8 +34,10 @@ class Remarks:
 
     @property
     def notes(self) -> list[str]:
-        """A line each on what was passed over, and where."""
-        return [f"{what}: {listed([*where], 6)}" for what, where in self._passed.items()]
+        """A line each on what was passed over, and where: what times lack first, and what moves nothing last."""
+        order = {LEFT_OUT: 0, WAITS: 0, UNSAID: 0, STILL: 2}
+        passed = sorted(self._passed.items(), key=lambda one: order.get(one[0], 1))
+        return [f"{what}: {listed([*where], 6)}" for what, where in passed]
 
     def note(self, what: str, where: str) -> None:
         """Keeps something to tell, each place once."""

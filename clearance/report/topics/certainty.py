@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -133,17 +134,23 @@ def lines(model: ReportModel) -> Iterator[Line]:
         yield "facets", f"{shapes}: a clearance can be too small by that much, never too large"
     if record.cross_check is not None:
         yield from labelled("cross-check", _check_lines(record.cross_check))
-    notes = _repeats_last(notes_of(record, model.session.hints))
+    notes = _folded(notes_of(record, model.session.hints))
     yield from (("note", note) for note in notes[:MOST_NOTES])
     if len(notes) > MOST_NOTES:
         yield "", f"and {count(len(notes) - MOST_NOTES, 'more note')}, see --json"
 
 
-def _repeats_last(notes: Sequence[str]) -> list[str]:
-    """The notes in their order, but behind the others those that begin with the words of an earlier one, as the
-    notes of corner after corner do."""
+def _folded(notes: Sequence[str]) -> list[str]:
+    """The notes; of three or more that begin alike, as those of corner after corner do, the first and a count."""
     begun = [tuple(word for word in note.split() if word.isalpha())[:3] for note in notes]
-    return [notes[i] for i in sorted(range(len(notes)), key=lambda i: begun[i] in begun[:i])]
+    times, found = Counter(begun), dict[tuple[str, ...], str]()
+    for words, note in zip(begun, notes, strict=True):
+        n_more = times[words] - 1
+        if n_more < 2:
+            found[note,] = note
+        else:
+            found.setdefault(words, f"{note}; and {n_more} more notes like it, see --json")
+    return [*found.values()]
 
 
 def _certified_lines(record: Record, verdict: Verdict) -> Iterator[Line]:

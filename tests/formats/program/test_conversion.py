@@ -167,7 +167,7 @@ ROUND = {
     "three quarters with it": ((-1.0, 0.0), turned(270, 2, 0, -1), "tangent"),
     "tilted": ((HALF, HALF), turned(20, 0, 0, 1), "the tool tilts"),
     "tilted with the path": ((HALF, HALF), turned(90, 2, 0, 1) @ turned(9, 1, 0, 0), "the tool tilts"),
-    "as it was, after three quarters": ((-1.0, 0.0), turned(0, 2, 0, -1), "half a turn or more"),
+    "as it was, after three quarters": ((-1.0, 0.0), turned(0, 2, 0, -1), "seen along the arc, the tool"),
 }  # fmt: skip
 
 
