@@ -100,6 +100,11 @@ def _robot_of(case: Case, robot: str | None) -> int:
     moving = [one.robot.name for one in case.robots if one.trajectory is not None]
     if robot is None and len(moving) == 1:
         robot = moving[0]
+    if robot is None:
+        raise UnknownRobot(
+            f"{len(moving)} robots move, and one was recorded",
+            valid=f"its name: --recorded-robot {' or '.join(moving)}",
+        )
     i_robot = index_of_robot(case.robots, robot)
     if case.robots[i_robot].trajectory is None:
         raise UnknownRobot(
@@ -164,9 +169,10 @@ def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
     if not left_out:
         return []
     worst = max(left_out, key=lambda one: one.greatest)
+    rest = max(found.start - times[0], 0.0) + max(times[-1] - found.end, 0.0)
     text = (
-        f"{found.path} is {span} {asked}: nothing is said of the rest, in which joint {worst.joint!r} was to move "
-        f"by {worst.greatest:.3g} {units[worst.joint]}"
+        f"{found.path} is {span} {asked}: nothing is said of the other {rest:.3g} s, in which joint "
+        f"{worst.joint!r} was to move by {worst.greatest:.3g} {units[worst.joint]}"
     )
     return [Notice(Severity.WARNING, "recorded run", text, placed.robot.name)]
 

@@ -130,8 +130,8 @@ def _resources_of(sections: Sequence[Section], resources: Resources) -> list[Res
     ends = list(accumulate(section.phase.n_steps for section in sections))
     before = [0, *ends[:-1]]
     return [
-        resources.of_section(section.number, start, ends[-1])
-        for section, start in zip(sections, before, strict=True)
+        resources.of_section(section.number, (start, end), ends[-1])
+        for section, start, end in zip(sections, before, ends, strict=True)
     ]
 
 

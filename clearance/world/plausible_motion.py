@@ -122,7 +122,7 @@ def _suspect(texts: Sequence[str]) -> list[Notice]:
 
 _IN_DEGREES = (
     "If so, write 'NAME [deg]' in the header of the table, or trajectory: {file: …, units: {angle: deg}} "
-    "(clearance new --units deg)"
+    "(clearance new --units deg); `joints` of a robot are in radians"
 )
 
 

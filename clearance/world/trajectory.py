@@ -17,10 +17,10 @@ from clearance.world.timing import Timing, Window, require_increasing
 
 @dataclass(frozen=True)
 class Hole:
-    """A stretch of a recording without a message, many times longer than usual.
+    """A stretch of a recording in which a joint has no position: many times longer than usual, or said to be NaN.
 
     Attributes:
-        joints: those without a message. start, end: [s] of the trajectory's own time.
+        joints: those without a position. start, end: [s] of the trajectory's own time.
         usual: [s] between two messages. means: one of `notice.GAPS`; None if the case does not say.
     """
 
@@ -34,7 +34,7 @@ class Hole:
     def text(self) -> str:
         """When it is, how long, and of which joints."""
         return (
-            f"no message of {listed([*self.joints], 4)} from {self.start:.6g} to {self.end:.6g} s "
+            f"no position of {listed([*self.joints], 4)} from {self.start:.6g} to {self.end:.6g} s "
             f"({self.end - self.start:.3g} s, usually {self.usual:.2g} s)"
         )
 

@@ -154,7 +154,7 @@ def test_what_is_refused(tmp_path, text, kind, told):
 def test_a_recording_of_a_part_of_the_motion_says_so_beside_the_verdict(tmp_path, text, span, rest):
     found = cl.check(case(tmp_path, text), motion="recorded", recorded=tmp_path / "run.csv")
     (told,) = [line for line in found.verdict.warnings if "run.csv" in line]
-    assert f"recorded from {span} of 0.000 to 2.000 s: nothing is said of the rest" in told
+    assert f"recorded from {span} of 0.000 to 2.000 s: nothing is said of the other 1 s, in" in told
     assert f"joint 'shoulder' was to move by {rest}" in told
 
 
@@ -173,7 +173,7 @@ def test_time_in_which_nothing_was_to_move_may_be_left_out():
 
 def test_of_several_robots_one_must_be_named(tmp_path):
     cell = load_cell(tmp_path, "joints: {shoulder: 0.2}", "trajectory: path.csv")
-    with pytest.raises(UnknownRobot, match="one of left, right"):
+    with pytest.raises(UnknownRobot, match="--recorded-robot left or right"):
         with_recorded(cell, tmp_path / "path.csv")
     found = with_recorded(cell, tmp_path / "path.csv", robot="right")
     assert found.robots[0].recording is None and found.robots[1].recording.joints[0].greatest == 0.0

@@ -39,11 +39,16 @@ class JointState(NamedTuple):
 
 
 class _Joint(NamedTuple):
-    """Where a joint was at times [ns], and the numbers of the messages, from 1, that say no number of it."""
+    """Where a joint was at times [ns].
+
+    Attributes:
+        unknown: numbers of the messages, from 1, that say no number of it. lost: the samples before these.
+    """
 
     times: list[int]
     positions: list[float]
     unknown: list[int]
+    lost: list[int]
 
     @property
     def samples(self) -> tuple[np.ndarray, np.ndarray]:
@@ -87,6 +92,7 @@ def trajectory_of_states(
         {name: joints[name] for name in settable}, stays_after_end=gaps == HOLD
     )
     tracks = tracks_of({name: joints[name].samples for name in settable}, NANO)
+    tracks = {name: track._replace(lost=joints[name].lost) for name, track in tracks.items()}
     holes = holes_of(tracks, gaps, (start, end), NANO)
     holes += tuple(unknown_ends(tracks, (start, end), NANO))
     if gaps == HOLD:
@@ -130,7 +136,7 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
                 valid="a position of each joint, each once",
             )
         for name, position in zip(state.names, state.positions, strict=True):
-            one = joints.setdefault(checked_name(name), _Joint([], [], []))
+            one = joints.setdefault(checked_name(name), _Joint([], [], [], []))
             if one.times and state.nanoseconds <= one.times[-1]:
                 raise BadTime(
                     f"its time is not later than that of the message before with {name!r}",
@@ -138,6 +144,7 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
                 )
             if not math.isfinite(position):
                 one.unknown.append(i + 1)
+                one.lost.append(len(one.times) - 1)
                 continue
             one.times.append(state.nanoseconds)
             one.positions.append(position)

@@ -1,11 +1,12 @@
-"""Holes in recordings: intervals many times longer than usual, and the motion of joints in them, as the case says.
+"""Holes in recordings, many times longer than usual or without a number, and how joints move in them, as the case
+says.
 
 Not for: messages (`joint_states`), nor what a verdict says of holes (`world.plausible_recordings`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -35,18 +36,21 @@ class Track(NamedTuple):
     """Where a joint was: times (n,) in any unit, increasing, positions (n,) [rad or m], and the usual interval.
 
     Attributes:
-        brief: `BRIEF` in that unit.
+        brief: `BRIEF` in that unit. lost: samples after which a message said that the position is unknown.
     """
 
     times: np.ndarray
     positions: np.ndarray
     usual: float
     brief: float
+    lost: Sequence[int] = ()
 
     @property
     def holes(self) -> np.ndarray:
         """(k,) the samples after which a hole begins."""
-        return np.flatnonzero(np.diff(self.times) > self.at_most(LONG))
+        begins = np.diff(self.times) > self.at_most(LONG)
+        begins[[i for i in self.lost if 0 <= i < len(begins)]] = True
+        return np.flatnonzero(begins)
 
     def at_most(self, n_usual: float) -> float:
         """So many usual intervals, or a brief one if that is longer."""
@@ -57,7 +61,9 @@ class Track(NamedTuple):
         after = self.holes + 1
         if not len(after):
             return self
-        times = np.insert(self.times, after, self.times[after] - self.times.dtype.type(self.usual))
+        half = np.diff(self.times)[after - 1] / 2.0
+        late = np.minimum(self.usual, half).astype(self.times.dtype)
+        times = np.insert(self.times, after, self.times[after] - late)
         positions = np.insert(self.positions, after, self.positions[after - 1])
         return self._replace(times=times, positions=positions)
 

@@ -34,15 +34,20 @@ class Resources:
         if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):
             raise BadInput(f"{self.jobs} jobs", valid="1 or more")
 
-    def of_section(self, number: int, before: int, of: int) -> Resources:
+    def of_section(self, number: int, steps: tuple[int, int], of: int) -> Resources:
         """The same for one section of several, whose rows have names of their own.
 
         Args:
-            before: steps of all sections before it. of: of all sections.
+            steps: of all sections before it, and with it. of: of all sections.
         """
-        progress = self.progress
-        shifted = None if progress is None else lambda done, _: progress(before + done, of)
-        return replace(self, progress=shifted, prefix=f"{self.prefix}{number}-")
+        progress, (before, end) = self.progress, steps
+
+        def shifted(done: int, total: int) -> None:
+            """Counts in steps what a measurement counts in its own parts."""
+            assert progress is not None
+            progress(before + (end - before) * done // total, of)
+
+        return replace(self, progress=progress and shifted, prefix=f"{self.prefix}{number}-")
 
     @property
     def n_threads(self) -> int:

@@ -64,7 +64,7 @@ def test_a_hole_is_told_with_its_joints_its_length_and_what_is_usual():
     (hole,) = read(states(with_hole(), "shoulder", ("shoulder", "lift"))).trajectory.holes
     assert (hole.joints, hole.means) == (("shoulder", "lift"), None)
     assert (hole.start, hole.end, hole.usual) == pytest.approx((1.0, 3.0, STEP))
-    assert hole.text == "no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
+    assert hole.text == "no position of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
 
 
 def test_joints_that_are_recorded_at_different_rates_have_their_own_holes():
@@ -151,7 +151,7 @@ def test_a_table_is_a_recording_where_it_is_given_as_one(tmp_path):
     (told,) = suspects(with_recorded(case, tmp_path / "run.csv"))
     assert told.kind == "gaps"
     assert told.text == (
-        "the recording has a hole, bridged by a straight line: no message of shoulder, lift from 1 to 3 s "
+        "the recording has a hole, bridged by a straight line: no position of shoulder, lift from 1 to 3 s "
         "(2 s, usually 0.02 s); say how joints move in it with gaps: hold | linear | not_measured "
         "beside the file (--recorded-gaps)"
     )
@@ -182,13 +182,13 @@ def test_a_case_says_what_a_hole_means(tmp_path):
     assert run.verdict.passed
     told = [text for text in run.verdict.warnings if text.startswith("not measured:")]
     assert told == [
-        "not measured: no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s) [CL421]"
+        "not measured: no position of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s) [CL421]"
     ]
     assert run.summary["certified"]["not_measured"] == [[1.0, 3.0]]
     bound = run.record.certificate.lower_bound[run.record.steps["time"].to_numpy() == 1.0]
     assert not np.isfinite(bound).any()
     assert motion_content(run.record.motions, "out.csv").notes == (
-        "no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s): a straight line in this file",
+        "no position of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s): a straight line in this file",
     )
     held = changed("file: path.csv", "file: path.csv, gaps: hold")
     (told,) = [
@@ -197,7 +197,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
         if "hold" in notice.text
     ]
     assert told == (
-        "assumed: joints stay until one usual interval before their next message (gaps: hold); no message of "
+        "assumed: joints stay until one usual interval before their next message (gaps: hold); no position of "
         "shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
     )
     with pytest.raises(BadInput, match="gaps"):

@@ -7,6 +7,7 @@ import time
 import pytest
 
 from clearance.simulate.measure.parts import in_order
+from clearance.simulate.measure.resources import Resources
 
 
 def test_nothing_is_worked_on_any_more_when_no_more_is_wanted() -> None:
@@ -48,3 +49,12 @@ def test_an_error_comes_after_the_results_before_it(fails) -> None:
     assert [next(results) for _ in range(fails)] == list(range(fails))
     with pytest.raises(ValueError, match=str(fails)):
         next(results)
+
+
+def test_progress_of_a_section_ends_with_its_steps_however_its_measurement_counts() -> None:
+    seen = []
+    own = Resources(progress=lambda done, of: seen.append((done, of))).of_section(1, (10, 20), 30)
+    for done in (1, 5, 19):
+        own.progress(done, 19)
+    assert seen == [(10, 30), (12, 30), (20, 30)]
+    assert Resources().of_section(0, (0, 10), 30).progress is None
