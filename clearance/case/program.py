@@ -25,10 +25,13 @@ from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.pose import inverse
+from clearance.programs.joint_way import unknown_speeds
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
 from clearance.programs.time_law import Limits
 from clearance.world.case import PlacedRobot
+from clearance.world.notice import listed
+from clearance.world.robot import Robot
 
 
 def program_motion(
@@ -68,7 +71,7 @@ def program_motion(
         frames=tuple(sorted(frames.used | (cell.mounts(driven) if driven else set()))),
         has_way_in=read.starts_anywhere,
         assumed=tuple(f"{shown}: {one}" for one in read.assumed),
-        left_out=read.left_out,
+        left_out=(*read.left_out, *_speeds_lacking(cell.robot, program)),
         contradicted=tuple(f"{shown}: {one}" for one in read.contradicted),
         odd=tuple(f"{shown}: {one}" for one in odd),
     )
@@ -76,6 +79,12 @@ def program_motion(
     notes = tuple(f"{shown}: {note}" for note in (*read.notes, *moved, *found.notes))
     trajectory, others = cell.parted(made, driven, given)
     return ProgrammedMotion(trajectory, notes, others)
+
+
+def _speeds_lacking(robot: Robot, program: Program) -> Iterator[str]:
+    """What the times of a program lack where joints have no greatest speed."""
+    if unknown := unknown_speeds(robot, program):
+        yield f"the greatest speed of {listed(unknown)}, which no file says"
 
 
 @contextmanager

@@ -6,15 +6,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
 from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.inverse import ANOTHER, nearest_joints, range_of
-from clearance.programs.moves import SHARE_OF_WAY, JointMove
+from clearance.programs.moves import SHARE_OF_WAY, JointMove, Program
 from clearance.programs.time_law import Limits
-from clearance.world.robot import Joint
+from clearance.world.kinematic_chain import chain_between
+from clearance.world.robot import Joint, Robot
 
 RUN_UP = 0.25
 """[s] In which a joint, or a tool that turns on the spot, reaches its greatest speed, where nothing else is
@@ -120,6 +122,18 @@ def targets_of(arm: Arm, move: JointMove, start: np.ndarray) -> np.ndarray:
         fault = f"no target of {', '.join(missing)}"
         raise BadProgram(fault, where="joints", valid="one for each joint of the arm")
     return found
+
+
+def unknown_speeds(robot: Robot, program: Program) -> list[str]:
+    """The joints that joint moves take at a share of their greatest speed, which no file says."""
+    moves = [one for one in program.moves if isinstance(one, JointMove)]
+    by_share = [one for one in moves if one.time is None and one.leading is None]
+    arm = chain_between(robot, robot.link_names[0], program.link).masters
+    names = {joint.name for joint in arm if by_share} | {
+        *chain.from_iterable(one.joints or () for one in by_share)
+    }
+    known = {joint.name for joint in robot.joints if 0.0 < joint.velocity < np.inf}
+    return [joint.name for joint in robot.joints if joint.name in names - known]
 
 
 NO_WAY = 1e-12

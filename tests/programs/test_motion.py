@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.programs.joint_way import joint_law
+from clearance.programs.joint_way import joint_law, unknown_speeds
 from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program
 from clearance.programs.time_law import Limits
@@ -186,3 +186,22 @@ def test_the_joint_that_goes_farthest_has_the_speed_that_is_asked_for():
     }
     move = JointMove("PTP 1", "moves[0]", joints=joints, leading=Limits(0.5, 1.4))
     assert motion([move]).trajectory.times[-1] == pytest.approx(0.6 / 0.5 + 0.5 / 1.4, abs=1e-9)
+
+
+def test_joints_without_a_greatest_speed_have_no_known_time_at_a_share_of_it():
+    one = arm("heron6")
+    names = [joint.name for joint in one.joints]
+    joints = dict(zip(names, START, strict=True))
+    slow = [
+        replace(joint, velocity=np.inf if joint.name == names[2] else joint.velocity)
+        for joint in one.robot.joints
+    ]
+    robot = replace(one.robot, joints=tuple(slow))
+    ptp = JointMove("PTP 1", "moves[0]", joints=joints)
+    for move, lacks in (
+        (ptp, [names[2]]),
+        (replace(ptp, time=2.0), []),
+        (replace(ptp, leading=Limits(1, 1)), []),
+    ):
+        program = Program(one.link, one.link_from_tool, (move,), joints)
+        assert unknown_speeds(robot, program) == lacks and not unknown_speeds(one.robot, program)
