@@ -32,6 +32,12 @@ from tests.formats.making_case import TWO_JOINTS, changed, load_small, with_obst
 
 HALF = "pipe: {inner_radius: 0, outer_radius: 1"
 
+
+def without_obstacles() -> str:
+    head, _, tail = CASE.partition("scene:\n")
+    return f"{head}scene: {{}}\n{tail[tail.index('trajectory') :]}"
+
+
 OF_THE_MODEL = [
     (changed("name: small", "nmae: small"), UnknownKey, "unknown key 'nmae'; did you mean 'name'?"),
     (changed("robot: {urdf: arm.urdf}\n", ""), MissingKey, "'robot' is missing"),
@@ -49,6 +55,9 @@ OF_THE_MODEL = [
     (changed("fail: 0.005", "fail: true"), BadInput, "limits.fail: True is given"),
     (changed("fail: 0.005", "fail: 5 mm"), BadInput, "limits.fail: '5 mm' is given"),
     (changed("scene:\n", "scene:\n  obstacle: []\n"), UnknownKey, "scene: unknown key 'obstacle'; did you"),
+    (changed("scene:\n", "obstacles: []\nscene:\n"), UnknownKey, "`scene: {obstacles: …}` or `tolerance: {"),
+    (changed("limits:", "fail: 1\nlimits:"), UnknownKey, "did you mean `limits: {fail: …}`?"),
+    (without_obstacles(), MissingKey, "scene: 'obstacles' is missing; `obstacles: []` for an empty scene"),
     (changed("    box:", "    bxo:"), UnknownKey, "did you mean 'box'?"),
     (changed("    box: {size: [0.1, 0.1, 1]}\n", ""), BadInput, "scene.obstacles[0]: it has no shape"),
     (changed("    box:", "    sphere: {radius: 1}\n    box:"), BadInput, "box and sphere are given"),

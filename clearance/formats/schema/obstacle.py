@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from clearance.errors import BadDimension, BadInput, Contradiction
+from clearance.errors import BadDimension, BadInput, Contradiction, MissingKey
 from clearance.formats.known_formats import CAD
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, Triple, with_shapes
@@ -165,3 +165,11 @@ class Scene(StrictModel):
     obstacles: list[Obstacle]
     frame: Name | None = None
     warnings: list[Name] = []
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_obstacles(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "obstacles" not in data and set(data) <= set(cls.keys()):
+            valid = "`obstacles: []` for an empty scene"
+            raise MissingKey("'obstacles' is missing", valid=valid)
+        return data

@@ -6,8 +6,18 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
+from collections.abc import Iterator, Mapping
+from types import UnionType
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+)
 
 from pydantic import (
     AfterValidator,
@@ -81,6 +91,24 @@ class StrictModel(BaseModel):
         """The keys as they are written in a file."""
         return tuple(field.alias or name for name, field in cls.model_fields.items())
 
+    @classmethod
+    def _blocks(cls) -> Iterator[tuple[str, type[StrictModel]]]:
+        """The keys that hold such a mapping themselves, and what it is."""
+        for name, field in cls.model_fields.items():
+            given = field.annotation
+            for kind in get_args(given) if get_origin(given) in (Union, UnionType) else (given,):
+                if isinstance(kind, type) and issubclass(kind, StrictModel):
+                    yield field.alias or name, kind
+
+    @classmethod
+    def _meant(cls, key: str) -> str:
+        """The remedy for an unknown key: a near name, or the key's place in a mapping of this one."""
+        blocks = [f"`{one}: {{{key}: …}}`" for one, inner in cls._blocks() if key in inner.keys()]
+        near = nearest_name(key, cls.keys())
+        if not blocks or near.startswith("did you mean"):
+            return near
+        return f"did you mean {' or '.join(blocks)}?"
+
     @model_validator(mode="before")
     @classmethod
     def _known_keys(cls, data: Any) -> Any:
@@ -90,7 +118,7 @@ class StrictModel(BaseModel):
             raise BadInput(given, valid=f"a mapping is needed, with keys {', '.join(keys)}")
         for key in data:
             if key not in keys:
-                raise UnknownKey(f"unknown key {key!r}", valid=nearest_name(str(key), keys))
+                raise UnknownKey(f"unknown key {key!r}", valid=cls._meant(str(key)))
             if key in cls.FILLED and data[key] is None:
                 raise BadInput(
                     "nothing is given", where=key, valid="a value; else leave the key out"
