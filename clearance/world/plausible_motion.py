@@ -76,10 +76,12 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
         return [Notice(Severity.SUSPECT, START, text, about)]
     if not asked.has_way_in:
         return []
-    text = (
-        f"not measured: how robot {about!r} comes to its first point at {first:.6g} s; "
-        "give its start at 0 s with trajectory: {start_state: …}"
-    )
+    remedy = "; give its start at 0 s with trajectory: {start_state: …}"
+    if asked.start_off:
+        remedy = (
+            f": {asked.start_off}; plan from where the robot is, or give the points later times"
+        )
+    text = f"not measured: how robot {about!r} comes to its first point at {first:.6g} s{remedy}"
     return [Notice(Severity.WARNING, START, text, about)]
 
 

@@ -28,7 +28,7 @@ def started(
     times = np.concatenate(([0.0], own.times))
     made = replace(
         asked, times=times, positions=np.vstack([positions, own.positions]), velocities=rates,
-        path_error=0.0, points=None, has_way_in=False,
+        path_error=0.0, points=None, has_way_in=False, start_off="",
     )  # fmt: skip
     if not isinstance(own, Points):
         return made

@@ -104,6 +104,7 @@ class Trajectory:
         holes: stretches of a recording in which it was not known where joints were.
         given_extents: (2, k) the least and greatest position before whole turns were subtracted, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
+            start_off: how far a start that the message gives is off that sample, in words, if it is.
         assumed: of a program's controller, where nothing confirms it, one line each. left_out: its instructions
             that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
         contradicted: the points of a program whose own axes are far from them, one line each.
@@ -132,6 +133,7 @@ class Trajectory:
     began: float | None = None
     given_extents: np.ndarray | None = None
     has_way_in: bool = False
+    start_off: str = ""
     corners: tuple[CornerZone, ...] = ()
     moves: tuple[MoveSpan, ...] = ()
     frames: tuple[str, ...] = ()

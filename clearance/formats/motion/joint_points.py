@@ -342,11 +342,10 @@ def with_start(
     off = np.abs(trajectory.positions[0] - positions)
     if (off > NEAR).any():
         i = int(np.argmax(off))
-        notes.append(
-            f"{start.place} has joint {names[i]!r} {off[i]:.3g} off the first point, at {first:g} s; "
-            "the point is used"
-        )
-        return replace(trajectory, has_way_in=trajectory.n_steps > 1), tuple(notes)
+        said = f"{start.place} has joint {names[i]!r} {off[i]:.3g}"
+        notes.append(f"{said} off the first point, at {first:g} s; the point is used")
+        start_off, has_way_in = f"{said} rad or m off it", trajectory.n_steps > 1
+        return replace(trajectory, has_way_in=has_way_in, start_off=start_off), tuple(notes)
     return trajectory, tuple(notes)
 
 

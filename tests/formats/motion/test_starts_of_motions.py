@@ -98,6 +98,11 @@ def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
     found = check(case, need="minimum").verdict
     assert found.exit_code == 0 and list(found.warnings) == [f"{says} [CL420]"]
     assert kinds(load(tmp_path, LATE, ", start_state: {shoulder: 0, lift: 0}")) == []
+    start = displayed(plan(point(0.0, 0.1), point(1.0, 0.2)), state({"shoulder": 0.3}))
+    assert [one.text for one in notices_of(load(tmp_path, start))] == [
+        "not measured: how robot 'arm' comes to its first point at 0 s: trajectory_start has joint 'shoulder' "
+        "0.2 rad or m off it; plan from where the robot is, or give the points later times"
+    ]
     start = state({"shoulder": 0.0, "lift": 0.0})
     assert kinds(load(tmp_path, displayed(LATE, start))) == []
     assert kinds(load_small(tmp_path, trajectory="time,shoulder\n4,1\n6,0\n")) == []
@@ -181,7 +186,9 @@ def test_what_the_start_says_of_other_joints_and_another_place_is_told():
         in told
     )
     assert "has joint 'shoulder' 0.2 off the first point, at 0 s; the point is used" in told
-    assert trajectory.has_way_in  # which the headline says is not measured
+    assert trajectory.has_way_in and trajectory.start_off == (
+        "trajectory_start has joint 'shoulder' 0.2 rad or m off it"
+    )
     _, notes = read(displayed(plan(point(1.0, 0.1, 0.0), names=("shoulder", "lift")), start))
     assert any("trajectory_start is not used: it has no position of lift" in note for note in notes)
 
