@@ -33,7 +33,8 @@ class Verification:
     """The result of verifying a receipt.
 
     Attributes:
-        name: of the case. source: its file; empty where it was given as an object. kind: "full" or "sampled".
+        name: of the case. kind: "full" or "sampled".
+        source: the case's file, or the zip that has it; empty where it was given as an object.
         failure: what is not proven, first of all; empty if all is.
         bounds: [m] proven of each rule that judges something, over all intervals but those of `n_contact`.
         n_pairs, n_intervals: of the run. n_claimed: intervals of which something is claimed.

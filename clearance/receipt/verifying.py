@@ -73,7 +73,9 @@ def verify(
     """
     with unpacked(Path(folder)) as packed:
         place = Path(folder) if packed is None else require_entry(packed, "report")
-        return _verified(place, case, tolerance, waivers)
+        found = _verified(place, case, tolerance, waivers)
+        is_inside = packed is not None and case is None
+        return replace(found, source=str(folder)) if is_inside else found
 
 
 def _verified(

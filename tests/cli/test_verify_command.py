@@ -248,7 +248,9 @@ def test_a_packed_report_is_verified_and_shown_where_nothing_of_the_cell_is(
     shutil.rmtree(home)
     again = cell.rename(tmp_path / "again.zip")
     assert run(["verify", str(packed)]) == ExitCode.CLEAR
-    assert "every byte of the report matches a fresh run" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "every byte of the report matches a fresh run" in told
+    assert f"inputs of {packed} unchanged" in told
     seen = []
     monkeypatch.setattr("clearance.view.show", seen.append)
     for file in (packed, again):
