@@ -70,10 +70,10 @@ def check(
     """Measures the least clearance of every step of CASE.yaml.
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
-    written. With it, the same command resumes an interrupted run. Exit code: 0 clear or near; 1 a
-    limit is violated or not proven, a waiver is unused or expired, or --fail-on-warning finds one;
-    2 bad or suspect input; 3 the cross-check disagrees. The greatest that applies counts.
-    --baseline does not change it: `clearance compare` has an exit code of its own.
+    written. With it, the same command resumes an interrupted run. Exit code: 0 clear or near
+    (at the samples only, too); 1 a limit is violated or not proven, a waiver is unused or expired,
+    or --fail-on-warning finds one; 2 bad or suspect input; 3 the cross-check disagrees. The
+    greatest that applies counts. --baseline does not change it: `clearance compare` has an exit code of its own.
     """
     from clearance.files import refuse_inputs
 

@@ -21,6 +21,7 @@ from clearance.record.wording import (
     depth_text,
     gap_text,
     limit_mm,
+    limits_text,
     mm,
     moment_text,
     of_rule,
@@ -35,20 +36,20 @@ def moment_line(record: Record, moment: Moment) -> str:
     """How near what comes to what and when, and the limit that it is below, if it is: with its rule."""
     limits = record.rule(moment.rule).limits
     if moment.touches:
-        return f"contact {contact_line(record, moment)}"
+        return f"contact{' ' if moment.depth else ', '}{contact_line(record, moment)}"
     where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if limits.below(moment.clearance, limit):
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
             return f"{padded_mm(moment, (limit,))}, {below}: {where}"
-    return f"{padded_mm(moment)}{_judged_by(moment)}: {where}"
+    kept = f" ({limits_text(limits.fail, limits.warn)})" if record.case.limits.rules else ""
+    return f"{padded_mm(moment)}{_judged_by(moment)}{kept}: {where}"
 
 
 def contact_line(record: Record, moment: Moment) -> str:
     """The depth of a contact, the two bodies and the moment, and the rule that judges them, if there is one."""
     where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
-    near = depth_text(moment.depth) if moment.depth else f"({depth_text(None)})"
-    return f"{near}{_judged_by(moment)}: {where}"
+    return f"{depth_text(moment.depth)}{_judged_by(moment)}: {where}"
 
 
 def _judged_by(moment: Moment) -> str:

@@ -216,7 +216,7 @@ def _when(case: Case) -> str:
 
 
 def _remaining(of_tolerances: Sequence[Finding]) -> str:
-    """The worst limit that is not proven with tolerances: proven, required and nominal; empty where all are."""
+    """The worst limit that is not proven with tolerances: proven and required; empty where all are."""
     if not of_tolerances:
         return ""
     worst = min(of_tolerances, key=lambda finding: finding.standing)
@@ -226,8 +226,7 @@ def _remaining(of_tolerances: Sequence[Finding]) -> str:
     required = f", {limit_mm(worst.fail)} mm required"
     if worst.kind == WAIVED_TOLERANCES:
         required = ", the level of a waiver required"
-    nominal = "" if worst.clearance is None else f"; nominal {mm(worst.clearance)} mm"
-    return f"{proven}{required}{nominal}"
+    return f"{proven}{required}"
 
 
 def verdict_of(

@@ -209,6 +209,8 @@ def span_text(start: float, end: float, moves: str = "") -> str:
 
 def least_proven(certified: dict) -> str:
     """The least proven clearance, and of which moments; a bound of 0 but for rounding says nothing."""
+    if certified["touches"]:
+        return "no clearance, since there is contact"
     if -SEEN_PADDING < certified["lower_bound"] <= 0.0:
         return "contact is not ruled out"
     when = "at every moment that is measured" if certified["not_measured"] else "at every moment"
@@ -226,14 +228,14 @@ def certified_text(certified: dict) -> str:
         "program": "so that the tool keeps to the lines and arcs of its program",
         "program with zones": "so that the tool keeps to the lines, arcs and corner zones of its program",
     }[certified["joints"]]
-    if certified["is_pose"]:
+    if certified["is_pose"] or certified["touches"]:
         return least_proven(certified)
     proven = f"{least_proven(certified)}, joints moving {way} between steps"
     if certified["upper_bound"] is None:  # only so much was asked, everywhere
         return proven
     end = seconds(certified["end"], certified.get("moves", ""))
-    moment = f"from {seconds(certified['start'])} to {end}"
-    return f"{proven}; least {moment}, where {mm(certified['upper_bound'])} mm occurs"
+    moment = f"between {seconds(certified['start'])} and {end}"
+    return f"{proven}; lowest {moment}, where {mm(certified['upper_bound'])} mm occurs"
 
 
 def step_text(minimum: PairMinimum) -> str:

@@ -123,7 +123,8 @@ def _of_rules(model: ReportModel) -> Iterator[TestResult]:
         own, answers = limits.of_rule(i), [one for one in judgement.judging if one.name == name]
         text, worst = limits_text(own.fail, own.warn), worst_of.get(name)
         if worst is not None:
-            text = f"{moment_line(record, worst)}; {text}"
+            line = moment_line(record, worst)
+            text = line if text in line else f"{line}; {text}"
         yield TestResult("rule", name, text, LIMIT if any(map(_is_violated, answers)) else "")
 
 

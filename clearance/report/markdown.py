@@ -60,7 +60,7 @@ def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
         ]
     shown = [finding for finding in findings if finding.status != "clear"]
     if not shown:
-        points += [f"kept: {finding_line(finding)}" for finding in findings[:MOST_ROWS]]
+        points += [f"limits kept: {finding_line(finding)}" for finding in findings[:MOST_ROWS]]
     lines = [f"### {plain(model.record.case.name)}: {plain(verdict.headline(str.upper))}", ""]
     lines += [f"- {plain(text)}" for text in points]
     if shown:

@@ -138,6 +138,7 @@ class Certified(Keys):
     not_measured: list[Span]
     not_proven: list[Span]
     is_pose: bool
+    touches: bool
     tally: dict[str, int]
 
 

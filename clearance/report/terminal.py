@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from clearance.errors import shown
+from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.limit_lines import contact_line, moment_line
 from clearance.record.wording import least_text, limits_text
 from clearance.report.model import ReportModel
@@ -62,20 +63,21 @@ def _headline(model: ReportModel) -> Text:
     """Verdict and least clearance, or the most critical moment and its rule, or the deepest contact."""
     record, verdict, limits = model.record, model.verdict, model.record.case.limits
     text = Text(verdict.headline(str.upper), style=_STYLES.get(verdict.shade, "bold red"))
-    name, worst = record.case.name, verdict.worst
+    worst = verdict.worst
     if worst.touches:
-        after = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"
+        after = contact_line(record, worst)
     elif verdict.beside and record.status_of(worst) in _STYLES:
-        after = f": {verdict.beside[0]}; {least_text(worst)} ({name})"
+        after = f"{verdict.beside[0]}; {least_text(worst)}"
     elif limits.rules or verdict.nearest:
-        after = f": {moment_line(record, worst)} ({name})"
+        after = moment_line(record, worst)
     else:
-        after = f"  {name}: {least_text(worst, (limits.fail, limits.warn))}"
+        after = least_text(worst, (limits.fail, limits.warn))
+        after += " as measured" if verdict.tolerances == NOT_PROVEN else ""
         after += f" ({limits_text(limits.fail, limits.warn)})"
         named = record.status_of(worst) != "clear"
         after += f": {worst.link} - {worst.obstacle}" if named else ""
     after += f", {verdict.at_level}" if verdict.at_level else ""
-    return text.append(after, style="default not bold")
+    return text.append(f"  {record.case.name}: {after}", style="default not bold")
 
 
 def _row(label: str, value: str) -> Text:

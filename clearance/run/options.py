@@ -120,8 +120,8 @@ class QuestionOptions:
 
     need: str = option(
         "steps", one_of(NEEDS),
-        "steps: every step. pairs: every pair at every step too (pairs.parquet). limit: steps below the warn "
-        "limit, a proven bound for the rest. minimum: the worst moment only.",
+        "How much to compute; the verdict is the same. steps: every step. pairs: every pair at every step too "
+        "(pairs.parquet). limit: steps below the warn limit, a bound for the rest. minimum: the worst moment.",
     )  # fmt: skip
     certify: bool = option(
         True, SWITCH, "Prove the motion between the samples, or measure the samples only.",
@@ -141,10 +141,10 @@ class QuestionOptions:
     cross_check: bool = option(False, SWITCH, "Compare every step with FCL.")
     method: str = option(
         "exact", one_of(METHODS),
-        "exact: the true minimum. paper: the first paper's algorithm, without guarantee.",
+        "exact: the true minimum. paper: the published algorithm of Lim et al. for comparison, without guarantee.",
     )  # fmt: skip
     paper_tolerance: float | None = option(
-        None, POSITIVE_LENGTH, "Distance from which the paper's rule 1 leaves polygons out.",
+        None, POSITIVE_LENGTH, "Distance beyond which method paper leaves pairs of polygons out, its rule 1.",
         needs=("method", "paper"),
     )  # fmt: skip
     motion: str = option(
@@ -180,7 +180,7 @@ class CheckOptions(QuestionOptions):
         unproven_ok: a limit that is kept, but not proven with the tolerances, does not fail the run.
         waivers: beside the case's: files of them, then waivers.
         recorded: a bag or a table of the motion that a robot made, for motion "recorded".
-        recorded_offset: [s] added to its times; none is estimated. recorded_robot: whose run it is.
+        recorded_offset: [s] added to its times, which are else taken as they are. recorded_robot: whose run it is.
         recorded_gaps: how joints move in holes of it: "hold", "linear" or "not_measured".
         recorded_columns: of a table the columns to read; as a mapping, the column of time and of each joint.
     """
@@ -214,7 +214,7 @@ class CheckOptions(QuestionOptions):
         None, FILE, "Recorded run: a bag of joint states, or a CSV.", needs=RECORDED
     )
     recorded_offset: float | None = option(
-        None, SECONDS, "Offset to add to the times of the recorded run [s]; none is estimated.",
+        None, SECONDS, "Offset to add to the times of the recorded run [s]; else they are taken as they are.",
         needs=RECORDED,
     )  # fmt: skip
     recorded_robot: str | None = option(

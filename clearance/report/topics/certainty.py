@@ -81,6 +81,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
         "not_measured": [[*span] for span in not_measured(record.case)],
         "not_proven": [[*span] for span in not_proven(record.case)],
         "is_pose": record.basis == "pose",
+        "touches": record.nearest.touches,
         "tally": dict(certificate.tally),
     }
 
