@@ -52,12 +52,14 @@ class TextTable(NamedTuple):
 
     Attributes:
         opened: opens it, again and again. names: of its columns, where it has no header.
+        n_comments: lines above the table that are passed over.
     """
 
     opened: Opener
     delimiter: str = ","
     decimal: str = "."
     names: tuple[str, ...] | None = None
+    n_comments: int = 0
 
     def float_of(self, cell: str) -> float | None:
         """The number in a cell, or None."""
@@ -80,16 +82,48 @@ def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTabl
     Args:
         names: of the columns, where there is no header.
     """
+    n_comments = _n_comments(opened, names)
     with opened() as file:
+        above = sum(len(file.readline()) for _ in range(n_comments))
         start = file.read(65536).removeprefix(BOM_UTF8).lstrip().partition(b"\n")[0]
         if _is_of_blanks(start):
-            return as_written(blanks_as_tabs(opened), names)
+            return as_written(blanks_as_tabs(opened, n_comments), names)
         others = [mark for mark in _SEPARATORS if mark.encode() in start]
         if not others or (names is None and b"," in start):
-            return TextTable(opened, names=names)
-        file.seek(0)
+            return TextTable(opened, names=names, n_comments=n_comments)
+        file.seek(above)
         has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
-    return TextTable(opened, others[0], "," if has_comma else ".", names)
+    return TextTable(opened, others[0], "," if has_comma else ".", names, n_comments)
+
+
+MARKS = b"#", b"%"
+"""How a comment begins, and the header of programs that mark what is no number."""
+
+
+def _n_comments(opened: Opener, names: tuple[str, ...] | None) -> int:
+    """The number of lines to pass over: those that are marked, above a header; the last one is the header itself
+    where numbers follow it.
+    """
+    marked = []
+    with opened() as file:
+        for i, line in enumerate(iter(lambda: file.readline(65536), b"")):
+            row = line.removeprefix(BOM_UTF8 if i == 0 else b"").strip()
+            if row.startswith(MARKS):
+                marked.append(i)
+            elif row:
+                is_header = names is not None or not _has_number(row)
+                return i if is_header and marked else marked[-1] if marked else 0
+    return marked[-1] if marked else 0
+
+
+def _has_number(row: bytes) -> bool:
+    """True if a cell is a number, as in no header."""
+    cells = re.split(rb"[,;\t]", row)
+    plain = TextTable(io.BytesIO)
+    words = cells if len(cells) > 1 else row.split()
+    return any(
+        plain.float_of(word.decode("ascii", "replace").strip()) is not None for word in words
+    )
 
 
 def _is_of_blanks(start: bytes) -> bool:
@@ -101,10 +135,14 @@ def _is_of_blanks(start: bytes) -> bool:
     )
 
 
-def blanks_as_tabs(opened: Opener) -> Opener:
-    """The same file, a tab for each stretch of blanks; the mark of a comment stays out of the first row."""
+def blanks_as_tabs(opened: Opener, n_comments: int = 0) -> Opener:
+    """The same file, a tab for each stretch of blanks; comments above are blank lines, and the mark of one stays
+    out of the first row.
+    """
     with opened() as file:
-        lines = file.read().replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        for _ in range(n_comments):
+            file.readline()
+        lines = b"\n" * n_comments + file.read().replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     content = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", lines))
     marked = re.match(rb"(\s*)[#%]\t", content)
     if marked:
@@ -327,15 +365,17 @@ def _rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
     """(line number, cells) of every row that is not blank; lines count from 1."""
     with table.opened() as file:
         text = io.TextIOWrapper(file, encoding="utf-8-sig", newline="")
-        reader = csv.reader(text, delimiter=table.delimiter)
+        reader = csv.reader(islice(text, table.n_comments, None), delimiter=table.delimiter)
         try:
             for cells in reader:
                 if cells:
-                    yield reader.line_num, cells
+                    yield table.n_comments + reader.line_num, cells
         except UnicodeDecodeError:
             raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
         except csv.Error as error:
-            raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
+            raise BadSyntax(
+                f"not CSV: {error}", where=f"line {table.n_comments + reader.line_num}"
+            ) from None
 
 
 def _data_rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
@@ -348,7 +388,7 @@ def _data_rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
 
 def _n_above(table: TextTable) -> int:
     """Number of lines up to and with the header."""
-    return 0 if table.names is not None else next(_rows(table))[0]
+    return table.n_comments if table.names is not None else next(_rows(table))[0]
 
 
 def line_of_row(table: TextTable, i_row: int) -> int:

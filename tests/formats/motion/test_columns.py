@@ -42,6 +42,13 @@ WAYS = [
     ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
     ("% time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
     ("# time,shoulder,lift\n0,1,2\n1,3,4\n", []),
+    ("# run 7\n# of arm\ntime,shoulder,lift\n0,1,2\n1,3,4\n", []),
+    ("\ufeff# run 7, 1 kHz\n\n#time,shoulder,lift\n0,1,2\n1,3,4\n", []),  # as numpy.savetxt writes two lines
+    ("# run 7\n# time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
+    (
+        "% run; 7\ntime;shoulder;lift\n0;1,0;2\n1;3;4\n",
+        ["columns are separated by semicolons, decimals written with commas"],
+    ),
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
     ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", ["columns are separated by tabs or blanks"]),
     ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", ["columns are separated by tabs or blanks"]),
@@ -79,6 +86,8 @@ def test_a_joint_that_is_called_t_is_no_time():
         ("0,1,2\n1,3,4\n", MissingKey, "'0,1,2', begins with a number: there is no header; joints: [the names"),
         (",time,shoulder\n0,0,1\n", BadSyntax, "column 1 of the header has no name"),
         ("time,shoulder,\n0,1,\n1,2\n", BadShape, "line 3: 2 columns; the header has 3"),
+        ("# run 7\n\n#\ntime,shoulder\n0,1\n1,2,3\n", BadShape, "line 6: 3 columns; the header has 2"),
+        ("# run 7\n# time shoulder\n0 1\n1 x\n", BadSyntax, "line 4: 'x' in column 'shoulder' is not a number"),
     ],
 )  # fmt: skip
 def test_what_could_be_meant_otherwise_is_refused(text, fault, says):
