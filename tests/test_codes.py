@@ -126,7 +126,7 @@ def test_suspect_input_is_accepted_by_the_code_of_its_kind():
     case = YAML(typ="safe").load(CASE) | {"accept": ["CL320", "axis"]}
     assert validated(schema.Case, case, "case.yaml").accept == ["inside", "axis"]
     for other in ("CL101", "CL425", "CL999"):  # an error, a rule that is broken, nothing
-        with pytest.raises(BadInput, match=r"or their codes"):
+        with pytest.raises(BadInput, match=r"their codes, or the code of a warning"):
             CheckOptions(accept=[other])
 
 

@@ -98,7 +98,8 @@ def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
     found = check(case, need="minimum").verdict
     assert found.exit_code == 0 and list(found.warnings) == [f"{says} [CL420]"]
     assert kinds(load(tmp_path, LATE, ", start_state: {shoulder: 0, lift: 0}")) == []
-    start = displayed(plan(point(0.0, 0.1), point(1.0, 0.2)), state({"shoulder": 0.3}))
+    both = plan(point(0.0, 0.1, 0.05), point(1.0, 0.2, 0.05), names=("shoulder", "lift"))
+    start = displayed(both, state({"shoulder": 0.3, "lift": 0.05}))
     assert [one.text for one in notices_of(load(tmp_path, start))] == [
         "not measured: how robot 'arm' comes to its first point at 0 s: trajectory_start has joint 'shoulder' "
         "0.2 rad or m off it; plan from where the robot is, or give the points later times"
