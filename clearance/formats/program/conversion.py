@@ -26,6 +26,7 @@ from clearance.formats.program.controller_program import (
     Target,
     place_of,
 )
+from clearance.formats.program.stops import Stops
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
@@ -44,12 +45,6 @@ STANDS = 0.01
 
 FARTHEST = 1e3
 """[m] A point that is farther away is a mistake."""
-
-NO_WAY = 1e-9
-"""[m] and sine of a turn: a move that is shorter is none."""
-
-ONLY_TURNS = "the tool only turns before or after"
-"""Why a corner zone is none where a controller may turn the tool on the way all the same."""
 
 UNTIMED = "the speed of joint moves that no file gives for joints"
 """What the times of a program lack, beside what its reader names."""
@@ -141,7 +136,7 @@ class _Conversion:
         compared: [m] and [rad] how far poses are at most from where their axes have the tool; below 0 before any.
         others: where external axes are that no joint follows. begins_at_first: the tool begins where the first
             move ends. seeds: a line each on axes that are not those of the pose beside them; far_off: on those of
-            one pose alone that are far from it. cut: a line each on corners that controllers may cut.
+            one pose alone that are far from it.
     """
 
     read: ControllerProgram
@@ -152,8 +147,12 @@ class _Conversion:
     begins_at_first: bool = False
     seeds: list[str] = field(default_factory=list)
     far_off: list[str] = field(default_factory=list)
-    cut: list[str] = field(default_factory=list)
     _before: ControllerMove | None = None
+
+    @cached_property
+    def _stops(self) -> Stops:
+        """Corners where the controller stops."""
+        return Stops(self.arm, self._moves[0] if self.begins_at_first else None, self.notes)
 
     @cached_property
     def first_tool(self) -> np.ndarray:
@@ -167,7 +166,7 @@ class _Conversion:
             BadInput: with the line.
         """
         tool, names = self.first_tool, _names(self.read)
-        for one, name in zip(self._stopping_moves(), names, strict=True):
+        for one, name in zip(self._stops.applied(self.read.moves), names, strict=True):
             place = place_of(one)
             if isinstance(one, ControllerMove) and one.uses_tool:
                 if not np.array_equal(one.tool, tool):
@@ -192,57 +191,6 @@ class _Conversion:
                 "the first move ends at a pose, and the joints at its beginning are unknown",
                 valid="trajectory: {program: …, start_state: {joint: …}}",
             )
-
-    def _stopping_moves(self) -> Iterator[ControllerMove | ControllerWait]:
-        """The moves, without corner zones where controllers stop all the same."""
-        before: ControllerMove | None = None
-        after = [*self.read.moves, None][1:]
-        for one, other in zip(self.read.moves, after, strict=True):
-            if isinstance(one, ControllerMove):
-                why = self._why_it_stops(before, one, other) if one.zone else ""
-                waits = isinstance(other, ControllerWait) and other.reads_on
-                if why and (waits or why == ONLY_TURNS):
-                    text = "a wait follows a corner zone" if waits else f"a corner zone, and {why}"
-                    text = f"{place_of(one)}: {text}: the tool is taken to stop"
-                    self.cut.append(f"{text}, and the controller may cut the corner")
-                elif why:
-                    self.notes.append(f"{place_of(one)}: the tool stops, since {why}")
-                before = replace(one, zone=0.0) if why else one
-            yield before if isinstance(one, ControllerMove) and before else one
-
-    def _why_it_stops(
-        self,
-        before: ControllerMove | None,
-        one: ControllerMove,
-        other: ControllerMove | ControllerWait | None,
-    ) -> str:
-        """Why a corner zone is none; empty where it is one.
-
-        Raises:
-            BadProgram: the tool changes where it is.
-        """
-        if not isinstance(other, ControllerMove):
-            return "no move follows at once"
-        if self.begins_at_first and one is self._moves[0]:
-            return "it begins there"
-        if not np.array_equal(one.tool, other.tool):
-            with at(place_of(one)):
-                fault = f"it ends in a corner zone, and {place_of(other)} has another tool"
-                raise BadProgram(fault, valid="write it without a zone, or use the same tool")
-        moved = self._moved(before, one), self._moved(one, other)
-        if "" in moved:
-            return "it does not move before or after"
-        return ONLY_TURNS if "turns" in moved else ""
-
-    def _moved(self, before: ControllerMove | None, one: ControllerMove) -> str:
-        """What a move does to the tool: nothing, or it "turns" on a line without its point, or it "moves"."""
-        ends = [self.arm.base_from_flange(end, one.to.unit) for end in (before, one)]
-        if ends[0] is None or ends[1] is None:
-            return "moves"
-        off = np.abs((ends[1] - ends[0]) @ one.tool)
-        if off.max() < NO_WAY:
-            return ""
-        return "turns" if one.kind == "lin" and off[:3, 3].max() < NO_WAY else "moves"
 
     def _move(self, one: ControllerMove | ControllerWait) -> schema.Move:
         """A move, as `schema.program.Move` has it.
@@ -356,7 +304,7 @@ class _Conversion:
     def doubts(self) -> Iterator[str]:
         """A line each on what controllers may do otherwise, whatever confirms axes and base."""
         yield from self.arm.doubts_on_configurations(self._poses)
-        yield from dict.fromkeys(self.cut)
+        yield from dict.fromkeys(self._stops.cut)
         yield from self.read.doubts
 
     @cached_property
