@@ -25,6 +25,7 @@ from clearance.formats.program.statements import (
     within,
 )
 from clearance.formats.program.tokens import Line
+from clearance.formats.text.notes import counted
 from clearance.world.notice import listed
 
 MOST_PASSES = 100
@@ -163,6 +164,19 @@ class Effects:
         for name_, line in self.changed_in([routine.body], entered):
             if name_ not in own:
                 yield name_, line
+
+
+def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:
+    """The arguments of a call by name, with the values of those that are not given.
+
+    Raises:
+        BadProgram: more than the routine has.
+    """
+    if len(call.args) > len(routine.parameters):
+        fault = f"{call.name} is given {counted(len(call.args), 'argument')}"
+        raise BadProgram(fault, where=str(call.line), valid=f"{len(routine.parameters)} at most")
+    in_order = zip(routine.parameters, call.args, strict=False)
+    return {**routine.defaults, **dict(in_order), **call.named}
 
 
 def given_back(routine: Routine, call: Call) -> list[Expression]:

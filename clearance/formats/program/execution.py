@@ -16,6 +16,7 @@ from clearance.errors import BadProgram, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait, end_of
 from clearance.formats.program.effects import (
     Effects,
+    arguments_of,
     require_repeating,
     undecided,
     unknown_word,
@@ -54,7 +55,6 @@ from clearance.formats.program.statements import (
     assigned,
 )
 from clearance.formats.program.tokens import Line
-from clearance.formats.text.notes import counted
 
 MOST_STATEMENTS = 500_000
 """Statements that a program runs; more are a loop that does not end."""
@@ -128,8 +128,7 @@ class Execution(Remarks):
         """Runs statements, and what they were left by."""
         for one in body:
             self._count(one.line)
-            left = self._step(one)
-            if left is not None:
+            if (left := self._step(one)) is not None:
                 return left
         return None
 
@@ -169,8 +168,7 @@ class Execution(Remarks):
         for place in (self.concurrent, self.frames[-1], self.variables):
             if name.name in place:
                 return place[name.name]
-        own = self.language.value_of(name.name, self)
-        if own is not None:
+        if (own := self.language.value_of(name.name, self)) is not None:
             return own
         text = f"{name.name!r} is in no file that is given"
         return Unknown(text, lambda: self._misspelt(name.name))
@@ -273,14 +271,8 @@ class Execution(Remarks):
         if len(self.frames) > MOST_CALLS:
             fault = f"more than {MOST_CALLS} routines call one another"
             raise BadProgram(fault, where=str(call.line), valid="end the calls")
-        if len(call.args) > len(routine.parameters):
-            fault = f"{call.name} is given {counted(len(call.args), 'argument')}"
-            raise BadProgram(
-                fault, where=str(call.line), valid=f"{len(routine.parameters)} at most"
-            )
+        given = arguments_of(routine, call)
         self.doubts |= self.effects.doubts_on_handlers(routine)
-        in_order = dict(zip(routine.parameters, call.args, strict=False))
-        given = {**routine.defaults, **in_order, **call.named}
         frame = {name: self.evaluated(value) for name, value in given.items()}
         self.persistent.origins.append(
             {name: self.persistent.origin_of([one]) for name, one in given.items()}

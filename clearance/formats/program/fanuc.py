@@ -28,7 +28,8 @@ from clearance.formats.program.controller_program import (
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
-from clearance.formats.program.fanuc_text import (
+from clearance.formats.program.fanuc_text import Motion, listing_of
+from clearance.formats.program.fanuc_words import (
     DECIDING,
     LARGEST_SPEEDS,
     MOVES,
@@ -36,8 +37,6 @@ from clearance.formats.program.fanuc_text import (
     QUIET,
     WAIT,
     WAITING,
-    Motion,
-    listing_of,
 )
 from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import For, Routine, within

@@ -80,8 +80,6 @@ class Rapid:
     share: float = 1.0
     fastest: float = math.inf
     zones: dict[int, tuple[float, float]] = field(default_factory=dict)
-    _persistent: bool = False
-    _lines_keep: bool = False
     suffix = ""
 
     @property

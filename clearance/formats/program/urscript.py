@@ -35,6 +35,16 @@ from clearance.formats.program.expressions import (
 from clearance.formats.program.statements import Do, Routine, Statement
 from clearance.formats.program.tokens import Line, text_of
 from clearance.formats.program.urscript_text import UrScript, labels_of, script_of
+from clearance.formats.program.urscript_words import (
+    BLOCKING,
+    BLOCKING_BEFORE,
+    DEFAULTS,
+    OTHER_MOVES,
+    PARAMETERS,
+    STILL,
+    STILL_BEFORE,
+    TARGETS,
+)
 from clearance.geometry.pose import inverse, pose_from_rotation_vector
 from clearance.geometry.quaternions import rotation_vector
 
@@ -52,39 +62,6 @@ class Solved:
 
     flange: list[list[float]]
     near: list[float] | None
-
-
-_PARAMETERS = {
-    "movej": ("q", "a", "v", "t", "r"),
-    "movel": ("pose", "a", "v", "t", "r"),
-    "movep": ("pose", "a", "v", "r"),
-    "movec": ("pose_via", "pose_to", "a", "v", "r", "mode"),
-}
-_TARGETS = ("q", "pose", "pose_via", "pose_to")
-_DEFAULTS = {"movej": (1.4, 1.05), "movel": (1.2, 0.25), "movep": (1.2, 0.25), "movec": (1.2, 0.25)}
-
-_OTHER_MOVES = frozenset(
-    "servoj servoc servol speedj speedl force_mode freedrive_mode teach_mode run screw_driving "
-    "track_conveyor_linear track_conveyor_circular path_offset_enable path_offset_set "
-    "enable_external_ft_sensor jog start_jog move_until_contact optimovej optimovel".split()
-)
-_STILL = frozenset(
-    "textmsg varmsg popup sync stopj stopl stop_conveyor_tracking end_force_mode end_freedrive_mode "
-    "end_teach_mode kill join enter_critical exit_critical zero_ftsensor powerdown protective_stop "
-    "reset_revolution_counter encoder_enable_pulse_decode encoder_enable_set_tick_count end_screw_driving "
-    "force to_str str_at str_cat str_empty str_find str_len str_sub to_num binary_list_to_integer "
-    "integer_to_binary_list random make_list size struct".split()
-)
-_BLOCKING = frozenset(
-    "sleep join enter_critical socket_open socket_get_var powerdown protective_stop halt".split()
-)
-_BLOCKING_BEFORE = ("request_", "socket_read_")
-"""Functions that take time: until a person, a thread or another machine has answered."""
-
-_STILL_BEFORE = (
-    *("set_", "get_", "read_", "write_", "is_", "socket_", "modbus_", "rtde_", "rpc_", "tool_"),
-    *("request_", "assign_", "conveyor_", "xmlrpc", "enable_", "disable_"),
-)
 
 
 def read_urscript(asked: ProgramRequest) -> ControllerProgram:
@@ -160,9 +137,9 @@ class _UrScript:
 
     def moves(self, name: str) -> bool | None:
         """Whether a function decides where the robot goes; None for one that is not known."""
-        if name in _PARAMETERS or name in _OTHER_MOVES or name == "set_tcp":
+        if name in PARAMETERS or name in OTHER_MOVES or name == "set_tcp":
             return True
-        still = name in _STILL or name in _VALUES or name.startswith(_STILL_BEFORE)
+        still = name in STILL or name in _VALUES or name.startswith(STILL_BEFORE)
         return False if still or name in ("sleep", "pose_trans", "get_inverse_kin") else None
 
     def waits(self, call: Call) -> bool:
@@ -170,7 +147,7 @@ class _UrScript:
         if call.name == "popup":
             blocks = call.named.get("blocking", call.args[4] if len(call.args) > 4 else None)
             return blocks not in (None, Constant(False))
-        return call.name in _BLOCKING or call.name.startswith(_BLOCKING_BEFORE)
+        return call.name in BLOCKING or call.name.startswith(BLOCKING_BEFORE)
 
     def value_of(self, name: str, _: Execution) -> Any:
         """None: all names but `True` and `False` are variables."""
@@ -198,7 +175,7 @@ class _UrScript:
         Raises:
             BadInput: a move of another kind.
         """
-        if call.name in _PARAMETERS:
+        if call.name in PARAMETERS:
             self._move(call, run)
         elif call.name == "sleep":
             (seconds,) = (number(run.evaluated(one), call.line, "the time") for one in call.args)
@@ -216,7 +193,7 @@ class _UrScript:
             raise BadProgram(
                 f"{call.name} moves the robot on a way that the file does not decide",
                 where=str(call.line),
-                valid=f"{', '.join(_PARAMETERS)}",
+                valid=f"{', '.join(PARAMETERS)}",
             )
         elif call.name == "set_speed" and call.args:
             self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 1.0)
@@ -257,7 +234,7 @@ class _UrScript:
         }
         acceleration, speed = (
             options.get(name, usual)
-            for name, usual in zip(("a", "v"), _DEFAULTS[call.name], strict=True)
+            for name, usual in zip(("a", "v"), DEFAULTS[call.name], strict=True)
         )
         for name, value in {"a": acceleration, "v": speed}.items():
             if not value > 0.0:
@@ -266,7 +243,7 @@ class _UrScript:
             run.note(
                 "r of movep is taken for the distance of its arc from the corner", f"{call.line}"
             )
-        ends = [key for key in _TARGETS if key in given]
+        ends = [key for key in TARGETS if key in given]
         if len(ends) != (2 if call.name == "movec" else 1):
             raise MissingKey(f"{call.name} has no target", where=str(call.line))
         label = "" if call.line.file else self.labels.get(call.line.number, "")
@@ -325,7 +302,7 @@ def _arguments(call: Call, run: Execution) -> dict[str, Expression]:
     Raises:
         BadInput: one that it does not have.
     """
-    names = _PARAMETERS[call.name]
+    names = PARAMETERS[call.name]
     if len(call.args) > len(names):
         fault = f"{call.name} is given {len(call.args)} arguments"
         raise BadProgram(fault, where=str(call.line), valid=f"at most {len(names)}")
