@@ -4,7 +4,9 @@ and clicking."""
 from __future__ import annotations
 
 import asyncio
+import atexit
 import base64
+import functools
 import itertools
 import json
 import os
@@ -81,6 +83,7 @@ class Page:
     def open(self, url: str, ready: str, width: int = 1280, height: int = 800) -> None:
         """Loads `url` and waits until the script expression `ready` is true."""
         self.size(width, height)
+        self.call("Page.bringToFront")  # only the tab in front draws
         self.call("Page.navigate", url=url)
         self.wait(ready)
 
@@ -118,6 +121,7 @@ class Page:
 
     def settle(self) -> None:
         """Waits for two drawn frames."""
+        self.call("Page.bringToFront")
         self.run(
             "new Promise((done) => "
             "requestAnimationFrame(() => requestAnimationFrame(() => done(true))))"
@@ -156,23 +160,30 @@ class Page:
 
 @contextmanager
 def chromium() -> Iterator[Page]:
-    """A fresh browser with one page; both are gone afterwards."""
+    """A fresh tab of the browser; it is gone afterwards."""
     from tornado.websocket import websocket_connect
 
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = subprocess.Popen(
-            [executable(), *FLAGS, f"--user-data-dir={profile}", "about:blank"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        loop = asyncio.new_event_loop()
-        try:
-            url = _tab_url(_port(Path(profile), browser))
-            socket = loop.run_until_complete(_connect(websocket_connect, url))
-            yield Page(loop, socket)
-        finally:
-            browser.terminate()
-            browser.wait(timeout=20)
-            loop.close()
+    tab = _asked("new", "PUT")
+    loop = asyncio.new_event_loop()
+    try:
+        socket = loop.run_until_complete(_connect(websocket_connect, tab["webSocketDebuggerUrl"]))
+        yield Page(loop, socket)
+    finally:
+        _asked(f"close/{tab['id']}")
+        loop.close()
+
+
+@functools.cache
+def _started() -> int:
+    """The port of the browser of this process, with which it ends."""
+    profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+    browser = subprocess.Popen(
+        [executable(), *FLAGS, f"--user-data-dir={profile.name}", "about:blank"],
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    for end in (profile.cleanup, browser.wait, browser.terminate):  # in the other order
+        atexit.register(end)
+    return _port(Path(profile.name), browser)
 
 
 async def _connect(connect: Any, url: str) -> Any:
@@ -189,12 +200,11 @@ def _port(profile: Path, browser: subprocess.Popen) -> int:
     return int(told.read_text().split()[0])
 
 
-def _tab_url(port: int) -> str:
-    from urllib.request import ProxyHandler, build_opener
+def _asked(what: str, method: str = "GET") -> Any:
+    """The browser's answer about a tab."""
+    from urllib.request import ProxyHandler, Request, build_opener
 
-    with build_opener(ProxyHandler({})).open(
-        f"http://127.0.0.1:{port}/json/list", timeout=PATIENCE
-    ) as answer:
-        return next(
-            tab["webSocketDebuggerUrl"] for tab in json.load(answer) if tab["type"] == "page"
-        )
+    request = Request(f"http://127.0.0.1:{_started()}/json/{what}", method=method)
+    with build_opener(ProxyHandler({})).open(request, timeout=PATIENCE) as answer:
+        text = answer.read()
+    return json.loads(text) if method == "PUT" else text
