@@ -52,24 +52,14 @@ def goes_on_alone(manifest, place):
     return finished(*arguments(manifest, place)[:-1], "1")[0] == 1
 
 
-def test_what_a_killed_worker_had_begun_is_done_again(undisturbed, tmp_path):
-    manifest, expected = undisturbed
-    batch = started(*arguments(manifest, tmp_path / "out"))
-    first = until(lambda: workers_of(batch.pid))[0]
-    kill(first)  # as it starts
-    until(lambda: n_kept(tmp_path / "out") or batch.poll() is not None)
-    for worker in workers_of(batch.pid)[:1]:
-        kill(worker)  # as it measures
-    out, err = ended(batch)
-    assert (batch.returncode, err) == (1, ""), out
-    assert answer_bytes(tmp_path / "out") == expected
-
-
-def test_after_a_killed_command_the_same_one_goes_on(undisturbed, tmp_path):
-    """Its workers end with it."""
+def test_after_killed_workers_and_a_killed_command_the_same_one_goes_on(undisturbed, tmp_path):
+    """A worker as it starts, one as it measures, and the command, with which its workers end."""
     manifest, expected = undisturbed
     least = 40
     batch = started(*arguments(manifest, tmp_path / "out"))
+    kill(until(lambda: workers_of(batch.pid))[0])
+    until(lambda: n_kept(tmp_path / "out"))
+    kill(until(lambda: workers_of(batch.pid))[0])
     until(lambda: workers_of(batch.pid) and n_kept(tmp_path / "out") >= least)
     workers = workers_of(batch.pid)
     kill(batch.pid)

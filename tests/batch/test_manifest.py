@@ -30,14 +30,15 @@ def test_a_cell_times_trajectories_in_order_of_their_names(folder):
     assert {item.file for item in items} == {str(folder / "cell.yaml")}
 
 
-def test_a_list_keeps_its_order_and_a_file_counts_once(folder):
-    text = 'cell: cell.yaml\ntrajectories: [t002.csv, "t*.csv"]\n'
-    assert names(written(folder, text)) == ["t002", "t000", "t001"]
-
-
-def test_the_name_of_a_manifest_goes_before_those_of_its_cases(folder):
-    text = 'name: line\ncell: cell.yaml\ntrajectories: "t00[01].csv"\n'
-    assert names(written(folder, text)) == ["line/t000", "line/t001"]
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('cell: cell.yaml\ntrajectories: [t002.csv, "t*.csv"]\n', ["t002", "t000", "t001"]),
+        ('name: line\ncell: cell.yaml\ntrajectories: "t00[01].csv"\n', ["line/t000", "line/t001"]),
+    ],
+)
+def test_a_list_keeps_its_order_and_a_name_goes_before_those_of_its_cases(folder, text, expected):
+    assert names(written(folder, text)) == expected
 
 
 def test_case_files_are_named_from_the_folder_that_they_share(folder):

@@ -32,12 +32,6 @@ def test_each_case_is_in_one_task_and_the_last_are_small(items, n_hands):
         waiting -= len(task)
 
 
-@pytest.mark.slow
-def test_few_cases_are_shared_by_all_who_measure(items):
-    assert len(cut(Queue(items[:64], "batch"), 4)) >= 4
-    assert len(cut(Queue(items[:64], "batch"), 1)) == 1
-
-
 def test_cases_that_are_given_back_alone_are_tasks_of_their_own(items):
     queue = Queue(items[:20], "batch")
     first = queue.task()

@@ -1,14 +1,8 @@
 """Waivers that all cases of a batch share, as a truth table: each must be needed by one case, not by all."""
 
-from datetime import date
-
 import pyarrow.parquet as pq
 import pytest
 
-from clearance.batch.listed import read_list
-from clearance.batch.manifest import items_of
-from clearance.batch.store import open_store
-from clearance.case.waiver_file import load_waivers
 from clearance.cli import run
 from tests.batch.batches import answer_bytes, write_cell
 from tests.report.junit_schema import valid_suite
@@ -57,11 +51,6 @@ TABLE = {
     "of no body": (
         waiver() + waiver("[slider, wal]"), 1, "UNUSED WAIVER", "no body is called 'wal'; did you mean 'wall'?",
     ),
-    "of no rule": (
-        waiver() + waiver(rule="defalt"), 1, "UNUSED WAIVER",
-        "no rule is called 'defalt'; did you mean 'default'?",
-    ),
-    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "allows 45 mm or more, and less occurs"),
     "of a case": (
         waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers",
     ),
@@ -170,37 +159,13 @@ def test_a_waiver_is_a_change_of_its_cases_alone(folder, capsys):
     assert "cached      2 of 3" in told and "has expired on 2027-03-31" in told
 
 
-def test_the_list_keeps_them(folder):
-    (folder / "waivers.yaml").write_text(waiver() + waiver(case="t001"))
-    batch("--quiet")
-    given = load_waivers(folder / "waivers.yaml")
-    items = items_of(["batch.yaml"], dict(today=date.fromisoformat(DAY), waivers=given))
-    with open_store(folder / "store") as store:
-        found = read_list(store)
-    assert list(found) == list(items)
-    assert [len(one.options.asked.waivers) for one in found] == [1, 2, 1]
-
-
-def test_mistakes_are_one_line(folder, capsys):
-    (folder / "waivers.yaml").write_text("- {betwen: [a, b]}\n")
-    assert batch() == 2
-    err = capsys.readouterr().err
-    assert "waivers.yaml: waivers[0]" in err and "did you mean 'between'?" in err
-    assert err.count("\n") == 1 and not (folder / "store").exists()
-    assert run(["batch", "batch.yaml", "--out", "store", "--waivers", "none.yaml"]) == 2
-    assert "there is no file 'none.yaml'" in capsys.readouterr().err
-
-
 CELL_TABLE = {
     # what: waivers of the cell, exit code, headline, a line
     "one motion needs it": (waiver(), 0, "CLEAR with waivers  3 cases: 3 clear", "waived      1 case with what"),
-    "expired": (waiver(until="2026-10-31"), 1, "VIOLATED", "has expired on 2026-10-31"),
     "no motion needs it": (
         waiver() + waiver("[slider, floor]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
         "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: no body is called 'floor'",
     ),
-    "of no motion": (waiver() + waiver(case="t02"), 1, "UNUSED WAIVER", "did you mean 't002'?"),
-    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "allows 45 mm or more, and less occurs"),
 }  # fmt: skip
 
 

@@ -132,6 +132,10 @@ def test_view_writes_the_page_of_one_case_and_links_it(folder, capsys):
             "'-1' is given; a length, 0 or more [mm]",
         ),
         (["batch.yaml", "--out", "store", "--scheduler", "x"], "leave it out with --scheduler"),
+        (
+            ["batch.yaml", "--out", "store", "--waivers", "none.yaml"],
+            "there is no file 'none.yaml'",
+        ),
     ],
 )
 def test_a_mistake_is_one_line(folder, capsys, arguments, told):
