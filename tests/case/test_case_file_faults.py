@@ -134,12 +134,6 @@ def test_each_fault_is_one_line_with_its_place(tmp_path, case, fault, says):
     assert str(caught.value).startswith("case.yaml: ")
 
 
-def test_no_obstacles_leave_nothing_to_measure(tmp_path):
-    before, after = CASE.partition("  obstacles:")[0], CASE[CASE.index("trajectory") :]
-    with pytest.raises(NothingToMeasure):
-        load_small(tmp_path, f"{before}  obstacles: []\n{after}")
-
-
 MIMIC = TWO_JOINTS.replace('<limit lower="0" upper="0.1"/>', '<mimic joint="shoulder"/>')
 
 

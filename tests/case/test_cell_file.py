@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.case.case_file import load_case, load_cell, with_trajectory_file
-from clearance.errors import BadInput, DuplicateName, MissingFile, UnknownRobot
+from clearance.errors import BadInput, MissingFile, UnknownRobot
 from clearance.formats.schema.timed import TrajectoryFile
 from tests.formats.making import CASE, write_case
 
@@ -36,13 +36,6 @@ def test_what_is_wrong_with_one_trajectory_is_told_with_its_file(folder):
     cell = load_cell(folder / "cell.yaml")
     with pytest.raises(MissingFile, match=r"cell\.yaml: trajectory\.file: .*gone\.csv"):
         with_trajectory_file(cell, asked("gone.csv"), "gone")
-
-
-def test_a_joint_that_the_cell_fixes_is_not_moved(folder):
-    path = folder / "cell.yaml"
-    path.write_text(CELL.replace("urdf: arm.urdf", "urdf: arm.urdf, joints: {shoulder: 0.1}"))
-    with pytest.raises(DuplicateName, match="give it in one place"):
-        with_trajectory_file(load_cell(path), asked(), "twice")
 
 
 def test_a_robot_that_has_a_trajectory_is_given_no_other(folder):

@@ -17,7 +17,6 @@ from clearance.errors import (
 from clearance.world.recording import motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
-from tests.formats.making_bags import state, write_bag
 from tests.formats.making_case import TWO_JOINTS, load_small
 from tests.formats.making_cell import load_cell
 
@@ -117,23 +116,12 @@ def test_an_offset_is_added_to_its_times(tmp_path):
     assert "-10 s are added to its times" in " ".join(found.notes)
 
 
-def test_a_bag_of_joint_states_is_a_run(tmp_path):
-    rows = [[0.0, 0.0], [0.101, 0.01], [0.3, 0.01]]
-    states = [state(i, row, ["shoulder", "lift"]) for i, row in enumerate(rows)]
-    bag = write_bag(tmp_path / "bags", "bag", {"/joint_states": states})
-    found = with_recorded(case(tmp_path), bag)
-    shoulder, lift = found.robots[0].recording.joints
-    assert (shoulder.joint, lift.joint) == ("shoulder", "lift")
-    assert shoulder.greatest == pytest.approx(0.001) and lift.greatest == 0.0
-
-
 @pytest.mark.parametrize(
     ("text", "kind", "told"),
     [
         ("time,shoulder\n0,0\n2,0.3\n", MissingKey, "recorded: run.csv: it does not have joints lift"),
         ("time,shoulder,elbow\n0,0,0\n", UnknownJoint, "unknown joint 'elbow'"),
         ("time,shoulder,lift\n", ClearanceError, "run.csv"),
-        ("", ClearanceError, "run.csv"),
         ("time,shoulder,lift\n9,0,0\n10,0,0\n", BadTime, "it covers 9 to 10 s"),
         ("time,shoulder,lift\n0,0.5,0\n2,0.5,0\n", BadInput, FAR_OFF),
     ],

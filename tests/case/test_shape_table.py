@@ -65,13 +65,11 @@ def test_what_is_missing_or_no_length_is_refused_where_it_stands(tmp_path, name)
             assert f"scene.obstacles[0].{name}" in str(caught.value) and key in str(caught.value)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name, shape in SHAPES.items() if shape.radius])
-def test_a_radius_in_millimetres_is_suspect(tmp_path, name):
-    given = example(name) | {SHAPES[name].radius: 6.0}
-    given |= {"length": 0.5} if "length" in SHAPES[name].optional else {}
-    (notice, *_) = load_small(tmp_path, with_obstacle(written(name, given))).notices
-    assert "has a radius of 6 m" in notice.text
+def test_every_radius_is_held_against_what_radii_usually_are():
+    given = {name: shape.radius for name, shape in SHAPES.items() if shape.radius}
+    assert given == dict.fromkeys(("sphere", "cylinder", "capsule"), "radius") | {
+        "pipe": "outer_radius"
+    }
 
 
 def test_the_public_names_and_the_guide_have_every_shape():

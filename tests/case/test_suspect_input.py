@@ -30,10 +30,6 @@ def only_suspect(folder, case=CASE, kind="units", **changes):
     return text
 
 
-def test_a_good_case_has_no_notices(tmp_path):
-    assert found(tmp_path) == []
-
-
 def test_a_joint_a_little_beyond_its_limits_is_a_warning(tmp_path):
     path = "time,shoulder\n0,0\n2,1.25\n5,-1.5\n"
     assert found(tmp_path, trajectory=path) == [
@@ -199,10 +195,6 @@ def table(length: float, time: float = 1.0) -> str:
 
 def told(folder, *changes, **files):
     return [notice.text for notice in notices_of(load_cell(folder, *changes, **files))]
-
-
-def test_a_cell_in_metres_and_seconds_is_not_suspect(tmp_path):
-    assert told(tmp_path) == []
 
 
 def test_a_far_cell_whose_robots_stand_on_its_table_is_not_suspect(tmp_path):
