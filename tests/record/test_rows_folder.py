@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping
-from functools import partial
+from collections.abc import Callable
 from pathlib import Path
-from types import FunctionType, MethodType
-from typing import Any
 
 import numpy as np
 import pytest
 
-import clearance as cl
 from clearance.errors import Unwritable
 from clearance.record.rows import folder as rows_folder
 from clearance.record.rows.folder import LOCK, MARK
 from clearance.record.rows.resumable import open_resumable_rows
 from clearance.record.status import STATUSES, status_codes, status_of
-from clearance.world.case import Case, Limits
-from clearance.world.motion import Motion
-from clearance.world.timeline import Timeline
+from clearance.world.case import Limits
 
 
 class Interrupted(BaseException):
@@ -172,63 +165,6 @@ def test_of_two_runs_that_start_at_once_one_is_refused(
     assert (place / LOCK).read_bytes() == MARK
     ways[0].__exit__(None, None, None)
     assert list(tmp_path.iterdir()) == []
-
-
-SCENES = Path(__file__).parents[2] / "scenes"
-GIVEN = Case, Motion, Timeline
-"""What a record was made of, which other rooms answer for."""
-
-
-def closures(value: Any, path: str, seen: set[int]) -> Iterator[str]:
-    """Where a function is kept in a value, or in anything that it holds."""
-    if id(value) in seen or isinstance(value, GIVEN):
-        return
-    seen.add(id(value))
-    if isinstance(value, FunctionType | MethodType | partial):
-        yield path
-    elif isinstance(value, Mapping):
-        for name, one in value.items():
-            yield from closures(one, f"{path}[{name}]", seen)
-    elif isinstance(value, list | tuple | set | frozenset):
-        for i, one in enumerate(value):
-            yield from closures(one, f"{path}[{i}]", seen)
-    elif dataclasses.is_dataclass(value):
-        for name, one in vars(value).items():
-            yield from closures(one, f"{path}.{name}", seen)
-
-
-def kinds(value: Any, seen: set[int]) -> Iterator[str]:
-    """The rooms of all objects that a value holds."""
-    if id(value) in seen or isinstance(value, GIVEN):
-        return
-    seen.add(id(value))
-    held: tuple[Any, ...] = ()
-    if isinstance(value, Mapping):
-        held = tuple(value.values())
-    elif isinstance(value, list | tuple | set | frozenset):
-        held = tuple(value)
-    elif dataclasses.is_dataclass(value):
-        yield type(value).__module__
-        held = tuple(vars(value).values())
-    for one in held:
-        yield from kinds(one, seen)
-
-
-@pytest.fixture(scope="module")
-def run() -> cl.Run:
-    return cl.check(SCENES / "box_box" / "case.yaml", limits=Limits(0.04, 0.06))
-
-
-def test_a_record_holds_no_object_of_a_room_that_measures(run):
-    rooms = {kind.split(".")[1] for kind in kinds(run.record, set())}
-    assert "record" in rooms and not rooms & {"simulate", "run", "budget", "kernels"}
-
-
-def test_the_session_holds_what_the_record_does_not(run):
-    """So that the two tests above would see it."""
-    assert [*closures(run.session.rules, "rules", set())] != []
-    rooms = {kind.split(".")[1] for kind in kinds(run.session.rules, set())}
-    assert "simulate" in rooms
 
 
 def test_a_number_has_the_status_of_a_row() -> None:
