@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import copy
+import functools
 import hashlib
 import json
+import operator
 import re
 import shutil
 import tempfile
@@ -111,14 +112,14 @@ def leaves(told, way=()) -> Iterator[tuple]:
 
 
 def forgeries(summary) -> Iterator[tuple[tuple, dict]]:
-    """The summary with each of its values changed once, and with each key of it left out."""
-    for way in leaves(summary):
-        made = copy.deepcopy(summary)
-        place = made
-        for key in way[:-1]:
-            place = place[key]
-        place[way[-1]] = forged(place[way[-1]])
-        yield way, made
+    """The summary with each of its values changed while it is looked at, and with each key of it left out."""
+    for way in list(leaves(summary)):
+        *above, key = way
+        place = functools.reduce(operator.getitem, above, summary)
+        told = place[key]
+        place[key] = forged(told)
+        yield way, summary
+        place[key] = told
     for key in summary:
         yield ("without", key), {name: value for name, value in summary.items() if name != key}
 

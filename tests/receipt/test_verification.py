@@ -58,10 +58,9 @@ def test_the_headline_says_what_the_verdict_does_not_cover(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, 1])
-def test_cubics_mounts_tables_and_parts_in_hands_are_covered(tmp_path, seed):
-    saved(everything_moves(seed), tmp_path)
-    assert cl.verify(tmp_path, everything_moves(seed)).proven
+def test_cubics_mounts_tables_and_parts_in_hands_are_covered(tmp_path):
+    saved(everything_moves(0), tmp_path)
+    assert cl.verify(tmp_path, everything_moves(0)).proven
 
 
 @pytest.mark.slow
