@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from tests.report.junit_schema import valid_suite
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.1)}
 WORSE = {"gate_a": (-0.5, 0.0025), "gate_b": (0.5, 0.1)}
 CLEAR = {"gate_a": (-0.5, 0.05), "gate_b": (0.5, 0.1)}
+CELLS = {"broken": BROKEN, "worse": WORSE, "clear": CLEAR}
 WAIVER = (
     "- {between: [box, gate_a], at_least: 0.002, reason: gives way, by: N. N., until: 2027-03-31}\n"
 )
@@ -25,25 +27,32 @@ def place(tmp_path, monkeypatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("GITHUB_STEP_SUMMARY", raising=False)
     monkeypatch.delenv("GITHUB_WORKSPACE", raising=False)
-    for name, gates in (("broken", BROKEN), ("worse", WORSE), ("clear", CLEAR)):
+    for name, gates in CELLS.items():
         write_gates(tmp_path / name, gates)
     (tmp_path / "waivers.yaml").write_text(WAIVER)
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def reported(tmp_path_factory) -> Path:
+    """The reports of the three cells, made once."""
+    folder = tmp_path_factory.mktemp("reported")
+    for name, gates in CELLS.items():
+        write_gates(folder / name, gates)
+        check(f"{folder / name}/case.yaml", "--out", f"{folder}/of_{name}", "--quiet")
+    return folder
+
+
+@pytest.fixture
+def reports(place, reported) -> Path:
+    """The place with the reports beside their cells."""
+    for name in CELLS:
+        shutil.copytree(reported / f"of_{name}", place / f"of_{name}")
+    return place
+
+
 def check(*arguments: str) -> int:
     return run(["check", *arguments])
-
-
-def test_a_waiver_and_its_day(place, capsys):
-    waived = ("broken/case.yaml", "--waivers", "waivers.yaml")
-    assert check(*waived, "--today", "2026-11-01") == 0
-    told = capsys.readouterr().out
-    assert told.startswith("CLEAR with 1 waiver") and "gives way" in told
-    assert check(*waived, "--today", "2027-04-01") == 1
-    assert "has expired on 2027-03-31" in capsys.readouterr().out
-    assert check("clear/case.yaml", "--waivers", "waivers.yaml", "--today", "2026-11-01") == 1
-    assert capsys.readouterr().out.startswith("UNUSED WAIVER (would be CLEAR)")
 
 
 def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, capsys):
@@ -77,27 +86,25 @@ def test_bad_options_are_one_line_and_write_nothing(arguments, told, place, caps
 
 
 @pytest.mark.slow
-def test_a_baseline_is_told_and_does_not_change_the_exit_code(place, capsys):
-    assert check("broken/case.yaml", "--out", "before", "--quiet") == 1
-    assert check("broken/case.yaml", "--baseline", "before") == 1
+def test_a_baseline_is_told_and_does_not_change_the_exit_code(reports, capsys):
+    assert check("broken/case.yaml", "--baseline", "of_broken") == 1
     assert "since the baseline: 1 unchanged" in capsys.readouterr().out
-    assert check("worse/case.yaml", "--baseline", "before/findings.json", "--out", "now") == 1
+    assert check("worse/case.yaml", "--baseline", "of_broken/findings.json", "--out", "now") == 1
     assert "since the baseline: BREAKS A RULE in 1 finding; 1 worse" in capsys.readouterr().out
-    page = (place / "now" / "report.html").read_text()
+    page = (reports / "now" / "report.html").read_text()
     assert (
         "Since the baseline: BREAKS A RULE in 1 finding; 1 worse." in page
         and "worse, was 3.000 mm" in page
     )
-    assert check("clear/case.yaml", "--baseline", "before") == 0
+    assert check("clear/case.yaml", "--baseline", "of_broken") == 0
     assert "since the baseline: 1 gone" in capsys.readouterr().out
 
 
-def test_a_baseline_is_not_overwritten(place, capsys):
-    assert check("broken/case.yaml", "--out", "before", "--quiet") == 1
-    written = {path: path.read_bytes() for path in (place / "before").iterdir()}
-    assert check("broken/case.yaml", "--out", "before", "--baseline", "before") == 2
+def test_a_baseline_is_not_overwritten(reports, capsys):
+    written = {path: path.read_bytes() for path in (reports / "of_broken").iterdir()}
+    assert check("broken/case.yaml", "--out", "of_broken", "--baseline", "of_broken") == 2
     assert "would overwrite" in capsys.readouterr().err
-    assert written == {path: path.read_bytes() for path in (place / "before").iterdir()}
+    assert written == {path: path.read_bytes() for path in (reports / "of_broken").iterdir()}
 
 
 def test_github_is_told_on_the_row_and_in_the_step_summary(place, capsys, monkeypatch):
@@ -121,12 +128,10 @@ def test_without_a_step_summary_that_is_said(place, capsys):
 
 
 @pytest.mark.slow
-def test_two_runs_side_by_side(place, capsys):
-    for name in ("broken", "worse", "clear"):
-        check(f"{name}/case.yaml", "--out", f"of_{name}", "--quiet")
+def test_two_runs_side_by_side(reports, capsys):
     assert run(["compare", "of_broken", "of_worse", "--out", "page"]) == 1
     assert "1 worse" in capsys.readouterr().out
-    page = (place / "page" / "comparison.html").read_text()
+    page = (reports / "page" / "comparison.html").read_text()
     (data,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page)
     curves = json.loads(data)["curves"]
     assert [one["name"] for one in curves] == ["A", "B"] and "new or worse" in page
@@ -134,23 +139,21 @@ def test_two_runs_side_by_side(place, capsys):
     assert run(["compare", "of_worse", "of_clear/findings.json", "--quiet"]) == 0
     assert capsys.readouterr().out == ""
     assert run(["compare", "of_worse", "of_clear/findings.json", "--out", "page"]) == 0
-    assert "Curves need two report folders" in (place / "page" / "comparison.html").read_text()
+    assert "Curves need two report folders" in (reports / "page" / "comparison.html").read_text()
     assert run(["compare", "of_worse", "no"]) == 2
-    (place / "of_worse" / "steps.parquet").write_bytes(b"no")
+    (reports / "of_worse" / "steps.parquet").write_bytes(b"no")
     assert run(["compare", "of_worse", "of_clear", "--out", "other"]) == 2
     assert "no table of steps" in capsys.readouterr().err
 
 
 @pytest.mark.slow
-def test_side_by_side_it_is_told_what_a_waiver_lets_pass(place, capsys):
+def test_side_by_side_it_is_told_what_a_waiver_lets_pass(reports, capsys):
     """A row "new, violated" of a comparison that passes would be taken for a fault of it."""
     asked = ("--waivers", "waivers.yaml", "--today", "2026-11-01", "--quiet")
     check("broken/case.yaml", "--out", "waived", *asked)
-    for name in ("broken", "clear"):
-        check(f"{name}/case.yaml", "--out", f"of_{name}", "--quiet")
     assert run(["compare", "of_clear", "waived", "--out", "page"]) == 0
     assert "violated, waived" in capsys.readouterr().out
-    page = (place / "page" / "comparison.html").read_text()
+    page = (reports / "page" / "comparison.html").read_text()
     assert '<span class="tag violated">violated, waived</span>' in page
     assert run(["compare", "waived", "of_broken"]) == 1
     assert "waived before, and is not now" in capsys.readouterr().out
@@ -169,21 +172,9 @@ def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
     assert "broken/case.yaml: VIOLATED" in out and "no list of cases" in err
 
 
-def test_the_hook_fails_where_tolerances_leave_a_limit_unproven(place, capsys):
-    own = "tolerance: {obstacles: {gate_a: {xyz: 0.046}}}"
-    write_gates(place / "loose", CLEAR, own)
-    assert run(["pre-commit", "loose/case.yaml"]) == 1
-    told = capsys.readouterr().out
-    assert "FAIL: limit not proven with tolerances" in told and "box - gate_a" in told
-    write_gates(place / "tight", CLEAR, own.replace("0.046", "0.04"))
-    assert run(["pre-commit", "tight/case.yaml"]) == 0
-
-
-def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(place, capsys):
-    check("clear/case.yaml", "--out", "of_clear", "--quiet")
-    check("broken/case.yaml", "--out", "of_broken", "--quiet")
+def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(reports, capsys):
     assert run(["compare", "of_broken", "of_clear", "--quiet"]) == 0
-    (place / ".of_clear.unfinished").mkdir()  # where rows are kept until the report is there
+    (reports / ".of_clear.unfinished").mkdir()  # where rows are kept until the report is there
     for arguments in (
         ["compare", "of_broken", "of_clear"],
         ["compare", "of_clear/findings.json", "of_broken"],
@@ -195,10 +186,9 @@ def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(pla
         assert told.out == ""
 
 
-def test_a_comparison_fails_by_suspect_input_alone(place, capsys):
-    check("clear/case.yaml", "--out", "of_clear", "--quiet")
-    text = (place / "clear" / "case.yaml").read_text()
-    (place / "clear" / "case.yaml").write_text(text.replace("xyz: [0.5,", "xyz: [5000,"))
+def test_a_comparison_fails_by_suspect_input_alone(reports, capsys):
+    text = (reports / "clear" / "case.yaml").read_text()
+    (reports / "clear" / "case.yaml").write_text(text.replace("xyz: [0.5,", "xyz: [5000,"))
     assert check("clear/case.yaml", "--out", "of_suspect", "--baseline", "of_clear") == 2
     told = capsys.readouterr().out
     assert told.startswith("SUSPECT") and "since the baseline: NEW suspect input" in told

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
 from clearance.formats.known_formats import Kind, suffixes_written
@@ -13,7 +12,6 @@ from clearance.formats.motion.trajectory_file import parse_trajectory
 from clearance.formats.motion.trajectory_writer import written
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
-from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_messages import MESSAGE, ROS2, dumped
 
 TABLE = (
@@ -34,22 +32,13 @@ def test_there_and_back_gives_the_same_bytes(tmp_path, capsys, between):
     assert convert(tmp_path / between, tmp_path / "b.csv") == 0
     assert (tmp_path / "b.csv").read_text() == TABLE
     assert "b.csv: 2 samples of 2 joints" in capsys.readouterr().out
-    message = (tmp_path / between).read_bytes()
-    key = between.replace(".", "__")
-    case = changed("file: path.csv", f"file: {between}")
-    direct = check(load_small(tmp_path, urdf=TWO_JOINTS, trajectory=TABLE), certify=True)
-    back = check(load_small(tmp_path, case, urdf=TWO_JOINTS, **{key: message}), certify=True)
-    ours, theirs = (run.record.clearances for run in (direct, back))
-    assert ours.tobytes() == theirs.tobytes()
-    bounds = [run.record.certificate.lower_bound for run in (direct, back)]
-    assert bounds[0].tobytes() == bounds[1].tobytes()
 
 
 NUMBERS = st.floats(-1e3, 1e3)
 TIMES = st.lists(st.integers(-(10**12), 10**13), min_size=1, max_size=5, unique=True)
 
 
-@examples(200)
+@examples(60)
 @given(st.data(), TIMES, st.sampled_from(suffixes_written(Kind.TRAJECTORY)), st.booleans())
 def test_any_trajectory_comes_back_bit_for_bit(data, nanoseconds, suffix, moving):
     times = np.array([whole / 10**9 for whole in sorted(nanoseconds)])

@@ -11,13 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clearance import check
 from clearance.cli import run
 from clearance.formats.known_formats import Kind, suffixes_written
 from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
 from clearance.formats.motion.pose_writer import written_poses
 from tests.examples import examples
-from tests.formats.making_cell import load_cell
 from tests.formats.motion.test_pose_formats import STAMPED, pose
 
 SUFFIXES = suffixes_written(Kind.POSES)
@@ -43,19 +41,12 @@ def samples_in(content: bytes, name: str) -> PoseSamples:
 
 
 @pytest.mark.parametrize("between", ["door.yaml", "door.yml", "door.json"])
-def test_there_and_back_gives_the_same_bytes(tmp_path, capsys, between):
+def test_there_and_back_gives_the_same_bytes(capsys, between):
     Path("a.csv").write_text(TABLE)
     assert convert("a.csv", between) == 0
     assert convert(between, "b.csv") == 0
     assert Path("b.csv").read_text() == TABLE
     assert "written b.csv: 3 poses" in capsys.readouterr().out
-    message = Path(between).read_bytes()
-    direct = check(load_cell(tmp_path, door=TABLE)).record
-    change = {between.replace(".", "__"): message}
-    back = check(load_cell(tmp_path, "moves: door.csv", f"moves: {between}", **change)).record
-    assert direct.clearances.tobytes() == back.clearances.tobytes()
-    assert direct.certificate.lower_bound.tobytes() == back.certificate.lower_bound.tobytes()
-    assert direct.steps.equals(back.steps)
 
 
 def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):

@@ -208,7 +208,6 @@ def test_what_a_program_lacks_is_said_by_its_keys(capsys):
         ("world.sdf", "path.yaml"),
         ("planning.yaml", "path.csv"),
         ("held.yaml", "path.csv"),
-        ("cell.scene", "path.csv"),
     ],
 )
 @pytest.mark.slow

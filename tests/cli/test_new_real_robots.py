@@ -18,7 +18,6 @@ from clearance.world.trajectory import Trajectory
 BROUGHT = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
 ROBOTS = {
     "kuka iiwa": "pybullet_data:kuka_iiwa/model.urdf",
-    "franka": "pybullet_data:franka_panda/panda.urdf",
     "panda": "panda_description/urdf/panda.urdf",
     "human": "human_description/robots/human.urdf",
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ from clearance.cli import run
 from clearance.sketch import Sketch
 from scripts.makers.point_sketches import irreducible, shaken, sketched
 from tests.formats.making import CASE, write_case
+from tests.report.made import page_of
 
 
 @pytest.fixture
@@ -71,28 +71,13 @@ def test_a_fit_stops_and_names_what_does_not_hold(folder, capsys):
 SCENE = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
 
 
-@pytest.mark.parametrize(
-    ("tolerance", "told"),
-    [
-        (2.5, "with a tolerance of 2500 mm for its first rejection rule"),
-        (None, "with no tolerance for its first rejection rule"),
-    ],
-)
-def test_the_tolerance_is_in_the_summary_and_the_report(tmp_path, capsys, tolerance, told):
-    own = [] if tolerance is None else ["--paper-tolerance-mm", str(1000.0 * tolerance)]
-    asked = ["check", str(SCENE), "--method", "paper", "--json", "--out", str(tmp_path / "out")]
-    assert run([*asked, *own]) == 0
-    assert json.loads(capsys.readouterr().out)["paper_tolerance"] == tolerance
-    assert told in (tmp_path / "out" / "report.html").read_text()
-
-
-def test_what_is_farther_than_the_tolerance_is_left_out() -> None:
+def test_what_is_farther_than_the_tolerance_is_left_out_and_it_is_told() -> None:
     case = cl.load_case(SCENE)
-    all_in, some = (
-        cl.answer(cl.Question(case, method="paper", paper_tolerance=t)).record.tally
-        for t in (100.0, 0.4)
-    )
+    runs = [cl.answer(cl.Question(case, method="paper", paper_tolerance=t)) for t in (100.0, 0.4)]
+    all_in, some = (run.record.tally for run in runs)
     assert all_in["cut_by_rule_1"] == 0 < some["cut_by_rule_1"]
     assert some["measured"] < all_in["measured"]
+    assert runs[1].summary["paper_tolerance"] == 0.4
+    assert "with a tolerance of 400 mm for its first rejection rule" in page_of(runs[1])
     with pytest.raises(cl.BadInput, match=r"a tolerance above 0\.01 m may do"):
         cl.answer(cl.Question(case, method="paper", paper_tolerance=0.01))

@@ -9,8 +9,9 @@ import pytest
 from clearance.case import case_file
 from clearance.cli import run
 from clearance.geometry import boolean
+from clearance.run import CheckOptions
 from tests import cells
-from tests.formats.making_cell import write_cell
+from tests.formats.making_cell import load_cell
 
 
 @pytest.fixture
@@ -53,23 +54,20 @@ def test_an_unknown_link_is_one_line_with_the_nearest(cell, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("options", "levels"),
     [
-        ((), {"default": (5, 20), "own": (1, 1), "inherited": (5, 30)}),
-        (("--fail-mm", "25"), {"default": (25, 25), "own": (1, 1), "inherited": (25, 30)}),
-        (("--fail-mm", "80"), {"default": (80, 80), "own": (1, 1), "inherited": (80, 80)}),
-        (("--warn-mm", "90"), {"default": (5, 90), "own": (1, 1), "inherited": (5, 30)}),
+        ({}, {"default": (5, 20), "own": (1, 1), "inherited": (5, 30)}),
+        ({"fail": 0.025}, {"default": (25, 25), "own": (1, 1), "inherited": (25, 30)}),
+        ({"fail": 0.08}, {"default": (80, 80), "own": (1, 1), "inherited": (80, 80)}),
+        ({"warn": 0.09}, {"default": (5, 90), "own": (1, 1), "inherited": (5, 30)}),
     ],
 )
-def test_a_limit_of_the_command_line_holds_for_rules_that_give_none(
-    tmp_path, capsys, options, levels
-):
+def test_a_limit_of_the_command_line_holds_for_rules_that_give_none(tmp_path, options, levels):
     names = (
         "{name: at the",
         "{name: own, between: [right/*, post], fail: 0.001}\n    - {name: at the",
     )
-    case = write_cell(
-        tmp_path, *names, "{between: [workpiece", "{name: inherited, between: [workpiece"
-    )
-    run(["check", str(case), "--json", *options])
-    rules = json.loads(capsys.readouterr().out)["rules"]
-    told = {one["name"]: (1000 * one["fail"], 1000 * one["warn"]) for one in rules}
-    assert {name: told[name] for name in levels} == levels
+    rules = *names, "{between: [workpiece", "{name: inherited, between: [workpiece"
+    limits = CheckOptions(**options).apply(load_cell(tmp_path, *rules)).limits
+    told = {rule.name: limits.of_rule(i) for i, rule in enumerate(limits.rules, 1)}
+    told["default"] = limits.of_rule(0)
+    for name, level in levels.items():
+        assert (1000 * told[name].fail, 1000 * told[name].warn) == pytest.approx(level)

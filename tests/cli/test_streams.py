@@ -51,7 +51,6 @@ def test_it_is_told_in_one_line(folder: Path, line: str) -> None:
     ("line", "code"),
     [
         ("clearance check case.yaml --quiet --fail-mm 150 >/dev/full 2>/dev/full", 1),
-        ("clearance check gone.yaml <&- >&- 2>&-", 2),
         ("clearance check case.yaml >/dev/full 2>&1", 2),
     ],
 )
