@@ -41,13 +41,16 @@ def is_installed(library: str) -> bool:
     return find_spec(library) is not None
 
 
-def require(extra: str, purpose: str) -> None:
+def require(extra: str, purpose: str, *libraries: str) -> None:
     """Lets pass where all libraries of an extra are installed; none is imported.
+
+    Args:
+        libraries: those that are needed, where not all are.
 
     Raises:
         Unavailable: one is missing; the message names the purpose and the command that installs it.
     """
-    for library in LIBRARIES[extra]:
+    for library in libraries or LIBRARIES[extra]:
         if not is_installed(library):
             raise Unavailable(
                 f"{purpose} needs {library}, which is not installed", valid=install(extra)

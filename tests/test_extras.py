@@ -83,6 +83,9 @@ def test_distance_and_check_need_no_optional_library():
         (["check", CASE, "--motion", "simulated"], "simulate", "pybullet",
          "--motion simulated needs pybullet"),
         (["check", WITH_PROFILES], "profiles", "shapely", "a case with profiles needs shapely"),
+        (["profile", "sweep", CASE, "--plane", "xy", "--out", "outline.yaml"], "profiles", "shapely",
+         "profile sweep needs shapely"),
+        (["workspace", CASE], "contact", "manifold3d", "a shared workspace needs manifold3d"),
         (["batch", CASE, "--out", "store"], "tables", "pyarrow", "clearance batch needs pyarrow"),
     ],
 )  # fmt: skip

@@ -296,6 +296,9 @@ def sweep(
     The motion between the samples is included: joints move linearly, or on cubics if the
     trajectory has velocities. The outline exceeds the swept area by at most the tolerance.
     """
+    from clearance.extras import require
+
+    require("profiles", "profile sweep")
     from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices
     from clearance.cli.progress import shown_progress

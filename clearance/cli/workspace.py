@@ -59,6 +59,9 @@ def workspace(
     Carried parts belong to their robot. Space shared with a robot that it stands on is not
     counted. The volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
     """
+    from clearance.extras import require
+
+    require("contact", "a shared workspace", "manifold3d")
     from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices
     from clearance.files import refuse_inputs, require_folder_place

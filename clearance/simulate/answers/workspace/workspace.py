@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, Contradiction, Unavailable
-from clearance.extras import install
+from clearance.errors import BadDimension, BadInput, Contradiction
+from clearance.extras import require
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
@@ -50,8 +50,7 @@ def shared_workspace(
     """
     if not 0.0 < within < np.inf:
         raise BadDimension(f"within is {within!r} m", valid="a length above 0")
-    if not boolean.available():
-        raise Unavailable("manifold3d is not installed", valid=install("contact"))
+    require("contact", "a shared workspace", "manifold3d")
     robots = robots_in_cell(cases)
     bodies = [body for case in cases for one in case.robots for body in one.robot.bodies]
     bodies += [obstacle.body for case in cases for obstacle in case.obstacles]
