@@ -98,7 +98,13 @@ class UnknownKey(BadInput):
 
 
 class MissingKey(BadInput):
-    """A key that the schema requires."""
+    """A key that the schema requires.
+
+    Attributes:
+        lacks: for what the files of a program do not say, the key of the program and the name below it.
+    """
+
+    lacks: tuple[str, str] | None = None
 
 
 class UnknownLink(BadInput):

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, MissingKey, at, nearest_name
+from clearance.errors import BadProgram, at, nearest_name
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -38,6 +38,7 @@ from clearance.formats.program.fanuc_words import (
     WAIT,
     WAITING,
 )
+from clearance.formats.program.given import not_in_files
 from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import For, Routine, within
 from clearance.formats.program.tokens import Line
@@ -255,9 +256,11 @@ class _Fanuc:
                 f"{name}: no {kind}_NUM is set before", valid=f"write {kind}_NUM=1 before it"
             )
         fault = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
-        raise MissingKey(
+        raise not_in_files(
             f"{name}: {fault}",
-            valid=f'program: {{{word}: {{"{key}": {{xyz: […], rpy: […]}}}}}} in m and rad',
+            word,
+            key,
+            f'program: {{{word}: {{"{key}": {{xyz: […], rpy: […]}}}}}} in m and rad',
         )
 
     def _zone(self, end: str) -> float:
@@ -273,9 +276,11 @@ class _Fanuc:
         for key in (end, kind):
             if key in self.asked.zones:
                 return self.asked.zones[key]
-        raise MissingKey(
+        raise not_in_files(
             f"{end} does not say where the corner begins",
-            valid=f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or {kind} of all",
+            "zones",
+            end,
+            f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or {kind} of all",
         )
 
 

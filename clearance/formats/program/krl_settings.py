@@ -14,9 +14,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from clearance.errors import BadProgram, MissingKey
+from clearance.errors import BadProgram
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Expression, Name, Unknown
+from clearance.formats.program.given import not_in_files
 from clearance.formats.program.krl_values import (
     FRAME,
     MM,
@@ -122,9 +123,8 @@ class Settings:
         index = re.match(r"(?:(?:TOOL|BASE)_DATA\[)?(\d+)(?:\]| of it )", why(value))
         named = f"{name[1:]}_DATA[{index[1]}]" if index else name
         valid = f'program: {{{key}: {{"{named}": {{xyz: […], rpy: […]}}}}}} in m and rad'
-        raise MissingKey(
-            f"{name} is not known: {why(value)}", valid=f"a file beside that sets it, or {valid}"
-        )
+        fault = f"{name} is not known: {why(value)}"
+        raise not_in_files(fault, key, named, f"a file beside that sets it, or {valid}")
 
     def numbered(self, array: str, index: Any, none: str) -> Any:
         """The tool or base of a number; 0 is none."""
@@ -266,9 +266,11 @@ class Settings:
         if word in zones:
             return zones[word]
         lacks = "$APO.CDIS, its length, is not in the files" if by_length else "is no length"
-        raise MissingKey(
+        raise not_in_files(
             f"{word}: {lacks}",
-            valid=f"program: {{zones: {{{word}: 0.05}}}}, the radius of such corners [m]",
+            "zones",
+            word,
+            f"program: {{zones: {{{word}: 0.05}}}}, the radius of such corners [m]",
         )
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 import clearance as cl
-from clearance.formats.program.given import require_used
+from clearance.errors import MissingKey
+from clearance.formats.program.given import read_whole, require_used
 from tests.formats.program import test_fanuc, test_krl, test_rapid
 from tests.formats.program.reading import reader_and_request
 
@@ -70,3 +71,26 @@ def test_a_tool_of_the_case_that_replaces_the_files_stands_in_the_headline():
     (told,) = found.doubts
     assert found.moves[0].tool[2, 3] == 0.4
     assert told == "tools.TWELD of the case replaces tWeld at line 2, which the file gives"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "asked"),
+    [
+        ("CELL.LS", LISTING, '{frames: {"UFRAME[1]": {xyz: […], rpy: […]}}, zones: {CNT50: 0.05, CNT20: 0.05}}'),
+        ("weld.src", KRL, '{tools: {"TOOL_DATA[1]": {xyz: […], rpy: […]}}, zones: {C_PTP: 0.05}}'),
+    ],
+)  # fmt: skip
+def test_all_values_that_the_files_lack_are_asked_for_at_once(name, text, asked):
+    beside = {"weld.dat": CONFIG["weld.dat"]} if name == "weld.src" else ()
+    given = {"tools": test_fanuc.CASE["tools"]} if name == "CELL.LS" else {}
+    reader, request = reader_and_request(name, text, beside, **given)
+    with pytest.raises(MissingKey) as caught:
+        read_whole(reader, request)
+    assert str(caught.value).endswith(f"; program: {asked} in m and rad") and "line" in str(
+        caught.value
+    )
+    reader, request = reader_and_request("a.script", NO_TCP)
+    with pytest.raises(
+        MissingKey, match=r"tools: \{tcp: \{xyz: \[…\]\}\}\}, its pose on the flange"
+    ):
+        read_whole(reader, request)
