@@ -8,6 +8,7 @@ cannot be distinguished from a shorter one. Not for: how a table is parsed (`csv
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Sequence
 
 from clearance.errors import BadInput, BadShape
@@ -58,10 +59,46 @@ def _on_more_columns(n_columns: int) -> Iterator[str]:
         yield f"no header names its {n_columns} columns: the first three are taken for x, y and z"
 
 
+_REMARKS = b"#", b"//"
+
+_AXIS = re.compile(rb"([xyz])(?:[^a-z].*)?", re.IGNORECASE)
+
+
+def _header_in_remark(lines: Sequence[bytes]) -> tuple[int, bytes] | None:
+    """The remark above the first row, if it names as many columns, x, y and z among them; with these names."""
+    rows = ((i, line.strip()) for i, line in enumerate(lines) if line.strip())
+    last, first = None, b""
+    for i, line in rows:
+        if not line.startswith(_REMARKS):
+            first = line
+            break
+        last = i
+    if last is None:
+        return None
+    names = _cells(lines[last].strip().lstrip(b"#/"))
+    axes = {found[1].lower() for name in names if (found := _AXIS.fullmatch(name))}
+    if len(axes) < 3 or len(names) != len(_cells(first)):
+        return None
+    mark = next((mark for mark in (b";", b",") if mark in first), b" ")
+    return last, mark.join(names)
+
+
+def _cells(row: bytes) -> list[bytes]:
+    """The cells of a row, whatever is between them."""
+    parts = re.split(rb"[;\t]" if b";" in row else rb"[,\t]", row.strip())
+    return [one.strip() for one in parts] if len(parts) > 1 else row.split()
+
+
 def _without_remarks(data: bytes) -> bytes:
-    """The content, each line that is a remark empty in its place; labels of any encoding are text."""
+    """The content, each line that is a remark empty in its place, but for one that names the columns; labels of
+    any encoding are text.
+    """
     lines = data.removeprefix(b"\xef\xbb\xbf").splitlines()
-    content = b"\n".join(b"" if line.lstrip().startswith((b"#", b"//")) else line for line in lines)
+    header = _header_in_remark(lines)
+    lines = [b"" if line.lstrip().startswith(_REMARKS) else line for line in lines]
+    if header is not None:
+        lines[header[0]] = header[1]
+    content = b"\n".join(lines)
     return content.decode("utf-8", errors="replace").encode()
 
 

@@ -24,6 +24,7 @@ from clearance.errors import (
 )
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.robot_element import robot_element
+from clearance.formats.text.unread import Format, Row, unread
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.names import checked_name
 from clearance.world.notice import listed
@@ -41,6 +42,27 @@ _ENDS = {
     "disable_collisions": ("link1", "link2"),
 }
 """The rows that are read, and the attributes that name their links."""
+
+
+_PAIR = Row("", "link1 link2 reason", closed=True)
+
+_SRDF = Format(
+    {
+        "robot": Row(
+            "disable_default_collisions enable_collisions disable_collisions group_state",
+            "name version",
+            "group end_effector virtual_joint passive_joint joint_property link_sphere_approximation "
+            "gripper handle contact rotor_params",
+        ),
+        "disable_default_collisions": Row("", "link", closed=True),
+        "enable_collisions": _PAIR,
+        "disable_collisions": _PAIR,
+        "group_state": Row("joint", "name group"),
+        "joint": Row("", "name value", closed=True),
+    },
+    fault=BadRobot,
+)
+"""Names that are passed over: MoveIt's, pinocchio's and hpp's."""
 
 
 def load_srdf(path: str | Path, robot: Robot) -> CollisionMatrix:
@@ -91,11 +113,12 @@ def srdf_root(path: Path, files: InputFiles) -> Element:
     """The root element of an SRDF file.
 
     Raises:
-        BadSyntax: no SRDF.
+        BadSyntax: no SRDF. BadRobot: a name that resembles one that is read; an attribute that rows do not have.
     """
     root = robot_element(files.read(path), "an SRDF file")
     if root.find("link") is not None and root.find("joint/parent") is not None:
         raise BadSyntax("this is a URDF file", valid="an SRDF file is needed")
+    list(unread(root, _SRDF))  # raises; other names are for other programs
     return root
 
 

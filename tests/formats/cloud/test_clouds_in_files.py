@@ -44,6 +44,9 @@ FILES = {
     "semicolons.csv": table(POINTS, ";", "x;y;z"),
     "german.csv": table(POINTS, ";", "x;y;z").replace(b".", b","),
     "remarks.xyz": b"# scan 7\n\n" + table(POINTS, "  ", "") + b"// the end\n",
+    "numpy.txt": b"# scan 7\n# y z x\n" + table(POINTS[:, [1, 2, 0]], " ", ""),
+    "compare.txt": b"//X,Z,Y\n" + table(POINTS[:, [0, 2, 1]], " ", ""),
+    "units.asc": b"#z [m], y [m], x [m]\n" + table(POINTS[:, ::-1], ";", ""),
     "windows.csv": table(POINTS, ",", "x,y,z").replace(b"\n", b"\r\n"),
     "colours.xyz": b"".join(line + b" 255 0 0\n" for line in table(POINTS, " ", "").splitlines()),
     "named.csv": b"".join(

@@ -77,6 +77,26 @@ def test_rows_of_unknown_links_are_left_out_and_named(read):
             "disable_collisions[1]: <disable_collisions> has no link2",
         ),
         ("<disable_default_collisions/>", MissingKey, "has no link"),
+        (
+            '<enable_colisions link1="a" link2="b"/>',
+            BadInput,
+            "robot 'arm': <enable_colisions> is not read; did you",
+        ),
+        (
+            '<enable_collisions link1="a" link2="b" link="c"/>',
+            BadInput,
+            "link='c' is not read; did you mean link",
+        ),
+        (
+            '<group_state name="s"><jont name="j" value="1"/></group_state>',
+            BadInput,
+            "group_state 's': <jont> is",
+        ),
+        (
+            '<group_state name="s"><joint name="j" value="1" unit="deg"/></group_state>',
+            BadInput,
+            "joint 'j': unit=",
+        ),
         (disable("a", "b&#10;forged"), BadInput, "a control character"),
     ],
 )

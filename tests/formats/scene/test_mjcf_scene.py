@@ -82,6 +82,9 @@ def test_a_mesh_that_the_model_turns_is_turned_and_then_scaled(tmp_path):
     ("text", "says"),
     [
         (mjcf('<geom size="0.1" contype="0" conaffinity="0"/>'), "none of its geoms collides"),
+        (mjcf("<geom size='1'/>", '<compilr angle="radian"/>'), "<compilr> is no section.*did you mean"),
+        (mjcf("<geom size='1'/>", '<option><flag filterparnt="enable"/></option>'), "did you mean filterparent="),
+        (mjcf("<geom size='1'/>", '<keyframe><key qpso="1"/></keyframe>'), "MuJoCo refuses it.*'qpso'"),
         (mjcf('<geom type="hfield" hfield="h"/>', '<asset><hfield file="h.png" size="1 1 1 1"/></asset>'),
          "a hfield is not read: its surface is a grid of heights"),
     ],

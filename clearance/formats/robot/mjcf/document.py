@@ -16,7 +16,15 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadRobot, BadSyntax, MissingKey, NotFinite, at
+from clearance.errors import (
+    BadRobot,
+    BadSyntax,
+    MissingKey,
+    NotFinite,
+    at,
+    meant_name,
+    nearest_name,
+)
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.text.xml_document import plain_root
 
@@ -31,6 +39,13 @@ MOST_MADE = 20_000
 
 _NEEDED = ("compiler", "default", "asset", "worldbody", "contact", "equality", "keyframe")
 """Sections of the root that say what there is and where; the others say how it is driven, seen and simulated."""
+
+_PASSED = (
+    "option", "size", "visual", "statistic", "extension", "custom", "deformable", "tendon", "actuator", "sensor",
+)  # fmt: skip
+"""The others that MuJoCo has."""
+
+_OF_KEYS = ("time", "qvel", "act", "ctrl", "mpos", "mquat")
 
 _IDLE = ("site", "camera", "light", "plugin", "texture", "skin", "layer")
 """Elements anywhere that have no surface to touch."""
@@ -188,8 +203,11 @@ def _reduce(document: MjcfDocument) -> None:
     for section in list(root):
         if section.tag == "option":
             _keep_filter(section)
-        elif section.tag not in _NEEDED:
+        elif section.tag in _PASSED:
             root.remove(section)
+        elif section.tag not in _NEEDED:
+            valid = nearest_name(str(section.tag), (*_NEEDED, *_PASSED))
+            raise BadRobot(f"<{section.tag}> is no section of a model", valid=valid)
     for element in list(root.iter(*_IDLE)):
         element.getparent().remove(element)
     for material in root.iter("material"):
@@ -205,8 +223,8 @@ def _reduce(document: MjcfDocument) -> None:
     for key in root.iterfind(
         "keyframe/key"
     ):  # the rest is of motors and tendons, which are taken out
-        for name in set(key.attrib) - {"name", "qpos"}:
-            del key.attrib[name]
+        for name in _OF_KEYS:
+            key.attrib.pop(name, None)
     for mesh in root.iterfind("asset/mesh"):
         _name(mesh)
 
@@ -218,6 +236,8 @@ def _keep_filter(option: Element) -> None:
         if child.tag != "flag":
             option.remove(child)
         for name in set(child.attrib) - {"filterparent"}:
+            if meant_name(name, ["filterparent"]):
+                raise BadRobot(f"<flag> has {name}=", valid="did you mean filterparent=?")
             del child.attrib[name]
 
 
