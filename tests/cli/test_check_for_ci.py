@@ -134,7 +134,7 @@ def test_two_runs_side_by_side(reports, capsys):
     page = (reports / "page" / "comparison.html").read_text()
     (data,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page)
     curves = json.loads(data)["curves"]
-    assert [one["name"] for one in curves] == ["A", "B"] and "new or worse" in page
+    assert [one["name"] for one in curves] == ["A", "B"] and "new, worse or less known" in page
     assert min(curves[1]["clearances"]) < min(curves[0]["clearances"])
     assert run(["compare", "of_worse", "of_clear/findings.json", "--quiet"]) == 0
     assert capsys.readouterr().out == ""
