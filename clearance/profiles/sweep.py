@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,12 +33,14 @@ from clearance.profiles.swept_bodies import (
     RecordHolder,
     SweptBody,
     TimedCase,
+    moving_but_not_swept,
     over_time,
     swept_bodies,
 )
 from clearance.progress import Progress
 from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
+from clearance.world.notice import listed
 
 if TYPE_CHECKING:
     from clearance.profiles.cross_section import CrossSection
@@ -81,7 +84,7 @@ def swept_profile(
 ) -> Profile:
     """The outline in a plane of everything that the robots' links sweep, with its holes.
 
-    A part is swept by the link that carries it while it does; so is what stands on the part.
+    An obstacle is swept by the link that carries it while it does, or that it is mounted on.
 
     Args:
         run: a `Run` or `Record` (its motions), or a `Case` (the trajectories themselves).
@@ -115,7 +118,12 @@ def swept_profile(
         for label in _labels(bodies):
             own = [one for one in bodies if one.label == label]
             parts[label] = _swept(name, own, seen_on, section, tolerance, None, None)
-    return _swept(name, bodies, seen_on, section, tolerance, progress, parts)
+    found = _swept(name, bodies, seen_on, section, tolerance, progress, parts)
+    left_out = moving_but_not_swept(moved, bodies)
+    if left_out:
+        text = f"not swept, though moving by themselves: {listed(left_out)}"
+        found = replace(found, notes=(*found.notes, text))
+    return found
 
 
 def _labels(bodies: Sequence[SweptBody]) -> tuple[str, ...]:

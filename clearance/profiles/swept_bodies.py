@@ -1,4 +1,4 @@
-"""The bodies that a profile is swept by: links of robots, parts while they are carried, and obstacles by name."""
+"""The bodies that a profile is swept by: links of robots, what they carry, and obstacles by name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.corner_paddings import corner_off
 from clearance.world.forest import WORLD
-from clearance.world.holders import holding_link
+from clearance.world.holders import link_below
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, names_of
 from clearance.world.phase import Phase
@@ -110,6 +110,21 @@ def swept_bodies(
     return found
 
 
+def moving_but_not_swept(run: TimedCase, swept: Sequence[SweptBody]) -> list[str]:
+    """The names of obstacles that move by themselves at some time, and are not among the swept ones."""
+    labels = {one.label for one in swept}
+    return [
+        obstacle.name
+        for i, obstacle in enumerate(run.case.obstacles)
+        if obstacle.name not in labels
+        and any(
+            BodyIndex(OBSTACLE, i).frame_in(phase.case) != WORLD and link_below(phase, i) is None
+            for phase in run.timeline.phases
+            if i not in phase.absent_obstacles
+        )
+    ]
+
+
 def _require_surfaces(found: Sequence[SweptBody]) -> None:
     for one in found:
         if one.body.is_cloud:
@@ -132,7 +147,7 @@ def _is_carried_by(links: Collection[str], i_obstacle: int, phase: Phase) -> boo
 
 
 def _chosen_links(run: TimedCase, links: Sequence[str] | None) -> Collection[str]:
-    """Names of links as in tables: those with a shape, and those that carry a part."""
+    """Names of links as in tables: those with a shape, and those that carry an obstacle."""
     case = run.case
     bodies = [
         BodyIndex(i, k) for i, p in enumerate(case.robots) for k in range(len(p.robot.bodies))
@@ -173,8 +188,8 @@ def _chosen_obstacles(case: Case, patterns: Sequence[str]) -> list[str]:
 
 
 def _holder(phase: Phase, i_obstacle: int) -> str | None:
-    """The name as in tables of the robot's link that a carried part is on in the end, or None."""
-    carrying = holding_link(phase, i_obstacle)
+    """The name as in tables of the robot's link that an obstacle is on in the end, or None."""
+    carrying = link_below(phase, i_obstacle)
     if carrying is None:
         return None
     i_robot, link = carrying

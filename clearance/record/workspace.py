@@ -10,7 +10,7 @@ from clearance.world.robot_in_cell import RobotInCell
 
 @dataclass(frozen=True)
 class SharedLinks:
-    """Two links of different robots, or parts that they have in hand, with swept pieces in common."""
+    """Two links of different robots, or obstacles that they carry, with swept pieces in common."""
 
     robot_a: str
     link_a: str

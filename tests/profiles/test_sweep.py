@@ -16,6 +16,8 @@ from clearance.profiles.plane import Plane
 from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
+from clearance.world.mount import Mount
+from clearance.world.pose_table import PoseTable
 from clearance.world.robot import JointKind
 from tests.examples import examples
 from tests.oracle.outlines import inside
@@ -75,6 +77,18 @@ def test_in_a_corner_zone_all_that_links_may_sweep_is_swept():
     assert found.notes == ("in corner zones links are up to 20 mm off, which is swept as well",)
     with pytest.raises(BadInput, match="links may be 20 mm off in corner zones"):
         cl.swept_profile(case, section=0.05)
+
+
+def test_what_is_mounted_on_a_link_is_swept_with_it_and_what_moves_by_itself_is_said():
+    """A slab of 0.1 m slides by 1 m with a bar across it; a door slides far away."""
+    case = sliding(slab([0, -0.05, 0], [0.1, 0.05, 0.1]), np.linspace(0.0, 1.0, 5))
+    bar = cl.Obstacle(cl.Body("bar", slab([0, -0.5, 0], [0.1, 0.5, 0.1])), mount=Mount("l1"))
+    ways = np.array([[9.0, 0.0, 0.0], [9.5, 0.0, 0.0]]), np.tile([0.0, 0.0, 0.0, 1.0], (2, 1))
+    table = PoseTable(np.array([0.0, 4.0]), *ways)
+    door = cl.Obstacle(cl.Body("door", cl.box((0.1, 0.1, 0.1))), moves=table)
+    found = cl.swept_profile(replace(case, obstacles=(bar, door)))
+    assert 1.1 <= found.area <= 1.1 + found.bound * found.length
+    assert found.notes == ("not swept, though moving by themselves: door",)
 
 
 def test_a_sphere_on_a_line_sweeps_a_stadium():

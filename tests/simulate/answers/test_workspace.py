@@ -321,3 +321,16 @@ def test_two_robots_on_each_other_alone_are_refused():
     cell = together(rail, rider, mounts={1: Mount("rail/cube", moved(0.0, 0.0, 0.5))})
     with pytest.raises(BadInput, match="two robots of which neither stands on the other"):
         shared_workspace([cell])
+
+
+@WITH_MANIFOLD
+def test_what_is_mounted_on_a_link_belongs_to_its_robot():
+    """A bar on the second cube reaches 0.1 m into the way of the first; both slide by 1 m along x."""
+    one = slider("one", (1, 0, 0), -0.5, 0.5)
+    two = slider("two", (1, 0, 0), -0.5, 0.5, base=(0.0, 1.0, 0.0))
+    bar = cl.Body("bar", cl.box((0.1, 0.8, 0.1)))
+    mounted = cl.Obstacle(bar, mount=Mount("two/cube", moved(0.0, -0.6, 0.0)))
+    found = shared_workspace([together(one, two, obstacles=[mounted])])
+    (pair,) = found.links
+    assert (pair.link_a, pair.link_b) == ("cube", "bar")
+    assert found.volume == pytest.approx(1.1 * 0.1 * 0.1, rel=1e-6)

@@ -1,4 +1,4 @@
-"""What a robot's links and what it has in hand pass through, as convex pieces that contain all of it.
+"""What a robot's links and what they carry pass through, as convex pieces that contain all of it.
 
 A piece is the hull of one convex part of a body at the samples of a stretch of a run, made wider by what a point
 can leave its chord between two samples. Not for: distance between the samples (`certify`), which
@@ -27,7 +27,7 @@ from clearance.world.corner_paddings import corner_off
 from clearance.world.cubic import cubics_of, extremes_between
 from clearance.world.extents import own_floor
 from clearance.world.forest import carried_by, forest_of, link_poses_at
-from clearance.world.holders import holding_link
+from clearance.world.holders import link_below
 from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
@@ -41,7 +41,7 @@ class SweptPiece:
     """A convex part of a body over the steps `first` to `last` of a run.
 
     Attributes:
-        link: the name of a link of the robot, or of a part that it has in hand.
+        link: the name of a link of the robot, or of an obstacle that it carries.
         points: (n, 3) [m] the part's corners at those steps, world frame.
         leaves: [m] how far a point can be from the hull of `points` between two steps, and in a corner zone.
     """
@@ -69,7 +69,7 @@ class SweptPiece:
 def swept_pieces(
     case: Case, timeline: Timeline, i_robot: int, within: float, cut_links: Collection[str] = ()
 ) -> list[SweptPiece]:
-    """Pieces that together contain every measured link of a robot, and what it has in hand, at every moment.
+    """Pieces that together contain every measured link of a robot, and all that it carries, at every moment.
 
     Args:
         within: [m] a stretch ends before a point of the body can leave the chord over it by more.
@@ -101,7 +101,7 @@ class _SweptBody(NamedTuple):
 
 
 def _swept_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_SweptBody]:
-    """The measured links of a robot, then what it has in hand."""
+    """The measured links of a robot, then the obstacles in its hand or mounted on it."""
     placed, forest = phase.case.robots[i_robot], forest_of(phase.case)
     for i, body in enumerate(placed.robot.bodies):
         if body.name not in (*placed.exclude_links, own_floor(placed)):
@@ -109,7 +109,7 @@ def _swept_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_SweptBody
             off = corner_off(case, phase, BodyIndex(i_robot, i))
             yield _SweptBody(body.name, body.shape, link, off)
     for i, obstacle in enumerate(phase.case.obstacles):
-        holder = holding_link(phase, i)
+        holder = link_below(phase, i)
         if holder is not None and holder[0] == i_robot:
             shape = obstacle.body.shape
             if isinstance(shape, PointCloud):

@@ -1,6 +1,6 @@
 """The region that more than one robot of a cell passes through, whatever their timing.
 
-Each case brings its robots, with what they have in hand; all are in one world frame. The swept pieces are
+Each case brings its robots, with all that they carry; all are in one world frame. The swept pieces are
 convex; pairs of pieces that overlap are found by common points, their unions and what these share by manifold3d.
 Not for: whether the robots collide at one time.
 """
@@ -34,8 +34,8 @@ def shared_workspace(
 ) -> Workspace:
     """The region that more than one robot of `cases` passes through during its trajectory.
 
-    What a robot has in hand belongs to it. A robot that stands on another one moves with it, whatever its timing;
-    what these two share is not counted.
+    What a robot has in hand, and what is mounted on it, belongs to it. A robot that stands on another one moves
+    with it, whatever its timing; what these two share is not counted.
 
     Args:
         within: [m] see `swept_pieces`; smaller is tighter and slower.
