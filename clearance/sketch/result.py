@@ -53,7 +53,7 @@ class SketchResult:
 
     @cached_property
     def freedom(self) -> int:
-        """Remaining degrees of freedom beyond placing the whole."""
+        """Remaining degrees of freedom of the shape; where the whole lies and how it is turned is not counted."""
         return freedom_of(self._problem, self._outcome.x)
 
     @cached_property
