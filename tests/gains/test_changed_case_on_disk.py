@@ -99,18 +99,11 @@ CASES = {
     "scene file": (with_scene_file, "obstacle", {"obstacle": "left"}),
     "SDF": (with_sdf, "obstacle", {"obstacle": "left/board/c"}),
     "planning scene": (with_planning_scene, "obstacle", {"obstacle": "left"}),
-    "base beside a scene file": (with_scene_file, "base", {}),
     "turned": (
         lambda folder: write_cell(folder, SLOT),
         "obstacle",
         {"obstacle": "left", "within": (0.0, 0.03, 0.0), "turn": Turn("z", (0.3, 0.1, 0.0))},
     ),
-    "turned beside a scene file": (
-        with_scene_file,
-        "obstacle",
-        {"obstacle": "left", "within": (0.0, 0.03, 0.0), "turn": Turn("z", (0.3, 0.1, 0.0))},
-    ),
-    "turned base": (lambda folder: write_cell(folder, SLOT), "base", {"turn": "z"}),
     "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
     "slowed": (
         lambda folder: write_cell(folder, CROSSING),
@@ -143,12 +136,15 @@ def test_what_is_written_is_read_as_what_was_claimed(saved):
         assert back.tobytes() == told.tobytes()
 
 
-def test_the_figures_are_those_of_the_gain(saved):
+def test_the_figures_are_those_of_the_gain_and_the_page_stands_beside_both_reports(saved):
     found, out = saved
     told = json.loads((out / "gain.json").read_text())
     assert told["kept"] and told["size"] == found.size and told["before"]["verdict"] != "clear"
     assert told["after"]["passed"] and told["lower_bound"] == found.lower_bound
     assert objections(told) == [] and told["$schema"] == "urn:clearance:gain:2"
+    page = (out / "gain.html").read_text()
+    for name in ("before", "after"):
+        assert f'href="{name}/report.html"' in page and (out / name / "report.html").is_file()
 
 
 def objections(told: dict) -> list[str]:
@@ -167,13 +163,6 @@ def test_figures_of_what_is_blocked_keep_to_the_schema_and_no_others_do(tmp_path
     for key in told:
         assert objections({one: told[one] for one in told if one != key}), key
     assert objections(told | {"key": 1}) and objections(told | {"size": "0.1"})
-
-
-def test_the_page_stands_beside_both_reports(saved):
-    _, out = saved
-    page = (out / "gain.html").read_text()
-    for name in ("before", "after"):
-        assert f'href="{name}/report.html"' in page and (out / name / "report.html").is_file()
 
 
 @pytest.mark.slow

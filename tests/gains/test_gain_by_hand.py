@@ -199,9 +199,7 @@ def quick(n, speed, acceleration=np.inf):
     return cl.Case("quick", (placed,), (post,), cl.Limits(fail=0.03, joints="fail"))
 
 
-@pytest.mark.parametrize(
-    "n, speed, acceleration", [(5, 0.05, 0.2), (9, 0.06, np.inf), (41, 0.03, np.inf)]
-)
+@pytest.mark.parametrize("n, speed, acceleration", [(5, 0.05, 0.2), (41, 0.03, np.inf)])
 def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
     found = gain(quick(n, speed, acceleration), "waypoints")
     assert found.kept == found.after.passed
@@ -306,7 +304,7 @@ def disc_past_two_posts(way, *short):
     return cl.Case("discs", (placed,), tuple(named), cl.Limits(fail=0.22))
 
 
-@pytest.mark.parametrize("short", [(0.01, 0.005), (0.02, 0.01), (0.005, 0.0099)])
+@pytest.mark.parametrize("short", [(0.01, 0.005), (0.005, 0.0099)])
 def test_a_disc_past_two_posts_bends_by_what_the_nearer_wants(short):
     found = gain(disc_past_two_posts("line", *short), "waypoints")
     assert found.kept and found.after.passed
@@ -331,20 +329,6 @@ def test_a_disc_round_a_corner_is_moved_away_from_both_posts():
     assert found.kept and found.change == pytest.approx([0.025, -0.025, 0.0], abs=FINE)
     assert found.size == pytest.approx(0.025 * np.sqrt(2.0), abs=FINE)
     assert found.lower_bound == pytest.approx(0.025, rel=1e-4)  # each post by itself wants that
-
-
-def test_a_world_that_is_turned_turns_the_change():
-    turn = np.eye(4)
-    turn[:2, :2] = [[0.0, -1.0], [1.0, 0.0]]
-    case = disc_past_two_posts("corner", 0.025, 0.025)
-    robots = tuple(replace(one, world_from_base=turn @ one.world_from_base) for one in case.robots)
-    posts = tuple(
-        replace(one, world_from_body=turn @ one.world_from_body) for one in case.obstacles
-    )
-    here, there = (
-        gain(one, "base") for one in (case, replace(case, robots=robots, obstacles=posts))
-    )
-    assert there.change == pytest.approx(turn[:3, :3] @ here.change, abs=FINE)
 
 
 def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():

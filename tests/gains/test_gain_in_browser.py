@@ -45,7 +45,6 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
     [
         ("obstacle", {"obstacle": "left", "turn": "z"}, "turn about z"),
         ("waypoints", {"keep_tool": [(1.0, 0.021, 0.01)]}, "tool at 1.000 s is moved 20.0"),
-        ("base", {"turn": "z", "within": (0.0, 0.03, 0.0)}, "turn about z"),
     ],
 )
 def test_what_may_be_done_is_told_on_the_page(tmp_path, kind, how, told):
