@@ -29,7 +29,7 @@ from scripts.makers.hostile_cases import (
 
 __all__ = (
     "SOLIDS", "WORST", "arm", "arm_among_obstacles", "at", "ball", "corners_moved", "dented", "faces_below",
-    "faces_of", "flying", "random_robot", "spindle", "torus", "with_copies", "without_cones",
+    "faces_of", "flying", "l_prism", "random_robot", "spindle", "torus", "with_copies", "without_cones",
 )  # fmt: skip
 
 
@@ -59,6 +59,14 @@ SOLIDS: dict[str, Callable[[np.random.Generator], Polyhedron]] = {
 def faces_of(shape: Polyhedron) -> list[list[int]]:
     """The vertex indices of each face, as the oracle takes them."""
     return [shape.face_vertices[i:j].tolist() for i, j in itertools.pairwise(shape.face_starts)]
+
+
+def l_prism() -> Polyhedron:
+    """An L of legs 2 along x and 3 along y, 1 wide and 1 thick: convex faces only, one concave edge."""
+    rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
+    points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
+    caps = [[6, 7, 8, 9], [6, 9, 10, 11], [3, 2, 1, 0], [5, 4, 3, 0]]
+    return Polyhedron(points, caps + [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)])
 
 
 def with_copies(shape: Polyhedron, faces: Sequence[int], *, turned_round: bool) -> Polyhedron:

@@ -6,8 +6,6 @@ import math
 from collections import Counter
 from fractions import Fraction
 
-import numpy as np
-
 from clearance.geometry.polyhedron import Polyhedron
 from tests.oracle.rationals import cross, dot, minus
 
@@ -69,8 +67,3 @@ def six_volumes(shape: Polyhedron) -> Fraction:
         (dot(f[0], area_vector(f)) for f in (corners(shape, i) for i in range(shape.n_faces))),
         Fraction(0),
     )
-
-
-def raw_triangles(vertices: np.ndarray, triangles: np.ndarray) -> Polyhedron:
-    """The triangles as they are, unmerged."""
-    return Polyhedron(vertices, triangles)

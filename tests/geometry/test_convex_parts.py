@@ -6,18 +6,9 @@ import pytest
 import clearance as cl
 from clearance.geometry import boolean, decompose
 from clearance.geometry.convex_parts import convex_parts, hull_drawn_in
+from tests.made_cases import l_prism
 
 L_VOLUME = 4.0  # a 2 x 1 foot and a 1 x 2 stem, 1 thick
-
-
-def l_prism():
-    """An L of legs 2 and 3, 1 wide, 1 thick: convex faces only, one concave edge."""
-    rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
-    points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
-    top = [[6, 7, 8, 9], [6, 9, 10, 11]]
-    bottom = [[3, 2, 1, 0], [5, 4, 3, 0]]
-    sides = [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)]
-    return cl.Polyhedron(points, top + bottom + sides)
 
 
 def inside(parts, points):

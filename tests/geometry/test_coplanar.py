@@ -18,7 +18,6 @@ from tests.geometry.exact_faces import (
     areas_by_plane,
     corners,
     is_flat_and_convex,
-    raw_triangles,
     six_volumes,
 )
 from tests.made_cases import at, ball, faces_below, faces_of, with_copies
@@ -56,12 +55,6 @@ def voxel_surface(cells: set[tuple[int, int, int]], diagonals: list[bool]):
     return np.array(list(vertices), dtype=float), np.array(triangles)
 
 
-def test_a_cube_of_twelve_triangles_has_six_faces():
-    cube = merged(CUBE, CUBE_TRIANGLES)
-    assert cube.n_faces == 6
-    assert cube.closed and cube.oriented and cube.volume == 1.0
-
-
 def test_a_grid_becomes_one_rectangle_whose_straight_corners_are_gone():
     vertices, triangles = voxel_surface(
         {(x, y, 0) for x in range(5) for y in range(3)}, [True, False]
@@ -97,7 +90,7 @@ def test_a_needle_on_a_long_edge_is_absorbed_and_the_surface_stays_closed(lift):
     # a tetrahedron whose edge 0-1 is met at its middle 4 by the other side, with a needle 0-4-1 in between
     v = np.array([[0, 0, 0], [2, 0, 0], [0, 2, lift], [0, 0, 2], [1, 0, 0]], dtype=float)
     t = np.array([[0, 2, 1], [0, 1, 4], [0, 4, 3], [4, 1, 3], [1, 2, 3], [0, 3, 2]])
-    raw = raw_triangles(v, t)
+    raw = Polyhedron(v, t)
     result = merge_coplanar(v, t)
     shape = merged(v, t)
     assert raw.closed and shape.closed and shape.oriented
@@ -140,7 +133,7 @@ maps = maps.filter(lambda m: round(np.linalg.det(m)) > 0)
 def test_the_points_stay_exactly_the_same(cells, diagonals, matrix, shift):
     vertices, triangles = voxel_surface(cells, diagonals)
     vertices = vertices @ matrix.T.astype(float) + (0.0 if shift < 1.0 else np.floor(shift))
-    raw, shape = raw_triangles(vertices, triangles), merged(vertices, triangles)
+    raw, shape = Polyhedron(vertices, triangles), merged(vertices, triangles)
     assert areas_by_plane(shape) == areas_by_plane(raw)
     assert six_volumes(shape) == six_volumes(raw)
     assert shape.closed == raw.closed and shape.oriented == raw.oriented

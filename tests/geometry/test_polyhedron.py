@@ -161,20 +161,6 @@ def test_a_solid_from_another_process_cannot_be_written_either():
         copy.vertices[0, 0] = 7.0
 
 
-def test_a_large_mesh_is_analysed_as_a_whole():
-    n = 160  # 51,200 triangles of a torus
-    u, v = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
-    a, b = 2 * np.pi * u.ravel() / n, 2 * np.pi * v.ravel() / n
-    w = 1.0 + 0.3 * np.cos(b)
-    points = np.column_stack([w * np.cos(a), w * np.sin(a), 0.3 * np.sin(b)])
-    i, j = u.ravel(), v.ravel()
-    k = [i * n + j, (i + 1) % n * n + j, (i + 1) % n * n + (j + 1) % n, i * n + (j + 1) % n]
-    triangles = np.concatenate([np.stack(k[:3], 1), np.stack([k[0], k[2], k[3]], 1)])
-    torus = Polyhedron(points, triangles)
-    assert torus.closed and torus.oriented and len(torus.normals) == 51_200
-    assert torus.volume == pytest.approx(2 * np.pi**2 * 0.3**2, rel=1e-3)
-
-
 def test_points_are_kept_once_and_in_order():
     cloud = PointCloud([[1, 0, 0], [0, 0, 0], [1, 0, 0], [-0.0, 0, 0], [0, 0, 1]], 0.1)
     assert cloud.vertices.tolist() == [[0, 0, 0], [0, 0, 1], [1, 0, 0]]

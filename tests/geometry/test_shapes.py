@@ -195,21 +195,6 @@ def test_a_bent_pipe_stands_out_everywhere_by_no_more_than_it_says(inner, tolera
         assert (distance[~outer] >= 0.05 - shape.excess).all()
 
 
-def test_a_straight_path_is_the_straight_pipe_moved():
-    along = pipe(path=[[0, 0, -1], [0, 0, 0.2], [0, 0, 1]], inner_radius=0.05, outer_radius=0.06)
-    straight = pipe(length=2.0, inner_radius=0.05, outer_radius=0.06)
-    assert along.n_faces == straight.n_faces and is_sound(along)
-    assert np.allclose(along.bounds, straight.bounds, atol=1e-4)
-
-
-def test_a_bend_on_whole_axes_has_the_right_volume():
-    shape = pipe(
-        path=[[0, 0, 0], [1, 0, 0], [1, 1, 0]], bend_radius=0.3, inner_radius=0, outer_radius=0.1
-    )
-    length = 2 * 0.7 + 0.3 * np.pi / 2
-    assert 0.0 < shape.volume - np.pi * 0.01 * length < 2 * np.pi * 0.1 * length * shape.excess
-
-
 BENT = {"path": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "inner_radius": 0.05, "outer_radius": 0.06}
 
 

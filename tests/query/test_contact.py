@@ -7,6 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.geometry import boolean, decompose
+from tests.made_cases import l_prism
 
 BOX = cl.box((1.0, 1.0, 1.0))
 WITH_LIBRARIES = pytest.mark.skipif(
@@ -20,16 +21,6 @@ def at(x=0.0, y=0.0, z=0.0, turn=0.0):
     pose[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
     pose[:3, 3] = x, y, z
     return pose
-
-
-def l_prism():
-    """Legs 2 along x and 3 along y, 1 wide, 1 thick."""
-    rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
-    points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
-    caps = [[6, 7, 8, 9], [6, 9, 10, 11], [3, 2, 1, 0], [5, 4, 3, 0]]
-    return cl.Polyhedron(
-        points, caps + [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)]
-    )
 
 
 def is_what_it_says(a, b, pose_a, pose_b, found):
