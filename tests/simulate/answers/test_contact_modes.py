@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,36 +23,32 @@ WAY = np.array([0.5, 0.75, 0.8, 0.85, 0.9, 0.82, 0.6, 0.5, 0.79, 0.78, 0.5])
 """Two events: rows 2 to 5 (a wall from 0.9, a cube of 0.2: at 0.9 it is 0.1 deep), and 8 alone; 0.78 is apart."""
 
 
-def sliding(shape, way=WAY):
-    """A cube of 0.2 m that slides along x into a body whose face is at 0.89."""
-    joint = Joint("rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4))
-    robot = Robot("cart", ("ground", "cube"), (joint,), (Body("cube", cl.box((0.2, 0.2, 0.2))),))
-    path = Trajectory(np.arange(float(len(way))), ("rail",), np.array(way)[:, None])
-    pose = np.eye(4)
-    pose[0, 3] = 0.99 - 0.105
-    return Case(
-        "slide", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", shape), pose),)
-    )
+def block(name: str, pose: np.ndarray, **more) -> cl.Obstacle:
+    return cl.Obstacle(cl.Body(name, cl.box((0.2, 0.2, 0.2))), pose, **more)
+
+
+def passing(xs: Sequence[float], *obstacles: cl.Obstacle, size: float = 0.2) -> cl.Case:
+    """A cube that goes along x."""
+    positions = np.zeros((len(xs), 6))
+    positions[:, 0] = xs
+    case = flying("passing", cl.box((size,) * 3), [], positions)
+    return replace(case, obstacles=obstacles)
+
+
+def sliding(shape):
+    """The cube goes into a body whose face is at 0.885."""
+    return passing(WAY, cl.Obstacle(cl.Body("wall", shape), at(0.885)))
 
 
 def wall():
-    pose = np.eye(4)
-    pose[0, 3] = 0.1
-    return cl.box((0.2, 1.0, 1.0)).transformed(pose)
+    return cl.box((0.2, 1.0, 1.0)).transformed(at(0.1))
 
 
 def channel():
     """The wall with a groove in its far side: concave, far from where the cube is."""
     outline = [
-        (0.0, -0.5),
-        (0.2, -0.5),
-        (0.2, -0.2),
-        (0.1, -0.2),
-        (0.1, 0.2),
-        (0.2, 0.2),
-        (0.2, 0.5),
-        (0.0, 0.5),
-    ]
+        (0.0, -0.5), (0.2, -0.5), (0.2, -0.2), (0.1, -0.2), (0.1, 0.2), (0.2, 0.2), (0.2, 0.5), (0.0, 0.5)
+    ]  # fmt: skip
     vertices = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in outline])
     top = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 7), (4, 5, 7), (5, 6, 7)]
     faces = [*(t[::-1] for t in top), *(tuple(i + 8 for i in t) for t in top)]
@@ -168,28 +165,11 @@ def test_a_link_in_the_wall_of_a_ring_is_deepest_in_its_middle():
             c, d = 4 * ((i + 1) % 48) + (k + 1) % 4, 4 * ((i + 1) % 48) + k
             faces += [(a, c, b), (a, d, c)]
     shape = cl.Polyhedron.from_triangles(np.array(ring), np.array(faces)).outward()
-    joint = Joint("rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4))
-    robot = Robot("cart", ("ground", "cube"), (joint,), (Body("cube", cl.box((0.4, 0.4, 0.4))),))
     way = np.linspace(0.0, 2.0, 101)
-    path = Trajectory(way, ("rail",), way[:, None])
-    case = Case(
-        "ring", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("ring", shape), np.eye(4)),)
-    )
+    case = passing(way, cl.Obstacle(cl.Body("ring", shape)), size=0.4)
     (row,) = cl.check(case).record.worked_out
     assert 0.9 <= way[row.step] <= 1.1
     assert 0.0 < row.known.penetration_at_least <= row.known.penetration <= 0.52
-
-
-def block(name: str, pose: np.ndarray, **more) -> cl.Obstacle:
-    return cl.Obstacle(cl.Body(name, cl.box((0.2, 0.2, 0.2))), pose, **more)
-
-
-def passing(xs: list[float], *obstacles: cl.Obstacle) -> cl.Case:
-    """A cube of 0.2 m that goes along x."""
-    positions = np.zeros((len(xs), 6))
-    positions[:, 0] = xs
-    case = flying("passing", cl.box((0.2, 0.2, 0.2)), [], positions)
-    return replace(case, obstacles=obstacles)
 
 
 def told(run: cl.Run) -> tuple:

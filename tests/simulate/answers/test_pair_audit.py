@@ -53,14 +53,6 @@ def test_an_arm_that_is_too_short_is_proven_apart(reach):
     assert found.least >= 0.9 - math.hypot(reach, 0.05) - 1e-12
 
 
-def test_limits_keep_apart_what_would_meet():
-    body = [Body("a", POST), Body("b", arm(0.95))]
-    robot = robot_of(body, turning("a", "b", np.eye(4), lower=0.5, upper=3.0))
-    assert audit_pair(robot, "a", "b").status is PairStatus.APART
-    robot = robot_of(body, turning("a", "b", np.eye(4), lower=0.5, upper=2 * math.pi))
-    assert audit_pair(robot, "a", "b").status is PairStatus.MEETS
-
-
 def test_a_narrow_meeting_between_the_samples_is_found():
     """A pin through a slot of 0.2 mrad: no sample hits it, the halving does."""
     pin = box((1e-4, 1e-4, 0.1)).transformed(at(1.0))

@@ -81,14 +81,6 @@ def test_parallel_faces_lose_whichever_way_they_turn():
     )
 
 
-@pytest.mark.parametrize("tilt", [0.05, 0.2, -0.3])
-def test_a_turn_is_as_differences_say(tilt):
-    case = spinner(tilt=tilt)
-    _, rates = rates_of(case)
-    turn = rates["joint", "spinner", "turn"]
-    assert (turn.more, turn.less) == pytest.approx(one_sided(case, turned), abs=1e-5)
-
-
 def test_two_that_touch_have_none():
     case = cl.Case("hit", (along_x(gantry()),), (standing("post", cl.box((0.1,) * 3), (0, 0, 0)),))
     assert "contact" in cl.check(case).report.sensitivity.why_not

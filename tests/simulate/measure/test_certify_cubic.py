@@ -49,30 +49,6 @@ def certificate_of(case):
     return cl.check(case, certify=True).record.certificate
 
 
-def bar_and_post(gap):
-    """A bar that swings up to 0.5 rad and back; the post stands `gap` beyond, parallel to the bar there."""
-    bar = cl.Polyhedron.merged([cl.box((1.0, 0.02, 0.02)).transformed(placed_at(x=0.5))])
-    pose = placed_at(turned=0.5) @ placed_at(x=0.8, y=gap + 0.02)
-    return one_joint_case(JointKind.REVOLUTE, bar, cl.box((0.02, 0.02, 0.5)), pose, [2.0, -2.0])
-
-
-def test_a_bar_that_swings_past_both_samples_comes_as_near_as_the_closed_form_says():
-    case = bar_and_post(0.03)
-    found, straight = certificate_of(case), certificate_of(linear(case))
-    assert straight.lower_bound[0] > 0.3
-    assert 0.03 - GAP <= found.lower_bound[0] <= 0.03
-    assert 0.03 - 1e-12 <= found.upper_bound[0] <= 0.03 + GAP
-
-
-def test_a_bar_that_swings_into_the_post_is_contact_though_both_samples_are_clear():
-    case = bar_and_post(-0.001)
-    assert cl.check(case, certify=False).passed
-    assert cl.check(linear(case), certify=True).passed
-    run = cl.check(case, certify=True)
-    assert run.status == "contact"
-    assert run.record.certificate.lower_bound[0] == 0.0
-
-
 def test_a_slide_that_overshoots_comes_as_near_as_the_closed_form_says():
     box, plate = cl.box((0.1, 0.1, 0.1)), cl.box((1.0, 1.0, 0.02))
     case = one_joint_case(

@@ -73,28 +73,15 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
     assert along.max() <= bound_along + slack
 
 
-def test_the_bound_of_a_slide_is_exact():
+@pytest.mark.parametrize("bend", [0.0, 0.125])
+def test_the_bound_of_a_slide_is_exact_and_a_bend_is_added_in_every_direction(bend):
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = links_of([standing(robot)])
-    poses = np.tile(np.eye(4), (2, 1, 1))
-    bound, along = drifts(
-        surface_of(SHAPE),
-        chain,
-        1,
-        poses,
+    chain, poses = links_of([standing(robot)]), np.tile(np.eye(4), (2, 1, 1))
+    swings, bends, sideways = (
         np.array([0.0, 0.25]),
-        np.zeros(2),
+        np.array([0.0, bend]),
         np.array([0.0, 1.0, 0.0]),
     )
-    assert bound == pytest.approx(0.25, rel=1e-11)
-    assert along == 0.0
-
-
-def test_a_bend_is_added_to_the_slide_in_every_direction():
-    robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = links_of([standing(robot)])
-    poses, bend = np.tile(np.eye(4), (2, 1, 1)), np.array([0.0, 0.125])
-    sideways = np.array([0.0, 1.0, 0.0])
-    bound, along = drifts(surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways)
-    assert bound == pytest.approx(0.375, rel=1e-11)
-    assert along == pytest.approx(0.125, rel=1e-11)
+    bound, along = drifts(surface_of(SHAPE), chain, 1, poses, swings, bends, sideways)
+    assert bound == pytest.approx(0.25 + bend, rel=1e-11)
+    assert along == pytest.approx(bend, rel=1e-11)

@@ -56,48 +56,6 @@ def test_two_carts_on_a_bare_world_meet():
     assert deepest == pytest.approx(0.1)  # the cubes coincide, and have sides of 0.1 m
 
 
-def test_two_bars_on_one_bare_base_meet():
-    """Bars from 0.1 to 0.6 m, at first along x and -x, are swung together by a right angle each."""
-    joints = (
-        joint("fixed", "world", "base"),
-        joint("revolute", "base", "one", axis=Z),
-        joint("revolute", "base", "other", axis=Z),
-    )
-    bar = (0.5, 0.02, 0.02)
-    shapes = {"one": (bar, (0.35, 0, 0)), "other": (bar, (-0.35, 0, 0))}
-    run = run_of(joints, shapes, {"base_one": np.pi / 2, "base_other": -np.pi / 2})
-    assert met(run) == ("contact", {"one", "other"})
-    assert run.record.clearances[0] == pytest.approx(0.2)
-
-
-def test_a_trunk_meets_the_wall_that_stands_in_the_world_of_its_base():
-    joints = (
-        joint("fixed", "world", "wall", (1, 0, 0)),
-        joint("fixed", "world", "base"),
-        joint("prismatic", "base", "trunk"),
-    )
-    shapes = {
-        "wall": ((0.1, 2, 2), (0, 0, 0)),
-        "base": ((0.1, 0.1, 0.1), (0, 0, -0.5)),
-        "trunk": ((0.1, 0.1, 0.1), (0, 0, 0)),
-    }
-    run = run_of(joints, shapes, {"base_trunk": 1.0})
-    assert met(run) == ("contact", {"trunk", "wall"})
-    assert run.record.clearances.tolist() == pytest.approx([0.9, 0.4, 0.0])
-    assert run.record.deepest.penetration == pytest.approx(0.1)
-
-
-def test_a_finger_meets_what_is_bolted_to_its_palm():
-    """The camera and the finger are both on the palm: one by a fixed joint, one by a joint that moves."""
-    joints = (
-        joint("fixed", "palm", "camera", (0.3, 0, 0)),
-        joint("prismatic", "palm", "finger"),
-    )
-    cube = ((0.1, 0.1, 0.1), (0, 0, 0))
-    run = run_of(joints, {"camera": cube, "finger": cube}, {"palm_finger": 0.25})
-    assert met(run) == ("contact", {"camera", "finger"})
-
-
 @pytest.mark.parametrize("n_robots", [1, 2])
 @pytest.mark.parametrize("seed", range(2))
 def test_witness_points_are_in_the_world_and_as_far_apart(seed, n_robots):

@@ -31,8 +31,6 @@ ASKED = {
     "limit": {"need": "limit", "certify": False},
     "minimum": {"need": "minimum", "certify": False},
     "certified": {"certify": True},
-    "certified minimum": {"need": "minimum"},
-    "far": {"need": "limit", "limits": cl.Limits(0.0, 1e-9)},
 }
 
 

@@ -99,13 +99,12 @@ def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("need", ["minimum", "limit"])
-@pytest.mark.parametrize("name", ["box_pipe"])
-def test_a_finer_motion_takes_few_more_looks(name, need):
+def test_a_finer_motion_takes_few_more_looks(need):
     """Sixteen times the steps: most are passed over, and the answer is that of the steps asked one by one.
 
     Where several bodies come within the limit each has its own looks, so that fewer steps are without any.
     """
-    case = cl.load_case(SCENES / name / "case.yaml")
+    case = cl.load_case(SCENES / "box_pipe" / "case.yaml")
     (placed,) = case.robots
     asked = placed.trajectory
     times = np.linspace(asked.times[0], asked.times[-1], 16 * (asked.n_steps - 1) + 1)
@@ -120,8 +119,7 @@ def test_a_finer_motion_takes_few_more_looks(name, need):
         cl.check(case, certify=False, resources=cl.Resources(jobs=1)),
         cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=1)),
     )
-    share = 0.5 if (name, need) == ("panda_shelf", "limit") else 0.6
-    assert found.record.tally["steps_passed_over"] > share * len(times)
+    assert found.record.tally["steps_passed_over"] > 0.6 * len(times)
     truth, told = whole.steps["clearance"].to_numpy(), found.steps["clearance"].to_numpy()
     known = ~np.isnan(told)
     assert (told[known] == truth[known]).all()
@@ -168,6 +166,8 @@ def test_bodies_with_clocks_of_their_own_miss_nothing(seed):
     known = ~np.isnan(told)
     assert (told[known] == truth[known]).all()
     assert known[truth < case.limits.warn].all()
+    assert runs["limit"].steps["status"].equals(runs["steps"].steps["status"])
+    assert runs["limit"].worst["step"] == runs["steps"].worst["step"]
     assert runs["minimum"].worst["clearance"] == truth.min()
     assert runs["minimum"].worst["step"] == truth.argmin()
     for need in ("limit", "minimum"):

@@ -12,14 +12,10 @@ from clearance.crosscheck.triangles import triangle_soup
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
-from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
-from clearance.world.robot import Joint, JointKind, Robot
-from clearance.world.trajectory import Trajectory
-from tests.made_cases import WORST
+from tests.made_cases import WORST, at, flying
 from tests.simulate.answers.test_contact_modes import channel
 
 SOME_STEPS = (0, 7, 23)
@@ -99,16 +95,11 @@ def measured(case, motion, steps, need="steps"):
 
 def ball_through_wall():
     """A faceted ball that slides into a channel, askew, so that many faces meet at once."""
-    joint = Joint("rail", JointKind.PRISMATIC, "ground", "ball", np.eye(4))
-    robot = Robot("cart", ("ground", "ball"), (joint,), (Body("ball", cl.sphere(0.15)),))
-    way = np.linspace(-0.3, 1.7, 100)
-    path = Trajectory(way, ("rail",), way[:, None])
-    pose = np.eye(4)
-    pose[:3, :3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]]
-    pose[:3, 3] = [0.7, 0.05, 0.02]
-    return Case(
-        "ball", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", channel()), pose),)
-    )
+    positions = np.zeros((100, 6))
+    positions[:, 0] = np.linspace(-0.3, 1.7, 100)
+    turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    wall = channel(), at(0.7, 0.05, 0.02, turned=turned)
+    return flying("ball", cl.sphere(0.15), [wall], positions)
 
 
 def whole_run(need):

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.case.case_file import load_case
 from clearance.errors import BadInput, MissingFile
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
@@ -21,7 +20,6 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.trajectory import Trajectory
-from tests.shared_cases import SHARED_NAMES, shared_case
 
 ENGINE_PRECISION = (
     1e-6  # the engine is built in float32: 6e-8 a joint, about ten joints, poses to 2 m
@@ -92,12 +90,6 @@ def test_our_kinematics_are_the_engines_on_robots_it_brings(name):
     assert_same_kinematics(placed_robot(packaged_urdf(name), packages=(packaged_urdf(""),)))
 
 
-@pytest.mark.shared
-@pytest.mark.parametrize("name", SHARED_NAMES)  # one finger of the panda mimics the other
-def test_our_kinematics_are_the_engines_on_the_shared_robots(name):
-    assert_same_kinematics(load_case(shared_case(name)).robots[0])
-
-
 @pytest.mark.parametrize("axis", ["1 0 0", "0 -1 0", "1 2 -2"])
 def test_our_kinematics_are_the_engines_with_mimic_offset_and_odd_axes(tmp_path, axis):
     assert_same_kinematics(cart(tmp_path, axis=axis))
@@ -160,14 +152,6 @@ def read_box(tmp_path: Path) -> Body:
     from clearance.geometry.shapes import box
 
     return Body("wall", box((0.2, 1.0, 1.0)))
-
-
-def test_a_mimic_joint_follows_in_every_pose(tmp_path):
-    motion = simulated_motion(cart(tmp_path))
-    slider, follower = motion.poses()[:, 1], motion.poses()[:, 2]
-    turned = np.linalg.inv(slider) @ follower
-    angle = np.arctan2(turned[:, 0, 2], turned[:, 0, 0])
-    assert np.allclose(angle, -1.5 * motion.positions[:, 0] + 0.25, atol=1e-12)
 
 
 def test_what_is_assumed_is_said(tmp_path):
