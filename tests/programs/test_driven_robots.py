@@ -11,6 +11,7 @@ import yaml
 import clearance as cl
 from clearance.geometry.quaternions import quaternions_of
 from tests.programs.arms import turned
+from tests.programs.test_controllers_in_cases import frame_angles
 from tests.programs.test_programs_in_cases import (
     BASE,
     PLATE,
@@ -176,6 +177,41 @@ def test_a_work_object_that_a_mechanical_unit_moves_is_a_frame_on_it(tmp_path):
     with pytest.raises(cl.ClearanceError, match="line 6: external axis E1 moves, and no joint"):
         cl.load_case(saved(tmp_path, content))
     program["axes"] = {"turntable/turn": {"axis": "E1"}}
+    for one, same in zip(cl.load_case(saved(tmp_path, content)).robots, ours, strict=True):
+        assert np.abs(one.trajectory.times - same.trajectory.times).max() < 1e-9
+        assert np.abs(one.trajectory.positions - same.trajectory.positions).max() < 1e-8
+
+
+@pytest.mark.slow
+def test_a_base_of_krl_on_another_machine_is_a_frame_on_what_carries_it(tmp_path):
+    """Base 1 is 0.1 m out and 20 mm above the plate's frame; the machine turns by 0.1 rad along the line."""
+    turn, to = turned((0.0, 0.0, -0.5)) @ tool_at(START)[:3, :3], on_plate((0.0, 0.05, 0.0))
+    quat, pose = quaternions_of(turn[None])[0].tolist(), np.eye(4)
+    pose[:3, :3] = turn
+    place = {"frame": "jig", "xyz": to, "quat_xyzw": quat}
+    move = {"lin": {"to": place, "hold": {"turntable/turn": 0.6}, "speed": 0.1}}
+    content = driving(tmp_path, [move])
+    ours = cl.load_case(saved(tmp_path, content)).robots
+    axes = [f"A{i} {float(np.degrees(value))!r}" for i, value in enumerate(START.values(), 1)]
+    x, y, z = (1e3 * np.array(to) - [100.0, 0.0, 20.0]).tolist()
+    body = f"""BAS(#INITMOV,0)
+$TOOL=$NULLFRAME
+PTP {{{", ".join(axes)}, E1 {float(np.degrees(0.5))!r}}}
+BAS(#BASE,1)
+$VEL.CP=0.1
+LIN {{X {x!r}, Y {y!r}, Z {z!r}, {frame_angles(pose)}, E1 {float(np.degrees(0.6))!r}}}
+"""
+    (tmp_path / "weld.src").write_text(f"DEF weld()\n{body}END\n")
+    data = "BASE_DATA[1]={X 100,Y 0,Z 20,A 0,B 0,C 0}\nMACHINE_FRAME_DAT[1]={MACH_DEF_INDEX 2}\n"
+    (tmp_path / "weld.dat").write_text(
+        f"DEFDAT weld\n{data}MACHINE_DEF[2]={{MECH_TYPE #EASYS}}\nENDDAT\n"
+    )
+    program = {"file": "weld.src", "link": "tool_tip", "axes_as": "plain"}
+    program["axes"] = {"turntable/turn": {"axis": "E1"}}
+    content["robots"][0]["trajectory"] = {"program": program}
+    with pytest.raises(cl.ClearanceError, match="base 1 is on machine 2, which may move it"):
+        cl.load_case(saved(tmp_path, content))
+    program["units"] = {"MACHINE_DEF[2]": {"on": "turntable/plate"}}
     for one, same in zip(cl.load_case(saved(tmp_path, content)).robots, ours, strict=True):
         assert np.abs(one.trajectory.times - same.trajectory.times).max() < 1e-9
         assert np.abs(one.trajectory.positions - same.trajectory.positions).max() < 1e-8

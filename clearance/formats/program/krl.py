@@ -105,12 +105,14 @@ class _Krl:
 
     Attributes:
         asked: what the case says. pose: (4, 4) `base_from_flange` [m] where the robot is; None where its axes say
-            it. axes: [degrees] by name; None where its pose says it. root: where its foot is.
+            it. unit: the machine that its pose is seen from; the robot's base if empty. axes: [degrees] by name;
+            None where its pose says it. root: where its foot is.
             is_automatic: the program asks whether the controller runs by itself.
     """
 
     asked: ProgramFile
     pose: np.ndarray | None = None
+    unit: str = ""
     axes: Mapping[str, float] | None = None
     root: RobotRoot = field(default_factory=RobotRoot)
     is_automatic: bool = False
@@ -125,7 +127,7 @@ class _Krl:
 
     @property
     def state(self) -> Any:
-        return (None if self.pose is None else self.pose.tolist(), self.axes)
+        return (None if self.pose is None else self.pose.tolist(), self.unit, self.axes)
 
     def moves(self, name: str) -> bool | None:
         """Whether an instruction decides where the robot goes; None for one that is not known."""
@@ -281,7 +283,7 @@ class _Krl:
 
     def _now(self, settings: Settings) -> np.ndarray:
         """(4, 4) `base_from_tool` [m] before a move, in the frames that hold for it."""
-        if self.pose is None:
+        if self.pose is None or self.unit != settings.unit:
             raise BadProgram(
                 "the tool's pose before this move is not known, and this move counts from it",
                 valid="X, Y, Z, A, B and C, or a move to a pose before it",
@@ -300,8 +302,9 @@ class _Krl:
         if not any(key in AXES for key in given):
             asked = _configuration(given, settings) if kind == "ptp" else {}
             pose = settings.frame("$BASE", "frames") @ self._pose(given, settings)
-            self.root.use(settings)
-            return PoseTarget(pose, external, name=name, **asked)
+            if not settings.unit:
+                self.root.use(settings)
+            return PoseTarget(pose, external, name=name, unit=settings.unit, **asked)
         if kind != "ptp":
             raise BadProgram("axes are given", valid="X, Y, Z, A, B and C")
         full = {**(self.axes or {}), **{key: _numeric(given[key]) for key in AXES if key in given}}
@@ -329,7 +332,8 @@ class _Krl:
 
     def _reached(self, move: ControllerMove, settings: Settings) -> None:
         """Keeps where a move ends; on an arc that takes the tool along, its rotation is not known."""
-        before, self.pose, self.axes = self.pose, None, None
+        before = self.pose if self.unit == move.to.unit else None
+        self.pose, self.axes, self.unit = None, None, move.to.unit
         if isinstance(move.to, AxisTarget):
             self.axes = dict(zip(AXES, np.degrees(move.to.axes).tolist(), strict=True))
         elif move.orientation == "to":

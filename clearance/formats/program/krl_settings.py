@@ -21,6 +21,7 @@ from clearance.formats.program.given import not_in_files
 from clearance.formats.program.krl_values import (
     FRAME,
     MM,
+    UNIT,
     Aggregate,
     frame_of,
     is_number,
@@ -44,6 +45,7 @@ FIRST: Mapping[str, Any] = {
     **{name: _NULL for name in ("$NULLFRAME", "$WORLD", "$ROBROOT")},
     **{"$ORI_TYPE": "#VAR", "$CIRC_TYPE": "#BASE", "$IPO_MODE": "#BASE"},
     **{name: {} for name in ("$VEL", "$ACC", "$APO", "$VEL_AXIS", "TOOL_DATA", "BASE_DATA")},
+    **{name: {} for name in ("MACHINE_DEF", "MACHINE_FRAME_DAT")},
     "$OV_PRO": 100,
     "$TECH": {number: {} for number in range(1, 7)},
     **{name: Unknown(f"{name} is not set before") for name in ("$TOOL", "$BASE")},
@@ -86,6 +88,12 @@ class Settings:
     def part(self, name: str, by: Any) -> Any:
         """A part of one."""
         return _part(self.value(name), by)
+
+    @property
+    def unit(self) -> str:
+        """The machine that carries the base in force; empty where the robot's foot does."""
+        base = self.value("$BASE")
+        return str(base.get(UNIT, "")) if isinstance(base, Mapping) else ""
 
     def set(self, name: str, value: Any, by: Any = None) -> None:
         """Sets a variable that all routines share, or a part of it."""
@@ -143,18 +151,23 @@ class Settings:
         return self.numbered("TOOL_DATA", index, "$NULLFRAME")
 
     def base(self, index: Any) -> Any:
-        """The base of a number.
+        """The base of a number; on another machine than the robot it is seen from the frame that the case gives.
 
         Raises:
-            BadProgram: it is on another machine than the robot, which may move it.
+            BadProgram: the case gives none.
         """
+        found = self.numbered("BASE_DATA", index, "$WORLD")
         machine = _part(self.part("MACHINE_FRAME_DAT", index), "MACH_DEF_INDEX")
         if is_number(machine) and machine > 0:
             kind = _part(self.part("MACHINE_DEF", int(machine)), "MECH_TYPE")
-            if kind != "#ROBOT":
-                fault = f"base {index} is on machine {machine} , which may move it"
-                raise BadProgram(fault, valid="use a base that stands")
-        return self.numbered("BASE_DATA", index, "$WORLD")
+            unit = f"MACHINE_DEF[{int(machine)}]"
+            if kind != "#ROBOT" and unit not in self.run.language.asked.units:  # type: ignore[attr-defined]
+                fault = f"base {index} is on machine {int(machine)}, which may move it"
+                on = f'program: {{units: {{"{unit}": {{on: turntable/plate}}}}}}'
+                raise BadProgram(fault, valid=f"what carries it, as {on}, or a base that stands")
+            if kind != "#ROBOT" and isinstance(found, Mapping):
+                return {**found, UNIT: unit}
+        return found
 
     def bas(self, command: Any, value: Any) -> None:
         """Does as KUKA's `BAS` does for a command.

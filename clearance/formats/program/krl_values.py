@@ -16,6 +16,9 @@ MM = 1e-3
 
 FRAME = ("X", "Y", "Z", "A", "B", "C")
 
+UNIT = "UNIT"
+"""The part of a base that a machine carries: which one; no frame of a file has it."""
+
 Aggregate = Mapping[str, Any]
 
 
@@ -53,8 +56,8 @@ def frame_of(pose: np.ndarray) -> Aggregate:
 
 
 def composed(one: Any, other: Any) -> Aggregate:
-    """A frame seen from where another one is: `BASE : POINT`."""
-    if not isinstance(one, Mapping) or not isinstance(other, Mapping):
+    """A frame seen from where another one is: `BASE : POINT`; none of a base that a machine carries."""
+    if not isinstance(one, Mapping) or not isinstance(other, Mapping) or UNIT in {**one, **other}:
         raise TypeError
     product = matrix_of(one, "the left side of ':'") @ matrix_of(other, "its right side")
     return {**other, **frame_of(product)}

@@ -282,6 +282,21 @@ def test_a_base_on_another_machine_is_refused():
     with pytest.raises(cl.ClearanceError, match="line 8: base 1 is on machine 2"):
         program(body, points)
     assert program(body, points.replace("#EASYS", "#ROBOT")).moves
+    units = {"units": {"MACHINE_DEF[2]": {"on": "turntable/plate"}}}
+    more = f"{body}\nLIN_REL {{Z 10}}\nBAS(#BASE,0)\nLIN XP1"
+    one, two, last = program(more, points, **units).moves
+    assert (one.to.unit, two.to.unit, last.to.unit) == ("MACHINE_DEF[2]", "MACHINE_DEF[2]", "")
+    stands = program(
+        more, **{}
+    ).moves  # BASE_DATA is seen from the plate as it is from the robot's foot
+    for move, other in zip((one, two, last), stands, strict=True):
+        assert np.array_equal(move.to.pose, other.to.pose)
+    with pytest.raises(cl.ClearanceError, match="line 9: this has no value for"):
+        program(f"{body.replace('LIN XP1', 'XP1=$BASE:XP1')}\nLIN XP1", points, **units)
+    with pytest.raises(
+        cl.ClearanceError, match="line 11: the tool's pose before this move is not known"
+    ):
+        program(f"{body}\nBAS(#BASE,0)\nLIN_REL {{Z 10}}", points, **units)
 
 
 def test_each_module_has_points_and_procedures_of_its_own():
