@@ -178,8 +178,9 @@ class Poses:
 
 def _whole(quaternion: object) -> object:
     """A quaternion with 0 for what is not given of it, as `{w: 1}`: its length shows what was forgotten."""
-    fits = isinstance(quaternion, dict) and {*quaternion} <= {*"xyzw"}
-    return dict.fromkeys("xyzw", 0.0) | quaternion if fits else quaternion
+    if isinstance(quaternion, dict) and {*quaternion} <= {*"xyzw"}:
+        return dict.fromkeys("xyzw", 0.0) | quaternion
+    return quaternion
 
 
 def _float(value: float) -> float:

@@ -9,12 +9,21 @@ clearance.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from clearance.errors import BadDimension, BadRobot, MissingKey, UnknownJoint, at, nearest_name
+from clearance.errors import (
+    BadDimension,
+    BadRobot,
+    MissingKey,
+    UnknownJoint,
+    at,
+    meant_name,
+    nearest_name,
+)
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.message.documents import Fields, described
 from clearance.formats.message.parameter_values import (
@@ -82,8 +91,13 @@ def _of_robot(found: Mapping[str, _Value], names: Collection[str]) -> dict[str, 
     """What is of joints that the robot can move.
 
     Raises:
-        UnknownJoint: nothing is.
+        UnknownJoint: nothing is, or one of them is misspelt.
     """
+    without = [name for name in names if name not in found]
+    for name in found:
+        meant = "" if name in names else meant_name(name, without)
+        if meant and _digits(meant) == _digits(name):
+            raise UnknownJoint(f"unknown joint {name!r}", valid=f"did you mean {meant!r}?")
     known = {name: value for name, value in found.items() if name in names}
     if not known:
         first = next(iter(found), None)
@@ -92,6 +106,10 @@ def _of_robot(found: Mapping[str, _Value], names: Collection[str]) -> dict[str, 
             valid=nearest_name(first or "", names),
         )
     return known
+
+
+def _digits(name: str) -> list[str]:
+    return re.findall(r"\d+", name)
 
 
 def _narrowed(joint: Joint, limits: Mapping[str, FileLimits]) -> Joint:

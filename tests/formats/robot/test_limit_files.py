@@ -232,11 +232,10 @@ def test_bad_controllers_are_one_line(tmp_path, old, new, fault, says):
 
 
 def test_files_of_another_robot_are_refused(tmp_path):
-    others = LIMITS.replace("shoulder", "sholder").replace("lift", "x")
-    with pytest.raises(
-        UnknownJoint,
-        match="no joint that the robot can move, but of 'sholder'; did you mean 'shoulder'",
-    ):
+    others = LIMITS.replace("shoulder", "elbow").replace("lift", "x")
+    with pytest.raises(UnknownJoint, match="no joint that the robot can move, but of 'elbow'"):
         load(tmp_path, others)
+    with pytest.raises(UnknownJoint, match="unknown joint 'Lift'; did you mean 'lift'"):
+        load(tmp_path, LIMITS.replace("lift", "Lift"))
     with pytest.raises(MissingKey, match="no controller in it has 'joints' or 'constraints'"):
         load(tmp_path, None, LIMITS)
