@@ -1,5 +1,4 @@
-"""Two batches held against each other: a fixture that moved, a robot that is another, cases that are new, gone, or
-cannot be read."""
+"""Two batches held against each other: a fixture that moved, cases that are new, gone, or cannot be read."""
 
 import shutil
 
@@ -58,14 +57,6 @@ def test_an_obstacle_that_moved_is_told_case_by_case(folder, capsys):
     (folder / "then").rename(folder / "old")
     code, lines = compared(capsys)
     assert (code, lines[0]) == (0, "since the baseline: 4 cases: 4 better")
-
-
-def test_another_robot_is_not_comparable(folder, capsys):
-    edit(folder / "cart.urdf", 'size="0.2 0.2 0.2"', 'size="0.2 0.2 0.21"')
-    assert batch("new") == 1
-    code, lines = compared(capsys)
-    assert code == 1 and "4 not comparable" in lines[0]
-    assert "(robot 'cart' is another)" in lines[1] and "t003" in lines[1]
 
 
 def test_less_that_is_known_and_new_suspect_input_alarm(folder, capsys):

@@ -1,6 +1,4 @@
-"""Whatever is killed, at whatever moment: the same command goes on, and its answer has the bytes of an undisturbed
-one. With real processes; no test depends on how long anything takes.
-"""
+"""Whatever is killed, at whatever moment: the same command goes on, to the bytes of an undisturbed answer."""
 
 from __future__ import annotations
 

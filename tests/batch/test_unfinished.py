@@ -1,5 +1,4 @@
-"""A batch that has not come to its end: no older answer stands in the store, and `status` tells what is missing
-from what cannot be read."""
+"""A batch that has not come to its end: no older answer stands, and `status` tells missing from unreadable."""
 
 import pytest
 

@@ -1,7 +1,4 @@
-"""Everything in a case file that cannot be meant is refused in one line, with its place.
-
-What the model of the schema refuses is asked of the model; a case with its files is loaded for the rest.
-"""
+"""Everything in a case file that cannot be meant is refused in one line, with its place."""
 
 import pytest
 

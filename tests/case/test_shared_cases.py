@@ -1,7 +1,4 @@
-"""The four real cases load unchanged, and hold what an independent reading of the same files finds.
-
-The files lie beside the repository; where they are not, these tests are skipped visibly.
-"""
+"""The four real cases load unchanged, and hold what an independent reading of the same files finds."""
 
 from collections import Counter
 from fractions import Fraction
@@ -31,9 +28,7 @@ MESHES = sorted(p for p in CASES.rglob("*") if p.suffix.lower() in (".stl", ".ob
 
 
 def rows_of(path: Path) -> np.ndarray:
-    """(m, 3, 3) corners of the triangles in a mesh file, by a reader of ten lines that only these
-    files need.
-    """
+    """(m, 3, 3) corners of the triangles in a mesh file, by a reader of ten lines that only these files need."""
     if path.suffix.lower() == ".stl":
         facets = np.frombuffer(path.read_bytes()[84:], np.uint8).reshape(-1, 50)
         return np.ascontiguousarray(facets[:, 12:48]).view("<f4").reshape(-1, 3, 3).astype(float)

@@ -1,6 +1,4 @@
-"""`clearance check --png --glb --trajectory`: what is written, what is refused before anything is measured,
-and the trajectory back again with the same results.
-"""
+"""`clearance check --png --glb --trajectory`: what is written, what is refused, and the trajectory back again."""
 
 from __future__ import annotations
 

@@ -79,21 +79,16 @@ def test_a_limit_decides_the_exit_code(folder, limit, code):
 
 
 @pytest.mark.parametrize(
-    ("names", "told"),
+    ("names", "given", "told"),
     [
-        (["along"], "1 robot is given; cases with two or more robots in all are needed"),
-        (["along", "nothing"], "nothing.yaml"),
+        (["along"], [], "1 robot is given; cases with two or more robots in all are needed"),
+        (["along", "nothing"], [], "nothing.yaml"),
+        (["along", "across"], ["--within-mm", "0"], "a length above 0"),
+        (["along", "across"], ["--within-mm", "nan"], "--within-mm"),
+        (["along", "across"], ["--limit-litres", "-1"], "--limit-litres"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_2(folder, capsys, names, told):
-    assert run(["workspace", *paths(folder, *names)]) == 2
+def test_bad_input_is_one_line_and_exit_2(folder, capsys, names, given, told):
+    assert run(["workspace", *paths(folder, *names), *given]) == 2
     error = capsys.readouterr().err
     assert told in error and error.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    "given", [["--within-mm", "0"], ["--within-mm", "nan"], ["--limit-litres", "-1"]]
-)
-def test_bad_options_are_one_line_and_exit_2(folder, capsys, given):
-    assert run(["workspace", *paths(folder, "along", "across"), *given]) == 2
-    assert capsys.readouterr().err.count("\n") == 1

@@ -1,7 +1,4 @@
-"""Help, guide, codes and templates have no long sentence, and no word of the list of unclear words.
-
-`tests/architecture/test_house.py`, which parses all modules, reads messages and the docstrings of public names.
-"""
+"""Help, guide, codes and templates have no long sentence, and no word of the list of unclear words."""
 
 from __future__ import annotations
 

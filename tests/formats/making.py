@@ -1,6 +1,4 @@
-"""Tiny meshes, robots, scenes and cases written to a folder, so that every test has its own
-files.
-"""
+"""Tiny meshes, robots, scenes and cases written to a folder, so that every test has its own files."""
 
 from __future__ import annotations
 
@@ -87,9 +85,7 @@ PATH = "time,shoulder\n0,0\n0.5,0.25\n1,0.5\n"
 def write_case(
     folder: Path, case: str = CASE, urdf: str = ARM, trajectory: str = PATH, **files: bytes | str
 ) -> Path:
-    """A whole case in `folder`; further `files` by name, a double underscore standing for the
-    dot.
-    """
+    """A whole case in `folder`; further `files` by name, a double underscore standing for the dot."""
     contents = {
         "case.yaml": case,
         "arm.urdf": urdf,

@@ -1,8 +1,4 @@
-"""Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory.
-
-The kinds are `damaged.rows`; `damaged.campaign` tries thousands of files of each. Here are some that hypothesis
-draws and makes small again, cuts, and bytes that are others; no suffix of a format is without a row.
-"""
+"""Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory."""
 
 from __future__ import annotations
 

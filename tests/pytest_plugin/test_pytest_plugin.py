@@ -91,17 +91,6 @@ def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester
     assert "--clearance-out DIR writes the page" in inside().stdout.str()
 
 
-def test_a_list_of_cases_by_patterns(inside, pytester):
-    write_case(pytester.path / "weld_1", CLEAR, "case.yaml")
-    write_case(pytester.path / "weld_2", BROKEN, "case.yaml")
-    (pytester.path / "all.clearance.yaml").write_text("cases: ['weld_*/case.yaml']\n")
-    result = inside("-v")
-    result.assert_outcomes(passed=2, failed=2)
-    told = result.stdout.str()
-    assert "all.clearance.yaml::weld_1/case.yaml::verdict PASSED" in told
-    assert "all.clearance.yaml::weld_2/case.yaml::rule default FAILED" in told
-
-
 @pytest.mark.parametrize(
     ("text", "told"),
     [

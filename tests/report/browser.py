@@ -1,5 +1,4 @@
-"""A headless Chromium for tests, driven over its DevTools protocol. Not for: anything but looking
-and clicking."""
+"""A headless Chromium for tests, driven over its DevTools protocol. Not for: anything but looking and clicking."""
 
 from __future__ import annotations
 
@@ -39,8 +38,7 @@ def executable() -> str | None:
 
 
 class Page:
-    """One tab. `errors` collects what the page wrote to the console as an error, and uncaught
-    exceptions."""
+    """One tab. `errors` collects what the page wrote to the console as an error, and uncaught exceptions."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop, socket: Any) -> None:
         self._loop, self._socket, self._ids = loop, socket, itertools.count(1)

@@ -95,7 +95,7 @@ def test_a_record_keeps_to_the_schema(name, tmp_path):
     assert first == (tmp_path / "junit.xml").read_bytes()
 
 
-@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+@pytest.mark.parametrize("need", ["steps", "limit"])
 @pytest.mark.parametrize("waive", ["none", "a", "all", "stale"])
 def test_a_run_is_red_where_it_is_not_passed(need, waive, tmp_path):
     patterns = {"none": [], "a": ["gate_a"], "all": ["gate_*"], "stale": ["gate_*", "gate_c"]}[

@@ -8,7 +8,7 @@ from clearance.report import moveit_moments
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
 from tests.report.made import model_of, run_of
-from tests.report.records import record, with_contacts
+from tests.report.records import record
 
 WIDE = (cl.Rule(("*", "*"), name="wide", fail=0.0, warn=9.0),)
 LIMITS = cl.Limits(fail=0.01, warn=0.3)
@@ -62,13 +62,7 @@ def test_links_name_their_robot_where_there_are_several_and_held_parts_the_link(
     assert (right["robot"], right["attached_collision_objects"]) == ("right", [])
 
 
-def test_padding_and_depth_are_told_where_there_are_some():
-    deep = with_contacts(record())
-    told = read(moments_text(deep))["moments"]
-    for moment in told:
-        assert "padding" not in moment
-        touching = [row for row in deep.worked_out if row.step == moment["step"]]
-        assert not touching or ("depth" in moment) == (moment["status"] == "contact")
+def test_padding_is_told_where_there_is_some():
     wall = box("wall", (0.1, 1, 1), at(1.6), padding=0.01)
     case = cell(WIDE, (sliding("arm", LEFT),), (wall,), ())
     moment = read(moments_text(cl.check(case)))["moments"][0]

@@ -1,5 +1,4 @@
-"""The page in a real browser: it draws, it says what the table says, and a click moves the
-robot."""
+"""The page in a real browser: it draws, it says what the table says, and a click moves the robot."""
 
 from __future__ import annotations
 

@@ -141,11 +141,3 @@ def test_trimesh_finds_names_places_and_colours():
     for side, end in zip(("first", "second"), still.line, strict=True):
         pose, _ = scene.graph[f"witness line: {side} point"]
         assert np.abs(pose[:3, 3] - y_up[:3, :3] @ end).max() < 1e-6
-
-
-def test_a_shape_that_two_bodies_have_is_written_once():
-    held = document()
-    assert len(held["accessors"]) == len(held["bufferViews"]) <= 2 * len(REPLAY.shapes) + 4
-    assert held["buffers"][0]["byteLength"] == sum(
-        view["byteLength"] for view in held["bufferViews"]
-    )

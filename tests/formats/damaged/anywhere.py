@@ -1,7 +1,4 @@
-"""Damage to any file, byte by byte: flipped, cut off, doubled, moved, numbers replaced.
-
-Not for: damage to its structure (`trees`, `markup`, `lines`, `bytes`).
-"""
+"""Damage to any file, byte by byte: flipped, cut off, doubled, moved, numbers replaced."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Small bags in each container that rosbags writes; of a folder its one file with the messages.
-
-Not for: damaging them (`campaign`).
-"""
+"""Small bags in each container that rosbags writes; of a folder its one file with the messages."""
 
 from __future__ import annotations
 

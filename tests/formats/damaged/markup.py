@@ -1,7 +1,4 @@
-"""Damage to the structure of XML: elements, attributes and words exchanged, and still XML.
-
-Not for: documents of YAML and JSON (`trees`), nor bytes (`bytes`).
-"""
+"""Damage to the structure of XML: elements, attributes and words exchanged, and still XML."""
 
 from __future__ import annotations
 

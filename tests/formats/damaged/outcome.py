@@ -1,7 +1,4 @@
-"""What comes of a damaged file: it is read, refused by an error of ours, or shows a fault of its reader.
-
-Not for: the files (`campaign`).
-"""
+"""What comes of a damaged file: it is read, refused by an error of ours, or shows a fault of its reader."""
 
 from __future__ import annotations
 

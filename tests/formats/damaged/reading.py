@@ -1,7 +1,4 @@
-"""What reads each kind of file: functions of its content, a folder that they may write into, and its name.
-
-Not for: the files (`rows`), nor damaging them (`campaign`).
-"""
+"""What reads each kind of file: functions of its content, a folder that they may write into, and its name."""
 
 from __future__ import annotations
 

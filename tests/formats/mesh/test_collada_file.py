@@ -1,6 +1,4 @@
-"""COLLADA: unit and up axis are obeyed once, transforms and instances are placed, precision is
-kept.
-"""
+"""COLLADA: unit and up axis are obeyed once, transforms and instances are placed, precision is kept."""
 
 import re
 

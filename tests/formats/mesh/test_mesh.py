@@ -1,6 +1,4 @@
-"""Mesh files to solids: nothing lost, nothing moved, nothing turned inside out, and each fault in
-one line.
-"""
+"""Mesh files to solids: nothing lost, nothing moved, nothing turned inside out, and each fault in one line."""
 
 from fractions import Fraction
 

