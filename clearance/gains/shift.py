@@ -26,7 +26,7 @@ from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.extents import reach_of
 from clearance.world.forest import carried_by, forest_of
-from clearance.world.knots import knots_of, looped
+from clearance.world.knots import knots_of_poses, looped
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable
@@ -248,7 +248,7 @@ def _moved_by(asked: PoseTable, now: PoseTable) -> np.ndarray:
             of its samples, where it does not jump.
     """
     middle = np.array([0.5 * (now.times[0] + now.times[min(1, len(now) - 1)])])
-    knots = knots_of(asked.timing.run_times(asked.times), asked.columns, n_rotation=4)
+    knots = knots_of_poses(asked)
     if asked.timing.after == "loop":
         knots = looped(knots, float(middle[0]) + 1e-9)
     was, place = knots.values_at(middle)[0], now.after(0, 0.5)

@@ -14,6 +14,8 @@ import numpy as np
 
 from clearance.errors import BadTime
 from clearance.world.cubic import Cubics, position_on, velocity_on
+from clearance.world.motion import Motion
+from clearance.world.pose_table import PoseTable
 from clearance.world.slerp import slerp
 
 MOST_ROUNDS = 100_000
@@ -135,6 +137,19 @@ def knots_of(
     arriving, leaving = rates.copy(), rates.copy()
     arriving[0] = leaving[-1] = 0.0  # it stands before and after
     return Knots(times, values, values, arriving, leaving, n_rotation)
+
+
+def knots_of_motion(motion: Motion) -> Knots:
+    """The knots of all joints of a robot, in the run's time."""
+    timing, rates = motion.placed.timing, motion.velocities
+    if rates is not None and timing.rate != 1.0:
+        rates = rates * timing.rate
+    return knots_of(timing.run_times(motion.times), motion.positions, rates)
+
+
+def knots_of_poses(table: PoseTable) -> Knots:
+    """The knots of a table of poses, in the run's time."""
+    return knots_of(table.timing.run_times(table.times), table.columns, n_rotation=4)
 
 
 def looped(once: Knots, end: float) -> Knots:

@@ -21,7 +21,7 @@ from clearance.world.forest import (
     require_known,
 )
 from clearance.world.hands import with_parts
-from clearance.world.knots import Knots, knots_of, looped
+from clearance.world.knots import Knots, knots_of_motion, knots_of_poses, looped
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
 from clearance.world.path_error import path_error_of
@@ -198,10 +198,7 @@ def _require_carriers_present(phase: Phase, end: float) -> None:
 
 def _of_robot(motion: Motion) -> _Table:
     timing, asked = motion.placed.timing, motion.placed.trajectory
-    rates = motion.velocities
-    if rates is not None and timing.rate != 1.0:
-        rates = rates * timing.rate
-    knots = knots_of(timing.run_times(motion.times), motion.positions, rates)
+    knots = knots_of_motion(motion)
     not_measured = asked.not_measured if asked is not None else ()
     if not_measured and timing.after == "loop":
         raise Contradiction(
@@ -216,7 +213,7 @@ def _of_robot(motion: Motion) -> _Table:
 def _of_obstacle(obstacle: Obstacle) -> _Table:
     table = obstacle.moves
     assert table is not None
-    knots = knots_of(table.timing.run_times(table.times), table.columns, n_rotation=4)
+    knots = knots_of_poses(table)
     return _Table(knots, _ends(knots), table.timing)
 
 
