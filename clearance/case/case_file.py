@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from os import PathLike
 from pathlib import Path
 
@@ -134,8 +135,11 @@ def with_trajectory_file(
         entry = entry._replace(trajectory=given, trajectory_field="trajectory")
         others = [one for i, one in enumerate(cell.case.robots) if i != i_robot]
         carried = {one.part for one in cell.case.carries}
+        driven = (one.trajectory.drives for one in others if one.trajectory is not None)
         around = Surroundings(
-            tuple(others), tuple(_rider(one, carried) for one in cell.case.obstacles)
+            tuple(others),
+            tuple(_rider(one, carried) for one in cell.case.obstacles),
+            frozenset(chain.from_iterable(driven)),
         )
         moved = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files, around)
     robots = tuple(
@@ -175,11 +179,10 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     given, scene_at = read_schema(path, files, model)
     entries = given.entries()
     reader = RobotReader(path.parent, meshes)
-    with at(path.name):
-        moving = _moving(reader, entries, given)
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
+        moving = _moving(reader, entries, given, obstacles)
         case = Case(
             name=given.name or _name_of(path),
             robots=tuple(one.placed for one in moving),
@@ -273,7 +276,10 @@ def _notices(given: schema.Case) -> list[Notice]:
 
 
 def _moving(
-    reader: RobotReader, entries: Sequence[schema.RobotEntry], given: schema.Case
+    reader: RobotReader,
+    entries: Sequence[schema.RobotEntry],
+    given: schema.Case,
+    obstacles: Sequence[Obstacle],
 ) -> list[InMotion]:
     """The robots as they move, those with programs last, since their frames may be on the others.
 
@@ -287,20 +293,19 @@ def _moving(
         i: reader.moving(one, Surroundings()) for i, one in enumerate(entries) if not has_program[i]
     }
     carried = {one.part for one in given.carry}
-    riders = tuple(
-        Rider(one.name, one.on, one.pose.matrix(), one.moves is not None or one.name in carried)
-        for one in given.scene.obstacles
-    )
+    riders = tuple(_rider(one, carried) for one in obstacles)
     read: dict[int, InMotion] = {}
+    driven: frozenset[str] = frozenset()
     for i, entry in enumerate(entries):
         if not has_program[i]:
             continue
-        around = Surroundings(tuple(one.placed for one in found.values()), riders)
+        around = Surroundings(tuple(one.placed for one in found.values()), riders, driven)
         read[i] = reader.moving(entry, around)
+        driven |= read[i].driven.keys()
         for j, one in found.items():
             if one.placed.robot.name in read[i].driven:
                 found[j] = one._replace(placed=read[i].driving(one.placed))
-    around = Surroundings(tuple(one.placed for one in found.values()), riders)
+    around = Surroundings(tuple(one.placed for one in found.values()), riders, driven)
     for i, one in read.items():
         with at(f"{entries[i].trajectory_field}.program"):
             require_still(one.placed, around)
@@ -308,10 +313,9 @@ def _moving(
 
 
 def _rider(obstacle: Obstacle, carried: Container[str]) -> Rider:
-    mount, moves = obstacle.mount, obstacle.moves is not None or obstacle.name in carried
-    if mount is None:
-        return Rider(obstacle.name, None, obstacle.world_from_body, moves)
-    return Rider(obstacle.name, mount.on, mount.pose, moves)
+    mount, is_carried = obstacle.mount, obstacle.name in carried
+    on, pose = (None, obstacle.world_from_body) if mount is None else (mount.on, mount.pose)
+    return Rider(obstacle.name, on, pose, obstacle.moves, is_carried)
 
 
 def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.case.standing import IN_WORLD, Place, Rider, standing_frames
+from clearance.case.standing import IN_WORLD, Places, Rider
 from clearance.errors import BadProgram
 from clearance.formats.schema import program as schema
 from clearance.geometry.pose import inverse
@@ -32,10 +32,15 @@ class ProgrammedMotion(NamedTuple):
 
 @dataclass(frozen=True)
 class Surroundings:
-    """All but the robot of a program: other robots, without those with a program of their own, and obstacles."""
+    """All but the robot of a program: other robots, without those with a program of their own, and obstacles.
+
+    Attributes:
+        driven: the robots that the programs of others move, by name.
+    """
 
     robots: tuple[PlacedRobot, ...] = ()
     obstacles: tuple[Rider, ...] = ()
+    driven: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +60,11 @@ class ProgramCell:
         """(4, 4) `world_from_base` of the robots whose base stands, whatever the program drives, by name [m]."""
         others = self.around.robots
         moving = [one for one in others if one.trajectory is not None]
-        places, found = standing_frames(moving, self.around.obstacles, {}), {}
+        places, found = Places(moving, self.around.obstacles, {}), {}
         for one in (self.own, *others):
-            below = IN_WORLD if one.mount is None else places.get(one.mount.on)
-            if below is not None:
+            known = one.mount is None or one.mount.on in places.names
+            below = IN_WORLD if one.mount is None else places.of(one.mount.on) if known else ""
+            if not isinstance(below, str) and not below.on:
                 local = one.world_from_base if one.mount is None else one.mount.pose
                 found[one.robot.name] = below.pose @ local
         return found
@@ -130,9 +136,8 @@ class ProgramCell:
             for joint, value in self._others[name].fixed_positions.items()
         }
 
-    def places(self, driven: Sequence[str]) -> dict[str, Place | None]:
-        """Where all is that a frame may be on, by name: in the world, or on a link of `robot`; None for what may
-        move otherwise."""
+    def places(self, driven: Sequence[str]) -> Places:
+        """Where all is that a frame may be on."""
         return _places(self.own.robot, driven, self.around)
 
     def mounts(self, driven: Sequence[str]) -> set[str]:
@@ -161,7 +166,7 @@ class ProgramCell:
 
 
 def require_still(placed: PlacedRobot, around: Surroundings) -> None:
-    """Nothing, if what the frames of a robot's program are on stands, or is moved by that program alone.
+    """Nothing, if what the frames of a robot's program are on is moved by no other program.
 
     Args:
         around: all but the robot, as they move by the programs of all robots.
@@ -172,12 +177,12 @@ def require_still(placed: PlacedRobot, around: Surroundings) -> None:
     made = placed.given_trajectory
     places = _places(placed.robot, made.drives, around)
     for name in made.frames:
-        if places[name] is None:
+        if isinstance(places.of(name), str):
             fault = f"the program of another robot moves {name!r}, which frames are on"
             raise BadProgram(fault, valid="frames on what no other program moves")
 
 
-def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> dict[str, Place | None]:
+def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> Places:
     """What `ProgramCell.places` says."""
     links = {link: link for link in own.link_names}
     links |= {f"{own.name}/{link}": link for link in own.link_names}
@@ -188,7 +193,8 @@ def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> dict[str
             links |= {name: name for name in names}
         else:
             others.append(one)
-    return standing_frames(others, around.obstacles, links)
+    unknown = dict.fromkeys(around.driven, "is moved by the program of another robot")
+    return Places(others, around.obstacles, links, unknown)
 
 
 def _of(made: Trajectory, robot: str, driven: Sequence[str]) -> Trajectory:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.case.driven_robots import ProgramCell, ProgrammedMotion, Surroundings
-from clearance.case.standing import IN_WORLD, Place
+from clearance.case.standing import IN_WORLD, NOT_PLACED, Place, Places
 from clearance.errors import BadProgram, ClearanceError, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
@@ -25,6 +25,7 @@ from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.pose import inverse
+from clearance.programs.carriage import Carriage
 from clearance.programs.joint_way import unknown_speeds
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
@@ -32,6 +33,7 @@ from clearance.programs.time_law import Limits
 from clearance.world.case import PlacedRobot
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
+from clearance.world.timing import Timing
 
 
 def program_motion(
@@ -64,15 +66,19 @@ def program_motion(
         own = {**cell.start(driven), **given.start, **start}
         frames = _Frames(given, cell, cell.places(driven))
         moves = tuple(_moves(read, frames))
-        program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
+        carriages = frames.carriages(asked.timing)
+        program = Program(
+            *(given.tool.link, given.tool.matrix(), moves, own, given.step), carriages=carriages
+        )
         found = motion_of(cell.robot, program)
     made = replace(
         found.trajectory,
+        rides=tuple(carriages),
         frames=tuple(sorted(frames.used | (cell.mounts(driven) if driven else set()))),
         has_way_in=read.starts_anywhere,
-        assumed=tuple(f"{shown}: {one}" for one in read.assumed),
         left_out=(*read.left_out, *_speeds_lacking(cell.robot, program)),
         contradicted=tuple(f"{shown}: {one}" for one in read.contradicted),
+        assumed=tuple(f"{shown}: {one}" for one in (*read.assumed, *found.doubtful)),
         odd=tuple(f"{shown}: {one}" for one in odd),
     )
     moved = (f"it moves robot {name!r} too" for name in driven)
@@ -146,19 +152,19 @@ def _of_schema(program: schema.Program) -> ConvertedProgram:
 
 
 class _Frames:
-    """The frames of a program, seen from links of the robot."""
+    """The frames of a program, seen from links of the robot, or from what moves by itself."""
 
-    def __init__(
-        self, given: schema.Program, cell: ProgramCell, places: Mapping[str, Place | None]
-    ) -> None:
+    def __init__(self, given: schema.Program, cell: ProgramCell, places: Places) -> None:
         self._given, self._cell, self._places = given, cell, places
+        self._links = {*cell.robot.link_names}
+        self._movers = set[str]()
         self.used = set[str]()
 
     def place(self, name: str, within: tuple[str, ...] = ()) -> Place:
-        """Where a frame is, on a link of the robot; on its root if that is empty.
+        """Where a frame is: on a link of the robot, its root if that is empty, or on what moves by itself.
 
         Raises:
-            BadInput: a frame on what is not there, moves otherwise, or is on itself.
+            BadInput: a frame on what is not there, moves as no program can follow, or is on itself.
         """
         if name == schema.BASE:
             return Place("", np.eye(4))
@@ -173,7 +179,7 @@ class _Frames:
             with at(f"frames.{name}"):
                 return self.place(frame.on, (*within, name)).on_it(frame.matrix())
         found = IN_WORLD if name == schema.WORLD else self._given_place(name)
-        if found.link:
+        if found.on in self._links:
             return found
         world_from_own = self._cell.world_from_own
         if world_from_own is None:
@@ -184,26 +190,44 @@ class _Frames:
                 valid="put frames on base",
             )
         self.used |= self._cell.mounts(())
+        if found.on:
+            self._movers.add(found.on)
+            return found
         return Place("", inverse(world_from_own) @ found.pose)
 
-    def _given_place(self, name: str) -> Place:
-        """Where something of the case is: in the world, or on a link.
+    def carriages(self, timing: Timing) -> dict[str, Carriage]:
+        """The motion of all that moves by itself and carries a frame, by the time of a program with a timing.
 
         Raises:
-            BadInput: it is not there, or moves otherwise than the program says.
+            BadInput: the program is gone through again and again.
         """
-        if name not in self._places:
-            known = (*self._given.frames, schema.WORLD, schema.BASE, *self._places)
-            raise BadProgram(f"{name!r} is not there", valid=nearest_name(name, known))
-        found = self._places[name]
-        if found is None:
-            valid = (
-                "a frame on what stands as long as the case runs, or on a link that the program moves "
-                "(hold: {turntable/turn: …}, and no trajectory of that robot)"
+        if self._movers and timing.after == "loop":
+            raise BadProgram(
+                f"the program begins again (after: loop), and {min(self._movers)!r} is elsewhere then",
+                valid="after: hold, and all rounds in the program",
             )
-            fault = f"{name!r} moves, so the place of a target on it may change"
-            raise BadProgram(fault, valid=valid)
-        if found.link != name.removeprefix(f"{self._cell.own.robot.name}/"):
+        root = self._cell.world_from_own
+        if root is None:  # then no frame is on what moves
+            return {}
+        return {
+            name: self._places.carriage(name, root).in_time_of(timing)
+            for name in sorted(self._movers)
+        }
+
+    def _given_place(self, name: str) -> Place:
+        """Where something of the case is: in the world, on a link, or on what moves by itself.
+
+        Raises:
+            BadInput: it is not there, or moves as no program can follow.
+        """
+        if name not in self._places.names:
+            known = (*self._given.frames, schema.WORLD, schema.BASE, *self._places.names)
+            raise BadProgram(f"{name!r} is not there", valid=nearest_name(name, known))
+        found = self._places.of(name)
+        if isinstance(found, str):
+            raise BadProgram(f"no frame can be on {name!r}: it {found}", valid=NOT_PLACED)
+        own = name.removeprefix(f"{self._cell.own.robot.name}/")
+        if found.on != own or found.on not in self._links:
             self.used.add(name)
         return found
 
@@ -212,13 +236,13 @@ class _Frames:
         return self.place(target.frame).on_it(target.matrix())
 
     def via(self, move: schema.ArcMove) -> np.ndarray:
-        """(3,) [m] the point of an arc, on the link that its end is on.
+        """(3,) [m] the point of an arc, on what its end is on.
 
         Raises:
-            BadInput: it is on another.
+            BadInput: it is on something else.
         """
         to, via = self.place(move.to.frame), self.place(move.via.frame)
-        if to.link != via.link:
+        if to.on != via.on:
             fault = (
                 f"frame {move.via.frame!r} does not move as frame {move.to.frame!r} of its end does"
             )

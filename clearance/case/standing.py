@@ -1,74 +1,201 @@
-"""Where all is that frames of a program may be on: what stands as long as a case runs, and what the program moves.
+"""Where all is that frames of a program may be on: what stands as long as a case runs, what the program moves, and
+what moves by a table of its own.
 
-Obstacles stand, links that no trajectory moves, and what rides on those. Not for: the frames (`program`).
+Obstacles and links, and what rides on those. Not for: the frames (`program`), and how joints follow (`programs`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.pose import inverse
+from clearance.programs.carriage import Carriage, Step, steps_of_joint, steps_of_poses
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematic_chain import chain_between
+from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.kinematics import link_poses, moving_positions
+from clearance.world.knots import knots_of_motion, knots_of_poses
+from clearance.world.motion import kinematic_motion
+from clearance.world.pose_table import PoseTable
 
 
 class Rider(NamedTuple):
-    """An obstacle: its pose (4, 4) [m] in the world, or on what it is on. moves: it has a motion of its own."""
+    """An obstacle: its pose (4, 4) [m] in the world, or on what it is on. moves: its own motion there.
+
+    Attributes:
+        is_carried: it changes hands.
+    """
 
     name: str
     on: str | None
     pose: np.ndarray
-    moves: bool
+    moves: PoseTable | None = None
+    is_carried: bool = False
 
 
 class Place(NamedTuple):
-    """Where something is: its pose (4, 4) [m] on a link that the program moves; in the world if that is empty."""
+    """Where something is: its pose (4, 4) [m] on a link that the program moves, or on what moves by itself; in the
+    world if that is empty."""
 
-    link: str
+    on: str
     pose: np.ndarray
 
     def on_it(self, pose: np.ndarray) -> Place:
         """The place of a pose (4, 4) that is given on this one."""
-        return Place(self.link, self.pose @ pose)
+        return Place(self.on, self.pose @ pose)
 
 
 IN_WORLD = Place("", np.eye(4))
 
+NOT_PLACED = (
+    "an obstacle or a link that stands, that the program moves, or that moves by a table of its own"
+)
 
-def standing_frames(
-    robots: Sequence[PlacedRobot], obstacles: Iterable[Rider], moved: Mapping[str, str]
-) -> dict[str, Place | None]:
-    """Where all is, by name; None for what is there and may move otherwise than the program says.
+
+class _Mover(NamedTuple):
+    """What moves by itself: an obstacle, or a link of a robot, and what it is on."""
+
+    of: Rider | PlacedRobot
+    base: Place
+    link: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where all is, by name.
 
     Args:
         robots: as the links of several robots are called; those with a program left out, and what it drives.
-        moved: the links that the program may move, by all names that they have.
+        obstacles: all. moved: the links that the program may move, by all names that they have.
+        unknown: why no frame may be on the links of some robots, by the robot's name.
     """
-    waiting: list[Rider | PlacedRobot] = [*obstacles, *robots]
-    found: dict[str, Place | None] = {name: Place(link, np.eye(4)) for name, link in moved.items()}
-    n_found = -1
-    while len(found) > n_found:
-        n_found, left = len(found), []
+
+    robots: Sequence[PlacedRobot]
+    obstacles: Sequence[Rider]
+    moved: Mapping[str, str]
+    unknown: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All that is there."""
+        return (*self._found,)
+
+    def of(self, name: str) -> Place | str:
+        """Where one is that is there; or in words why a program cannot say."""
+        return self._found[name]
+
+    def carriage(self, name: str, seen_from: np.ndarray) -> Carriage:
+        """The motion of what moves by itself, seen from what stands at a pose (4, 4) [m]."""
+        return Carriage(name, (inverse(seen_from), *self._steps(name)))
+
+    def _steps(self, name: str) -> Iterator[Step]:
+        mover = self._movers[name]
+        if mover.base.on:
+            yield from self._steps(mover.base.on)
+        yield mover.base.pose
+        if isinstance(mover.of, PlacedRobot):
+            yield from _steps_of_link(mover.of, mover.link)
+            return
+        if mover.of.on is not None:
+            yield mover.of.pose
+        assert mover.of.moves is not None
+        yield from steps_of_poses(knots_of_poses(mover.of.moves))
+
+    @cached_property
+    def _movers(self) -> dict[str, _Mover]:
+        return {}
+
+    @cached_property
+    def _found(self) -> dict[str, Place | str]:
+        waiting: list[Rider | PlacedRobot] = [*self.obstacles, *self.robots]
+        found: dict[str, Place | str] = {
+            name: Place(link, np.eye(4)) for name, link in self.moved.items()
+        }
+        n_found = -1
+        while len(found) > n_found:
+            n_found, left = len(found), []
+            for one in waiting:
+                below = _below(one)
+                if below is None or below in found:
+                    found |= self._on(one, IN_WORLD if below is None else found[below])
+                else:
+                    left.append(one)
+            waiting = left
         for one in waiting:
-            below = _below(one)
-            if below is None or below in found:
-                found |= _on(one, IN_WORLD if below is None else found[below])
-            else:
-                left.append(one)
-        waiting = left
-    for one in waiting:
-        found |= _on(one, None)
-    return found
+            found |= self._on(one, f"is on {_below(one)!r}, which is not there")
+        return found
+
+    def _on(self, one: Rider | PlacedRobot, base: Place | str) -> dict[str, Place | str]:
+        """What one brings that is on a base, or on what has no place."""
+        if isinstance(one, PlacedRobot):
+            return dict(self._of_robot(one, base))
+        if isinstance(base, str):
+            return {one.name: base}
+        if one.is_carried:
+            return {one.name: "changes hands (carry)"}
+        if one.moves is None:
+            return {one.name: base.on_it(one.pose)}
+        return {one.name: self._mover(one.name, _Mover(one, base), one.moves.timing.after)}
+
+    def _mover(self, name: str, mover: _Mover, after: str) -> Place | str:
+        """The place of what moves by itself, from its first sample to its last and beyond."""
+        if name in self.moved:
+            return "has the name of a link that the program may move"
+        if after != "hold":
+            return f"does not stay where its table ends (after: {after})"
+        if mover.base.on in self.moved.values():
+            return f"moves by a table of its own on {mover.base.on!r}, which the program moves"
+        self._movers[name] = mover
+        return Place(name, np.eye(4))
+
+    def _of_robot(
+        self, placed: PlacedRobot, base: Place | str
+    ) -> Iterator[tuple[str, Place | str]]:
+        """The links of a robot, which stand where no joint above them moves."""
+        robot, asked = placed.robot, placed.trajectory
+        if placed.mount is not None and not isinstance(base, str):
+            base = base.on_it(placed.mount.pose)
+        moving: set[str] = set()
+        names, first = tuple[str, ...](), np.zeros((1, 0))
+        if asked is not None:
+            names, first = asked.joint_names, asked.positions[:1]
+            goes = np.ptp(asked.positions, axis=0) > 0.0
+            if asked.velocities is not None:
+                goes |= asked.velocities.any(axis=0)
+            moving = {name for name, does in zip(names, goes, strict=True) if does}
+        local = link_poses(placed, moving_positions(placed, names, first))[0]
+        above = {joint.child: joint.parent for joint in robot.joints}
+        for i, link in enumerate(robot.link_names):
+            name, carrier = f"{robot.name}/{link}", link
+            while carrier in above and not moving & _masters(placed, above[carrier], carrier):
+                carrier = above[carrier]
+            if isinstance(base, str) or carrier not in above:
+                yield name, base if isinstance(base, str) else base.on_it(local[i])
+                continue
+            own = self._link(placed, base, carrier)
+            on_carrier = inverse(local[robot.link_names.index(carrier)]) @ local[i]
+            yield name, own if isinstance(own, str) else own.on_it(on_carrier)
+
+    def _link(self, placed: PlacedRobot, base: Place, link: str) -> Place | str:
+        """The place of a link right below a joint that a table moves."""
+        asked, name = placed.given_trajectory, placed.robot.name
+        if name in self.unknown:
+            return self.unknown[name]
+        if asked.moves:
+            return "moves by a program of its own"
+        if asked.not_measured:
+            return "is not measured all the time (gaps: not_measured)"
+        mover = _Mover(placed, base, link)
+        return self._mover(f"{name}/{link}", mover, placed.timing.after)
 
 
-def _on(one: Rider | PlacedRobot, base: Place | None) -> dict[str, Place | None]:
-    """What one brings that is on a base, which may move if it is None."""
-    if isinstance(one, PlacedRobot):
-        return dict(_of_robot(one, base))
-    return {one.name: None if base is None or one.moves else base.on_it(one.pose)}
+def _masters(placed: PlacedRobot, parent: str, child: str) -> set[str]:
+    """The joints that a link follows, seen from its parent."""
+    return {joint.name for joint in chain_between(placed.robot, parent, child).masters}
 
 
 def _below(one: Rider | PlacedRobot) -> str | None:
@@ -77,19 +204,16 @@ def _below(one: Rider | PlacedRobot) -> str | None:
     return one.on
 
 
-def _of_robot(placed: PlacedRobot, base: Place | None) -> Iterator[tuple[str, Place | None]]:
-    """The links of a robot, which stand where no joint above them moves."""
-    asked, root = placed.trajectory, placed.robot.link_names[0]
-    moving: set[str] = set()
-    names, first = tuple[str, ...](), np.zeros((1, 0))
-    if asked is not None:
-        names, first = asked.joint_names, asked.positions[:1]
-        goes = np.ptp(asked.positions, axis=0) > 0.0
-        if asked.velocities is not None:
-            goes |= asked.velocities.any(axis=0)
-        moving = {name for name, does in zip(names, goes, strict=True) if does}
-    local = link_poses(placed, moving_positions(placed, names, first))[0]
-    for i, link in enumerate(placed.robot.link_names):
-        masters = {joint.name for joint in chain_between(placed.robot, root, link).masters}
-        own = None if base is None or masters & moving else base.on_it(local[i])
-        yield f"{placed.robot.name}/{link}", own
+def _steps_of_link(placed: PlacedRobot, link: str) -> Iterator[Step]:
+    """From what a robot stands on to a link that its table moves."""
+    chain: KinematicChain = chain_between(placed.robot, placed.robot.link_names[0], link)
+    knots, names = knots_of_motion(kinematic_motion(placed)), _columns(placed)
+    off = placed.given_trajectory.path_error
+    yield placed.world_from_base
+    for joint in chain.joints:
+        yield from steps_of_joint(joint, knots, names[chain.masters[joint.column].name], off)
+    yield chain.end
+
+
+def _columns(placed: PlacedRobot) -> dict[str, int]:
+    return {joint.name: i for i, joint in enumerate(placed.robot.moving_joints)}

@@ -170,10 +170,10 @@ def _refuse_programs(case: Case, request: Request) -> None:
                 f"part of the program of robot {placed.robot.name!r} is not proven, whatever is changed",
                 valid="a program that `clearance check` proves",
             )
-        if asked is not None and asked.drives and request.kind != "obstacle":
-            fault = (
-                f"the program of robot {placed.robot.name!r} moves {listed([*asked.drives])} too"
-            )
+        tied = () if asked is None else (*asked.drives, *asked.rides)
+        if asked is not None and tied and request.kind != "obstacle":
+            deed = "moves" if asked.drives else "goes with"
+            fault = f"the program of robot {placed.robot.name!r} {deed} {listed([*tied])} too"
             raise BadChange(fault, valid="kind obstacle, which changes neither of their motions")
         if asked is None or not asked.moves or request.kind == "timing":
             continue

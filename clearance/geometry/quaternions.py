@@ -1,4 +1,4 @@
-"""Unit quaternions: of rotation matrices, without importing scipy for it, and of rounded ones."""
+"""Unit quaternions: of rotation matrices and back, without importing scipy for it, and of rounded ones."""
 
 from __future__ import annotations
 
@@ -56,6 +56,17 @@ def quaternions_of(rotations: np.ndarray) -> np.ndarray:
     found /= np.sqrt(x * x + y * y + z * z + w * w)[:, None]
     found[_is_negative(found)] *= -1.0
     return found
+
+
+def rotations_of(quaternions: np.ndarray) -> np.ndarray:
+    """(n, 3, 3) the rotations of quaternions (n, 4) x, y, z, w of length 1 but for rounding."""
+    x, y, z, w = quaternions.T / np.linalg.norm(quaternions, axis=1)
+    rows = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def rotation_vector(rotation: np.ndarray) -> np.ndarray:

@@ -12,9 +12,9 @@ from functools import cached_property
 import numpy as np
 
 from clearance.errors import UnknownJoint, nearest_name
-from clearance.programs.series import ORDER, matrix_product, product, sine_and_cosine
+from clearance.programs.series import ORDER, matrix_product, product, turns_about
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematic_chain import ChainJoint, KinematicChain, chain_between
+from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.mimics import range_of
 from clearance.world.robot import Joint, Robot
 from clearance.world.tool import Tool
@@ -172,20 +172,8 @@ class Arm:
             at = joint.factor * positions[:, :, joint.column]
             at[0] += joint.offset
             if joint.turns:
-                turn = _turned(turn, joint, at)
+                turn = matrix_product(turn, turns_about(joint.axis, at))
             else:
                 origin += product(turn @ joint.axis, at[:, :, None])
         origin += turn @ self.end[:3, 3]
         return turn @ self.end[:3, :3], origin
-
-
-def _turned(turn: np.ndarray, joint: ChainJoint, angle: np.ndarray) -> np.ndarray:
-    """A series of rotations after a joint that turns by a series of angles (Rodrigues)."""
-    x, y, z = joint.axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, cosine = sine_and_cosine(angle)
-    versine = -cosine
-    versine[0] += 1.0
-    rodrigues = sine[:, :, None, None] * cross + versine[:, :, None, None] * (cross @ cross)
-    rodrigues[0] += np.eye(3)
-    return matrix_product(turn, rodrigues)

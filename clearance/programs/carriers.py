@@ -1,4 +1,5 @@
-"""What the targets of a program are seen from: links of the robot that move, each by the joints that a move names.
+"""What the targets of a program are seen from: links of the robot that move, each by the joints that a move names,
+and carriages that move by themselves.
 
 Not for: where frames are (`case.program`), how joints follow (`motion`).
 """
@@ -11,7 +12,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, UnknownJoint, at, nearest_name
 from clearance.programs.arm import Arm
-from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Robot
 
@@ -19,16 +20,21 @@ from clearance.world.robot import Robot
 def on_carriers(robot: Robot, program: Program) -> Program:
     """The program with targets seen from the links that carry them: the nearest below which a joint moves.
 
-    A joint moves that is of the arm, or that a move names; all others are where the program begins.
+    A joint moves that is of the arm, or that a move names; all others are where the program begins. A wait goes on
+    with the carriage of the target before it.
 
     Raises:
         BadInput: nobody says where a joint is that a target is on; with the move.
     """
     arm = Arm(robot, program.link, program.link_from_tool)
     moving = {joint.name for joint in arm.own} | program.named
-    moves = list[Move]()
+    moves, carriage = list[Move](), ""
     for one in program.moves:
-        if isinstance(one, JointMove | PathMove) and one.seen_from:
+        if isinstance(one, JointMove | PathMove):
+            carriage = one.seen_from if one.seen_from in program.carriages else ""
+        elif isinstance(one, Wait):
+            one = replace(one, seen_from=carriage)
+        if isinstance(one, JointMove | PathMove) and one.seen_from and not carriage:
             with at(one.where):
                 carrier, pose = _carrier(robot, one.seen_from, moving, program.start)
             if one.pose is not None:
@@ -65,7 +71,7 @@ def arm_of(robot: Robot, program: Program) -> Arm:
     arm = Arm(robot, program.link, program.link_from_tool)
     names = set(program.named)
     for one in program.moves:
-        if isinstance(one, JointMove | PathMove) and one.seen_from:
+        if isinstance(one, JointMove | PathMove) and one.seen_from not in {"", *program.carriages}:
             chain = chain_between(robot, one.seen_from, program.link)
             names |= {joint.name for joint in chain.masters}
     return replace(arm, beside=tuple(names - {joint.name for joint in arm.own}))

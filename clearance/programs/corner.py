@@ -82,10 +82,7 @@ def _enclosed(
     i, *cell = (axis.ravel() for axis in np.meshgrid(*ranges, indexing="ij"))
     given = samples.intervals
     spread = _spread(follower, given, shape, i, np.stack(cell, axis=1))
-    own = Intervals(
-        given.lengths[i], given.before[i], given.after[i], given.rates[:, i], given.strokes[:, i]
-    )
-    return spread, enclosed(follower.arm, follower.stretch, own, follower.free, spread)
+    return spread, enclosed(follower.arm, follower.stretch, given.rows(i), follower.free, spread)
 
 
 def _shape(stretch: Stretch, samples: PathSamples, n_cells: int) -> Shape:
@@ -119,6 +116,8 @@ def _spread(
     poses = stretch.poses(
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
     )
+    if given.carried is not None:
+        poses = given.carried.poses[i] @ poses
     solved = joints_at(follower.arm.tool, poses, start, follower.free)
     off = np.where(follower.free, 0.0, halves[:, :1] * np.abs(change))
     return Spread(solved.positions - near[i], off, shifts, halves, _hull(stretch))

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.programs.arm import Arm
+from clearance.programs.carriage import Carried
 from clearance.programs.series import (
     ORDER,
     greatest,
@@ -41,6 +42,7 @@ class Intervals(NamedTuple):
     Attributes:
         lengths: (n,) [s]. before, after: (n, k) positions, and rates: (2, n, k) their rates at both ends [1/s].
         strokes: (3, n, 2) share, rate [1/s] and change [1/s^2] of both strokes at the beginning.
+        carried: what carries the path meanwhile; None where it is in a frame that stands, or that joints move.
     """
 
     lengths: np.ndarray
@@ -48,6 +50,13 @@ class Intervals(NamedTuple):
     after: np.ndarray
     rates: np.ndarray
     strokes: np.ndarray
+    carried: Carried | None = None
+
+    def rows(self, i: np.ndarray) -> Intervals:
+        """Those of some intervals."""
+        carried = None if self.carried is None else self.carried.rows(i)
+        own = self.lengths[i], self.before[i], self.after[i]
+        return Intervals(*own, self.rates[:, i], self.strokes[:, i], carried)
 
 
 class Spread(NamedTuple):
@@ -112,6 +121,9 @@ def enclosed(
     turn, origin = arm.series(joints)
     of_point, of_turn = _shifted(strokes, spread)
     path_turn, path_origin = stretch.series(of_point, of_turn)
+    own_turn = path_turn[0]
+    if given.carried is not None:
+        path_turn, path_origin = given.carried.seen(path_turn, path_origin)
     between = matrix_product(np.swapaxes(path_turn, 2, 3), turn)
     off = np.concatenate([origin - path_origin, half_skew(between)], axis=2)
     _, rates = arm.tool.poses_and_rates(joints[0])
@@ -119,14 +131,14 @@ def enclosed(
     inverse, is_regular = _inverses(rates, free)
     longest = arm.longest(np.concatenate([given.before, given.after])) + _slid(arm, joints)
     longest += float(arm.sums(np.abs(spread.joints))[1].max(initial=0.0))
-    unknown = _remainders(arm, stretch, joints, strokes, longest)
+    unknown = _remainders(arm, stretch, joints, strokes, longest, given.carried)
     error = greatest((inverse @ off[..., None])[..., 0])
     error += (np.abs(inverse) @ unknown[..., None])[..., 0]
     error += (np.abs(inverse @ rates) @ spread.held[..., None])[..., 0]
     sizes = np.linalg.norm(inverse.reshape(*inverse.shape[:2], 2, 3), axis=3).transpose(2, 0, 1)
     off_middle = 1.1 * greatest(half_skew(between)).sum(axis=1)
     by_spread, turned = _of_spread(
-        stretch, spread, of_point, inverse, sizes, path_turn[0], off_middle
+        stretch, spread, of_point, inverse, sizes, own_turn, off_middle, given.carried
     )
     within = np.abs(joints[1:]).sum(axis=0)
     varied = np.einsum("nkc,ncji->nkji", inverse, arm.second_rates(joints[0], path_turn[0]))
@@ -149,25 +161,30 @@ def _of_spread(
     of_point: np.ndarray,
     inverse: np.ndarray,
     sizes: np.ndarray,
-    path_turn: np.ndarray,
+    own_turn: np.ndarray,
     off: np.ndarray,
+    carried: Carried | None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(n, k) what the poses of a spread add to |Y F|, and (n,) [rad] how far they are turned from its middle.
 
     A point that goes by s along strokes whose ways bend is off s times their slopes at the middle by how far the
-    slopes change. A stroke by a turns the tool by a w1 about an axis that the second stroke turns by up to |w2|;
-    two turns come to their sum but for half the product, and their sine but for half their product with how far
-    the tool is off the middle.
+    slopes change, and by how far what carries them turns. A stroke by a turns the tool by a w1 about an axis that
+    the second stroke turns by up to |w2|; two turns come to their sum but for half the product, and their sine but
+    for half their product with how far the tool is off the middle.
     """
     s, a, b = spread.halves.T
     own = np.linalg.norm(stretch.turns, axis=1)
-    seen = stretch.turns @ path_turn
+    seen = stretch.turns @ own_turn
     slopes = [way.slopes(of_point[0, :, k]) for k, way in enumerate(stretch.ways)]
-    by_way = np.abs(inverse[:, :, :3] @ (slopes[0] - slopes[1])[..., None])[..., 0]
+    across = slopes[0] - slopes[1]
     bends = np.array([way.bend for way in stretch.ways])
     bent = s * (np.abs(of_point[1:]).sum(axis=0) @ bends + 0.5 * s * bends.sum())
+    if carried is not None:
+        bent += s * np.linalg.norm(across, axis=1) * carried.turned
+        across = (carried.turn[0] @ across[..., None])[..., 0]
+    by_way = np.abs(inverse[:, :, :3] @ across[..., None])[..., 0]
     by_turn = np.abs(np.einsum("nkc,nac->ank", inverse[:, :, 3:], seen))
-    turned = a * own[0] + b * own[1]
+    turned = a * own[0] + b * own[1] + (0.0 if carried is None else carried.off[1])
     rest = turned * (turned + off) + own[0] * own[1] * a
     found = s[:, None] * by_way + a[:, None] * by_turn[0] + b[:, None] * by_turn[1]
     return found + sizes[0] * (bent + spread.ball)[:, None] + sizes[1] * rest[:, None], turned
@@ -218,7 +235,12 @@ def _slid(arm: Arm, joints: np.ndarray) -> float:
 
 
 def _remainders(
-    arm: Arm, stretch: Stretch, joints: np.ndarray, strokes: np.ndarray, longest: float
+    arm: Arm,
+    stretch: Stretch,
+    joints: np.ndarray,
+    strokes: np.ndarray,
+    longest: float,
+    carried: Carried | None,
 ) -> np.ndarray:
     """(n, 6) [m] and [-] what the series leave out and round away."""
     own = moved(joints)
@@ -228,9 +250,15 @@ def _remainders(
     lengths = slid + np.zeros(own.shape[:2])
     lengths[0] = longest
     path_turn, path_origin = stretch.majorants(strokes)
+    way, angle = ROUNDING * longest, ROUNDING
+    if carried is not None:
+        path_origin[0] += stretch.farthest
+        path_turn, path_origin = carried.majorants(path_turn, path_origin)
+        way = way + carried.off[0] + (carried.off[1] + ROUNDING) * path_origin[0][:, None]
+        angle += carried.off[1]
     found = np.empty((own.shape[1], 6))
-    found[:, :3] = (majorant_product(turn, lengths) + path_origin)[-1][:, None] + ROUNDING * longest
-    found[:, 3:] = majorant_product(turn, path_turn)[-1][:, None] + ROUNDING
+    found[:, :3] = (majorant_product(turn, lengths) + path_origin)[-1][:, None] + way
+    found[:, 3:] = majorant_product(turn, path_turn)[-1][:, None] + angle
     return found
 
 

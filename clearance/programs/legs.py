@@ -12,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadProgram, at
+from clearance.geometry.pose import inverse
 from clearance.programs.arm import Arm
+from clearance.programs.carriage import Carriage
 from clearance.programs.following import Follower, joints_on_path
 from clearance.programs.joint_way import RUN_UP, JointWay, fastest, limits_of_joint_move
 from clearance.programs.moves import (
@@ -132,27 +134,96 @@ def is_none(way: Way) -> bool:
     return size_of(way) < SHORTEST
 
 
-def ways_of(arm: Arm, run: Run, start: np.ndarray) -> list[PlannedWay]:
+def ways_of(
+    arm: Arm, run: Run, start: np.ndarray, carriage: Carriage | None = None, now: float = 0.0
+) -> list[PlannedWay]:
     """How the moves of a run go, from where the joints are (k,).
 
+    Args:
+        carriage: what carries their targets by itself; None for nothing. now: [s] when the run begins.
+
     Raises:
-        BadInput: an arc that is none, a target out of reach; with the move.
+        BadInput: an arc that is none, a target out of reach, a zone beside joints in a frame that moves by itself;
+            with the move.
     """
     pose, joints, found = arm.poses(start[None])[0], start, list[PlannedWay]()
+    if carriage is not None:
+        pose = inverse(carriage.at(np.array([now])).poses[0]) @ pose
     for i, move in enumerate(run):
         way: Way | None = None
         with at(move.where):
             if isinstance(move, JointMove):
-                way = JointWay.of(arm, move, joints)
+                _refuse_zone(run, carriage)
+                way = _joint_way_to(arm, move, joints, carriage, now)
                 joints = way.target
                 pose = arm.poses(joints[None])[0]
             elif isinstance(move, PathMove):
                 way = _stretch(arm, pose, move, joints)
                 if not is_none(way):
                     pose = way.poses(np.array([[1.0, 0.0]]))[0]
-                    joints = _joints_after(arm, way, joints, run[i + 1 :])
+                    # on a carriage, what needs the joints then is refused, by its zone or by its hold
+                    later = run[i + 1 :] if carriage is None else []
+                    joints = _joints_after(arm, way, joints, later)
         found.append(PlannedWay(move, way, joints, _limits_of(arm, move, way)))
     return found
+
+
+def _refuse_zone(run: Run, carriage: Carriage | None) -> None:
+    """Nothing, if no corner zone joins a joint move to what moves by itself.
+
+    Raises:
+        BadInput: one does.
+    """
+    if carriage is not None and len(run) > 1:
+        raise BadProgram(
+            f"a corner zone beside a joint move, and {carriage.name!r} moves by itself",
+            where="zone",
+            valid="write zone: 0 before and after the joint move",
+        )
+
+
+MOST_TRIES = 60
+"""Times that a joint move to what moves by itself is planned anew, until it arrives when it is planned to."""
+
+ON_TIME = 1e-11
+"""[s] by which it may arrive early or late."""
+
+
+def _joint_way_to(
+    arm: Arm, move: JointMove, joints: np.ndarray, carriage: Carriage | None, now: float
+) -> JointWay:
+    """The way of a joint move; to a pose on a carriage, where that is when the joints arrive.
+
+    Raises:
+        BadInput: it is not caught up with.
+    """
+    if move.pose is None or carriage is None:
+        return JointWay.of(arm, move, joints)
+    arrival = now
+    for i in range(MOST_TRIES):
+        pose = carriage.at(np.array([arrival])).poses[0] @ move.pose
+        try:
+            way = JointWay.of(arm, replace(move, pose=pose), joints)
+        except BadProgram:
+            if i == 0:
+                raise
+            break
+        planned, arrival = arrival, now + duration_of(arm, move, way)
+        if abs(arrival - planned) <= ON_TIME:
+            return way
+    raise BadProgram(
+        f"the joints do not catch up with a target on {carriage.name!r}, which moves on meanwhile",
+        valid="a greater speed, or a target that moves more slowly",
+    )
+
+
+def duration_of(arm: Arm, move: JointMove, way: JointWay) -> float:
+    """[s] A joint move takes that begins and ends at rest."""
+    if is_none(way):
+        return 0.0
+    return sum(
+        one.duration for one in trapezoid(*limits_of_joint_move(arm.joints, way.whole, move))
+    )
 
 
 def _stretch(arm: Arm, start: np.ndarray, move: PathMove, joints: np.ndarray) -> Stretch:

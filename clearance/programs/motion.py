@@ -14,33 +14,31 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from clearance.errors import BadDimension, BadProgram, UnknownLink, at, nearest_name
+from clearance.geometry.pose import inverse
 from clearance.programs.arm import Arm
+from clearance.programs.carriage import SMOOTH, Carriage
 from clearance.programs.carriers import arm_of, on_carriers, start_of
 from clearance.programs.corner import PATH_ERROR, corner_of
-from clearance.programs.following import Follower
+from clearance.programs.following import Follower, Ride
 from clearance.programs.inverse import joints_at
 from clearance.programs.joint_corner import JointCorner, bow
 from clearance.programs.joint_way import JointWay
-from clearance.programs.legs import Corner, Leg, PlannedWay, legs_of, ways_of
-from clearance.programs.moves import STEP_TURN, JointMove, Move, PathMove, Program, Wait
-from clearance.programs.path_samples import PathSamples
+from clearance.programs.laid_samples import JumpingSamples, LaidSamples
+from clearance.programs.legs import Corner, Leg, PlannedWay, duration_of, legs_of, ways_of
+from clearance.programs.moves import STEP_TURN, JointMove, Move, PathMove, Program, ToolChange, Wait
+from clearance.programs.path_samples import SAME_SPEED, PathSamples
 from clearance.programs.time_law import Piece
-from clearance.programs.tool_path import Stretch
+from clearance.programs.tool_path import Stretch, line
 from clearance.world.corner_zone import CornerZone
+from clearance.world.notice import listed
 from clearance.world.robot import Robot
 from clearance.world.trajectory import MoveSpan, Trajectory, UnprovenSpan
 
 MOST_HALVINGS = 8
 """Times that intervals are halved until that is proven."""
 
-SAME_SPEED = 1e-5
-"""[rad/s] or [m/s]: speeds of a joint that differ by less differ by rounding."""
-
 MOST_WIDE = 4096
 """Intervals that are halved at once; where more are not proven, halves would not be either."""
-
-MOST_SAMPLES = 1_000_000
-"""Most samples of a program: a step in the wrong unit needs more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,11 +47,12 @@ class ProgramMotion:
 
     Attributes:
         trajectory: samples with velocities; its `path_error` holds for lines and arcs.
-        notes: what was assumed, one line each.
+        notes: what was assumed, one line each. doubtful: the same that a verdict has to name.
     """
 
     trajectory: Trajectory
     notes: tuple[str, ...] = ()
+    doubtful: tuple[str, ...] = ()
 
 
 def motion_of(robot: Robot, program: Program) -> ProgramMotion:
@@ -72,12 +71,12 @@ def motion_of(robot: Robot, program: Program) -> ProgramMotion:
     arm = arm_of(robot, program)
     samples = _Samples(arm, program, start_of(arm, program))
     for part in program.parts:
-        samples.arm = arm = replace(
-            arm, link_from_tool=part.link_from_tool, seen_from=part.seen_from
-        )
+        seen_from = "" if part.seen_from in program.carriages else part.seen_from
+        samples.arm = arm = replace(arm, link_from_tool=part.link_from_tool, seen_from=seen_from)
         for run in part.runs:
-            ways = ways_of(arm, run, samples.at)
-            samples.note_targets(ways)
+            carriage = program.carriage_of(run)
+            ways = ways_of(arm, run, samples.at, carriage, samples.now)
+            samples.note_targets(ways, carriage)
             for leg in legs_of(arm, ways):
                 with at(leg.move.where):
                     samples.add(leg)
@@ -89,75 +88,129 @@ class _Samples:
     """The samples of legs, one after another.
 
     Attributes:
-        at: (k,) where the joints are. now: [s]. error: [rad or m] the greatest proven deviation on lines and arcs.
+        at: (k,) where the joints are. error: [rad or m] the greatest proven deviation on lines and arcs.
+        rides: the move before is on a carriage. may_jump: it is, or that of now, so that speeds change at once.
     """
 
     arm: Arm
     program: Program
     at: np.ndarray
-    now: float = 0.0
     error: float = 0.0
-    times: list[np.ndarray] = field(default_factory=list)
-    positions: list[np.ndarray] = field(default_factory=list)
-    velocities: list[np.ndarray] = field(default_factory=list)
+    rides: bool = False
+    may_jump: bool = False
     spans: list[MoveSpan] = field(default_factory=list)
     corners: list[CornerZone] = field(default_factory=list)
     unproven: list[UnprovenSpan] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.times.append(np.zeros(1))
-        self.positions.append(self.at[None])
-        self.velocities.append(np.zeros((1, len(self.at))))
+        self.laid = LaidSamples(self.at)
+
+    @property
+    def now(self) -> float:
+        """[s] When the next leg begins."""
+        return self.laid.now
 
     def add(self, leg: Leg) -> None:
         """Samples what a leg makes of the joints."""
-        began = self.now
-        if isinstance(leg.move, Wait):
-            self._stand(leg.move.seconds)
+        began, rides = self.now, self._carriage_of(leg.move) is not None
+        self.may_jump = rides or self.rides
+        if isinstance(leg.move, Wait) and leg.move.seen_from:
+            self._ride(leg.move)
+        elif isinstance(leg.move, Wait):
+            still = np.zeros((2, len(self.at)))
+            self.laid.add(
+                np.array([0.0, leg.move.seconds]), self.at + still, still, still, self.may_jump
+            )
         elif leg.way is None and leg.corner is not None:
             self._beside_joints(leg, leg.corner)
         elif isinstance(leg.way, JointWay):
             self._straight(leg, leg.way)
         elif leg.way is not None and isinstance(leg.move, PathMove):
-            self._along(leg, leg.way, leg.move)
-        self._require_limits(self.positions[-1])
+            self._along(leg, leg.way)
+        self.rides = rides
+        self._require_limits(self.laid.positions[-1])
         if self.spans and self.spans[-1].name == leg.move.name:
             self.spans[-1] = replace(self.spans[-1], end=self.now)
         else:
             self.spans.append(MoveSpan(leg.move.name, began, self.now, leg.move.where))
 
-    def note_targets(self, ways: Sequence[PlannedWay]) -> None:
-        """Says which joints are taken in moves to a pose."""
+    def _carriage_of(self, move: Move) -> Carriage | None:
+        """What the tool goes on with in a move."""
+        return (
+            self.program.carriages.get(move.seen_from)
+            if isinstance(move, PathMove | Wait)
+            else None
+        )
+
+    def note_targets(self, ways: Sequence[PlannedWay], carriage: Carriage | None) -> None:
+        """Says which joints are taken in moves to a pose; on a carriage, when it is there."""
         names = [joint.name for joint in self.arm.joints]
         for move, way, *_ in ways:
             if isinstance(way, JointWay) and isinstance(move, JointMove) and move.pose is not None:
                 target = np.round(way.target, 9) + 0.0  # 0 but for rounding is 0, and never -0
                 texts = [f"{name} {at:.4g}" for name, at in zip(names, target, strict=True)]
+                when = ""
+                if carriage is not None:
+                    arrival = self.now + duration_of(self.arm, move, way)
+                    when = f", where {carriage.name!r} is at {arrival:.3f} s when they arrive,"
                 self.notes.append(
-                    f"{move.name}: the nearest joints found for its pose are taken [rad or m]: {', '.join(texts)}"
+                    f"{move.name}: the nearest joints found for its pose{when} are taken [rad or m]: "
+                    + ", ".join(texts)
                 )
 
     def motion(self) -> ProgramMotion:
         """All of them, joints that are not of the arm at rest."""
         own = [joint.name for joint in self.arm.joints]
         others = [name for name in self.program.start if name not in own]
-        positions = np.concatenate(self.positions)
+        samples = self.laid.joined(self.program.carriages.values())
+        times, positions, velocities, off = samples.without_jumps(0.25 * PATH_ERROR)
         rest = np.tile(np.array([self.program.start[name] for name in others]), (len(positions), 1))
         trajectory = Trajectory(
-            times=np.concatenate(self.times),
+            times=times,
             joint_names=(*own, *others),
             positions=np.hstack([positions, rest]),
-            velocities=np.hstack([np.concatenate(self.velocities), np.zeros_like(rest)]),
-            path_error=self.error,
+            velocities=np.hstack([velocities, np.zeros_like(rest)]),
+            path_error=self.error + off,
             corners=tuple(self.corners),
             moves=tuple(self.spans),
             unproven=tuple(self.unproven),
         )
-        return ProgramMotion(trajectory, tuple(self.notes))
+        notes = (*self._on_carriages(), *self.notes)
+        return ProgramMotion(trajectory, notes, tuple(self._on_jumps(samples)))
 
-    def _stand(self, seconds: float) -> None:
-        self._append(np.array([seconds]), self.at[None], np.zeros((1, len(self.at))))
+    def _on_carriages(self) -> Iterator[str]:
+        """A line for each thing that moves by itself, on the moves that go with it."""
+        for name in self.program.carriages:
+            moves = [
+                one.name for one in self.program.moves
+                if not isinstance(one, ToolChange) and one.seen_from == name
+            ]  # fmt: skip
+            yield f"{listed(moves, 8)}: seen from {name!r}, which moves by a table of its own"
+
+    def _on_jumps(self, samples: JumpingSamples) -> Iterator[str]:
+        """A line on where the tool changes its speed at once, by more than from row to row of a table."""
+        i = samples.jumps
+        by = samples.leave[i] - samples.come[i]
+        _, rates = self.arm.tool.poses_and_rates(samples.positions[i])
+        changes = (rates @ by[..., None])[..., 0]
+        ways, turns = (np.linalg.norm(changes[:, own], axis=1) for own in (slice(3), slice(3, 6)))
+        told = np.flatnonzero((ways > SMOOTH) | (turns > SMOOTH))
+        if not self.program.carriages or not len(told):
+            return
+        sizes, unit = (ways, "m/s") if (ways > SMOOTH).any() else (turns, "rad/s")
+        most = int(np.argmax(sizes))
+        times = f"{len(told)} times, most" if len(told) > 1 else "once,"
+        yield (
+            f"the tool takes on, or loses, the speed of {listed([*self.program.carriages])} at once ({times} by "
+            f"{sizes[most]:.3g} {unit} at {samples.times[i[most]]:.3f} s); a real robot lags, which is not counted"
+        )
+
+    def _ride(self, wait: Wait) -> None:
+        """The tool stays where it is on a carriage."""
+        carriage = self.program.carriages[wait.seen_from].at(np.array([self.now])).poses[0]
+        pose = inverse(carriage) @ self.arm.poses(self.at[None])[0]
+        self._along(Leg(wait, pieces=(Piece(wait.seconds, 0.0, 0.0, 0.0),)), line(pose, pose))
 
     def _straight(self, leg: Leg, way: JointWay) -> None:
         """All joints in proportion; exact, since a cubic holds what a constant acceleration makes of them."""
@@ -166,20 +219,24 @@ class _Samples:
         for piece in leg.pieces:
             moved = way.joints(piece.at(np.linspace(0.0, piece.duration, 33)))
             n = self._n_samples(self.arm.poses(moved))
-            times = np.linspace(0.0, piece.duration, n + 1)[1:]
+            times = np.linspace(0.0, piece.duration, n + 1)
             rates = way.share * piece.rates_at(times)[:, None] * way.whole
-            self._append(times, way.joints(piece.at(times)), rates)
+            self.laid.add(times, way.joints(piece.at(times)), rates, rates, self.may_jump)
         self.at = way.joints(np.ones(1))[0]
-        self.positions[-1][-1] = self.at
-        if way.last == 1.0:
-            self.velocities[-1][-1] = 0.0
+        self.laid.end_at(self.at, way.last == 1.0)
 
-    def _along(self, leg: Leg, stretch: Stretch, move: PathMove) -> None:
+    def _along(self, leg: Leg, stretch: Stretch) -> None:
         """What the tool's path makes of the joints."""
-        follower = Follower(self.arm, stretch, self.at)
+        if not leg.pieces:
+            return
+        move, carriage = leg.move, self._carriage_of(leg.move)
+        ride = None if carriage is None else Ride(carriage, self.now, leg.pieces)
+        follower = Follower(self.arm, stretch, self.at, ride)
         samples, wide = self._enclosed(follower, leg.pieces, self._seam)
         if leg.corner is not None:
             corner = stretch.poses(np.array([[1.0, 0.0]]))
+            if ride is not None:
+                corner = ride.moved(np.array([0.5 * ride.duration])).poses @ corner
             near = samples.positions[len(samples.positions) // 2]
             self._require_limits(joints_at(self.arm.tool, corner, near[None]).positions)
         if leg.corner is not None and not wide.any():
@@ -192,7 +249,9 @@ class _Samples:
             self._leave_unproven(move, samples.times[[0, -1]], SINGULAR)
         for first, last in _stretches_of(wide):
             self._leave_unproven(move, samples.times[[first, last]], SINGULAR)
-        self._append(samples.times[1:], samples.positions[1:], samples.velocities[1:])
+        self.laid.add(
+            samples.times, samples.positions, samples.velocities, samples.leaving, self.may_jump
+        )
         self.at = samples.positions[-1]
 
     def _enclosed(
@@ -237,7 +296,7 @@ class _Samples:
             joints.append(samples.positions[-1])
             last, wide = samples.velocities[-1], np.maximum(wide, bow(samples))
         self._require_limits(np.array(joints))
-        rates = np.stack([self.velocities[-1][-1], 2.0 * piece.rate * last])
+        rates = np.stack([self.laid.rates, 2.0 * piece.rate * last])
         zone = JointCorner(joints[0], joints[1], joints[2], rates, wide, piece.duration)
         n = self._n_samples(self.arm.poses(zone.samples(32)[1]))
         times, positions, velocities = zone.samples(n)
@@ -247,7 +306,7 @@ class _Samples:
             self._add_corner(found, corner)
         else:
             self._leave_unproven(leg.move, times[[0, -1]], SINGULAR)
-        self._append(times[1:], positions[1:], velocities[1:])
+        self.laid.add(times, positions, velocities, velocities, self.may_jump)
         self.at = positions[-1]
 
     def _seam(self, samples: PathSamples) -> float:
@@ -256,7 +315,9 @@ class _Samples:
         Raises:
             BadInput: joints would change their speed at once, since moves that a zone joins hold others.
         """
-        rates = np.abs(samples.velocities[0] - self.velocities[-1][-1]).max()
+        rates = np.abs(samples.leaving[0] - self.laid.rates).max()
+        if rates > SAME_SPEED and self.may_jump:
+            rates = 0.0  # the first cubic begins as the samples do
         if rates > SAME_SPEED:
             raise BadProgram(
                 "a joint changes its speed at once where a corner zone begins or ends",
@@ -273,17 +334,6 @@ class _Samples:
         cosines = 0.5 * (np.trace(turned, axis1=1, axis2=2) - 1.0)
         turns = n * np.arccos(np.clip(cosines, -1.0, 1.0)).max()
         return max(1, int(np.ceil(ways / self.program.step)), int(np.ceil(turns / STEP_TURN)))
-
-    def _append(self, times: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> None:
-        """Adds samples that begin after now."""
-        self.times.append(self.now + times)
-        self.positions.append(positions)
-        self.velocities.append(velocities)
-        self.now += float(times[-1])
-        if sum(map(len, self.times)) > MOST_SAMPLES:
-            raise BadDimension(
-                f"more than {MOST_SAMPLES:,} samples", where="step", valid="write a larger step"
-            )
 
     def _require_limits(self, positions: np.ndarray) -> None:
         """Nothing, if joints at positions (n, k) are within their limits.

@@ -12,6 +12,7 @@ from itertools import zip_longest
 import numpy as np
 
 from clearance.errors import BadProgram, at
+from clearance.programs.carriage import Carriage
 from clearance.programs.time_law import Limits
 
 
@@ -22,11 +23,12 @@ class JointMove:
     Attributes:
         name: what the report calls it. where: in which file and field.
         joints: targets by name [rad or m]; None where `pose` is given. pose: (4, 4) of the tool [m].
-        seen_from: the link that the pose is seen from; the root if empty.
         speed: share of the joints' greatest speeds. zone: [m] radius of the corner zone at its end.
         time: [s] from standstill to standstill, whatever the speed; None if no time is asked for.
         leading: the speed of the joint that goes farthest, and its acceleration [rad/s] and [rad/s^2]; None if
             `speed` says it.
+        seen_from: the link, or the carriage, that the pose is seen from; the root if empty. By a carriage it is
+            where that is when the joints arrive.
         near: joints to which those for the pose are nearest; those that are not named are where they are.
         within: from where to where joints for the pose may be, by name.
     """
@@ -57,7 +59,7 @@ class PathMove:
         time: as of a joint move, whatever the speeds.
         hold: joints that go straight to these values meanwhile [rad or m], by name.
         free: joints beside the arm that follow the path too.
-        seen_from: the link that the pose and the point are seen from; the root if empty.
+        seen_from: the link, or the carriage, that the pose and the point are seen from; the root if empty.
     """
 
     name: str
@@ -78,11 +80,12 @@ class PathMove:
 
 @dataclass(frozen=True, eq=False)
 class Wait:
-    """Nothing moves for some time [s]."""
+    """Nothing moves for some time [s]; seen from a carriage, where the tool stays on it."""
 
     name: str
     where: str
     seconds: float
+    seen_from: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,8 +112,9 @@ class Program:
         start: the joints at its beginning by name [rad or m]; joints that are not named stay where the case has
             them.
         step: [m] the most that the tool moves from sample to sample; it turns by at most `STEP_TURN`.
-        seen_from: the link that its targets are seen from, which may differ from move to move until `parts` are
-            taken; the root if empty.
+        seen_from: the link, or the carriage, that its targets are seen from, which may differ from move to move
+            until `parts` are taken; the root if empty.
+        carriages: what moves by itself and carries frames, by name.
     """
 
     link: str
@@ -119,6 +123,7 @@ class Program:
     start: dict[str, float]
     step: float = 0.002
     seen_from: str = ""
+    carriages: Mapping[str, Carriage] = field(default_factory=dict)
 
     @property
     def named(self) -> frozenset[str]:
@@ -130,6 +135,11 @@ class Program:
             elif isinstance(one, PathMove):
                 named |= {*(one.hold or {}), *one.free}
         return frozenset(named)
+
+    def carriage_of(self, run: Run) -> Carriage | None:
+        """What carries the targets of a run by itself."""
+        targets = (one.seen_from for one in run if isinstance(one, JointMove | PathMove))
+        return next((self.carriages[one] for one in targets if one in self.carriages), None)
 
     @property
     def parts(self) -> Iterator[Program]:
@@ -180,7 +190,7 @@ def has_zone(move: Move) -> bool:
 
 
 def _seen_from(run: Run, before: str) -> str:
-    """The link that the targets of a run are seen from; the one before where it has none.
+    """What the targets of a run are seen from; the one before where it has none.
 
     Raises:
         BadInput: there are two.

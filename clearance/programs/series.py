@@ -47,6 +47,18 @@ def sine_and_cosine(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return sine, cosine
 
 
+def turns_about(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """(ORDER + 1, n, 3, 3) the series of the rotations about unit axes (3,) or (n, 3) by a series of angles
+    (ORDER + 1, n) [rad] (Rodrigues)."""
+    cross = np.cross(axis[..., None, :], -np.eye(3))
+    sine, cosine = sine_and_cosine(angle)
+    versine = -cosine
+    versine[0] += 1.0
+    found = sine[:, :, None, None] * cross + versine[:, :, None, None] * (cross @ cross)
+    found[0] += np.eye(3)
+    return np.asarray(found)
+
+
 def half_skew(matrices: np.ndarray) -> np.ndarray:
     """(..., 3) half the skew part of matrices (..., 3, 3): of a rotation, the sine of its angle times its axis."""
     pairs = [

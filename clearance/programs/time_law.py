@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -65,3 +67,16 @@ def trapezoid(rate: float, change: float, first: float = 0.0, last: float = 0.0)
             pieces.append(Piece(duration, share, now, by))
             share, now = share + duration * (now + 0.5 * by * duration), now + by * duration
     return pieces
+
+
+def cut_at(pieces: Sequence[Piece], times: np.ndarray) -> Iterator[Piece]:
+    """The same pieces, cut at times (m,) [s] from their beginning that lie within them."""
+    began = 0.0
+    for piece in pieces:
+        own = times - began
+        inside = own[(own > SHORTEST) & (own < piece.duration - SHORTEST)]
+        edges = [0.0, *inside.tolist(), piece.duration]
+        for start, end in pairwise(edges):
+            share, rate = (float(of(np.array(start))) for of in (piece.at, piece.rates_at))
+            yield Piece(end - start, share, rate, piece.change)
+        began += piece.duration

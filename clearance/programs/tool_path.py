@@ -26,6 +26,7 @@ from clearance.programs.series import (
     matrix_product,
     moved,
     sine_and_cosine,
+    turns_about,
 )
 
 
@@ -176,6 +177,11 @@ class Stretch:
     def length(self) -> float:
         """[m] Of the first stroke's way."""
         return self.ways[0].length
+
+    @property
+    def farthest(self) -> float:
+        """[m] No point of it is farther from the origin."""
+        return float(np.linalg.norm(self.start[:3, 3])) + sum(way.length for way in self.ways)
 
     @property
     def turned(self) -> float:
@@ -331,13 +337,8 @@ def _turn_of(rotation: np.ndarray) -> np.ndarray:
 def _turned_by(vector: np.ndarray, stroke: np.ndarray) -> np.ndarray:
     """(ORDER + 1, n, 3, 3) the series of exp(stroke vector) (Rodrigues)."""
     angle = float(np.linalg.norm(vector))
-    found = np.zeros((*stroke.shape, 3, 3))
-    found[0] = np.eye(3)
     if angle == 0.0:
+        found = np.zeros((*stroke.shape, 3, 3))
+        found[0] = np.eye(3)
         return found
-    x, y, z = vector / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, cosine = sine_and_cosine(angle * stroke)
-    found += sine[:, :, None, None] * cross - cosine[:, :, None, None] * (cross @ cross)
-    found[0] += cross @ cross
-    return found
+    return turns_about(vector / angle, angle * stroke)

@@ -98,10 +98,19 @@ def require_clocks(case: Case) -> None:
     """Nothing, if a case's windows say when they are, whatever the clocks of its actors.
 
     Raises:
-        BadInput: a window of a rule or an allowance where clocks are not tied, or a part that changes clocks.
+        BadInput: a window of a rule or an allowance where clocks are not tied, a part that changes clocks, or a
+            program whose tool goes with what has another clock.
     """
     if case.clock.slack == 0.0:
         return
+    for placed in case.robots:
+        if placed.trajectory is not None and placed.trajectory.rides:
+            raise Contradiction(
+                f"the tool of robot {placed.robot.name!r} goes with {placed.trajectory.rides[0]!r}, and their "
+                "clocks are not tied",
+                where="clock",
+                valid="clock: common, or frames on what stands",
+            )
     for field, rows in (("limits.rules", case.limits.rules), ("allow", case.allow)):
         for i, row in enumerate(rows):
             if row.window.ends:

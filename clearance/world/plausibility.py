@@ -52,6 +52,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     found += notices_on_sizes(case)
     found += notices_on_tables(case)
     found += notices_on_clocks(case)
+    found += _rides_with_tolerance(case)
     moves = [placed.trajectory is not None for placed in case.robots]
     moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:
@@ -230,6 +231,18 @@ def _times_lacking(case: Case) -> Iterator[Notice]:
         else:
             covers = f"all of it has to be within the slack of {case.clock.slack:g} s"
             yield Notice(Severity.WARNING, "clocks", f"{text}: {covers}")
+
+
+def _rides_with_tolerance(case: Case) -> Iterator[Notice]:
+    """Warnings on tools that go with what has tolerances, which do not move them."""
+    for placed in case.robots if case.tolerance is not None else ():
+        if placed.trajectory is not None and placed.trajectory.rides:
+            name, on = placed.robot.name, listed([*placed.trajectory.rides])
+            text = (
+                f"the tool of robot {name!r} goes with {on} exactly: a tolerance of {on} does not move the tool; "
+                f"give robot {name!r} one as large if its controller measures where {on} is"
+            )
+            yield Notice(Severity.WARNING, "program", text, name)
 
 
 def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:

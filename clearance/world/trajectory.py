@@ -113,6 +113,7 @@ class Trajectory:
         corners: stretches on which a controller may leave the path, and how far links may then be off.
         unproven: stretches of a program that are not proven.
         drives: other robots that its program moves too, whose own trajectories are their part of it.
+        rides: what moves by itself and carries frames of the program, whose tool goes with it.
         wrap: one of `WRAPS`, or None if unknown; a case with such a step is then suspect.
             With the shortest way, a `PlacedRobot` subtracts whole turns.
 
@@ -144,6 +145,7 @@ class Trajectory:
     unread: tuple[str, ...] = ()
     unproven: tuple[UnprovenSpan, ...] = ()
     drives: tuple[str, ...] = ()
+    rides: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         n_samples, n_joints = self.positions.shape

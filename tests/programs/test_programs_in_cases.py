@@ -499,8 +499,9 @@ def beside_a_turntable(folder: Path, moves: list, rows: str = "", **more) -> Pat
     return folder / "case.yaml"
 
 
+@pytest.mark.parametrize("base", [{}, {"on": "far", "xyz": [-3.0, -5.0, -5.0]}])
 @pytest.mark.parametrize("rows", ["", "0,0.5\n9,0.5\n"])
-def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
+def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows, base):
     start = tool_at(START)[:3, 3] + np.array(BASE)
     turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])
     to = (start + [0.0, 0.1, 0.0]) - [2.0, 0.0, PLATE]
@@ -508,6 +509,9 @@ def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
     move = {"lin": {"to": {"frame": "jig", "xyz": local}}}
     frames = {"jig": {"on": "part"}}
     path = beside_a_turntable(tmp_path, [move], rows, frames=frames)
+    content = yaml.safe_load(path.read_text())
+    content["robots"][1]["base"] |= base
+    path.write_text(yaml.safe_dump(content))
     found = cl.load_case(path).robots[0].trajectory
     world = {"lin": {"to": {"xyz": (start + [0.0, 0.1, 0.0]).tolist()}}}
     same = cl.load_case(case(tmp_path, [world], [far()])).robots[0].trajectory
@@ -517,9 +521,7 @@ def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows):
 @pytest.mark.parametrize(
     ("on", "told"),
     [
-        ("turntable/plate", "'turntable/plate' moves, so the place"),
-        ("part", "'part' moves, so the place"),
-        ("far", "'far' moves, so the place"),
+        ("far", "no frame can be on 'far': it changes hands"),
         ("arm/forearm", "3 joints are free .* a frame on what the arm does not move"),
         ("turntable/late", "'turntable/late' is not there; did you mean 'turntable/plate'"),
     ],

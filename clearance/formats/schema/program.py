@@ -35,8 +35,8 @@ class Tool(Pose):
 
 
 class Frame(Pose):
-    """A work frame: its pose on `world`, `base`, another frame, an obstacle or link that stands, or a link that
-    the program moves."""
+    """A work frame: its pose on `world`, `base`, another frame, an obstacle, or a link. These stand, move by
+    tables of their own, or are moved by the program. Lines and arcs are seen from the frame, and go with it."""
 
     on: Name = WORLD
 
