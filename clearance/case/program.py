@@ -222,7 +222,11 @@ class _Frames:
         """
         if name not in self._places.names:
             known = (*self._given.frames, schema.WORLD, schema.BASE, *self._places.names)
-            raise BadProgram(f"{name!r} is not there", valid=nearest_name(name, known))
+            robots = {one.robot.name for one in (self._cell.own, *self._cell.around.robots)}
+            fault = f"{name!r} is not there"
+            if "/" in name and name.partition("/")[0] not in robots:
+                fault += ", or on a robot with a program of its own"
+            raise BadProgram(fault, valid=nearest_name(name, known))
         found = self._places.of(name)
         if isinstance(found, str):
             raise BadProgram(f"no frame can be on {name!r}: it {found}", valid=NOT_PLACED)

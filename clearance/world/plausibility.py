@@ -227,6 +227,8 @@ def _times_lacking(case: Case) -> Iterator[Notice]:
         text = f"the times of {own[0]} leave out {listed(asked.left_out)}, and {listed(others)} moves too"
         if case.clock.slack == 0.0:
             says = "clock: {slack: seconds} says by how much their times may be off"
+            if asked.rides:
+                says = f"its tool goes with {listed([*asked.rides])}, so waits of their length have to be there"
             yield Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
         else:
             covers = f"all of it has to be within the slack of {case.clock.slack:g} s"
