@@ -13,6 +13,7 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.world.carrier_error import CarrierError
+from clearance.world.field_types import require_types
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 
@@ -32,6 +33,7 @@ class Body:
     origin: str = ""
 
     def __post_init__(self) -> None:
+        require_types(self, name=str)
         if not isinstance(self.shape, Polyhedron):
             with at(f"body {self.name!r}"):
                 object.__setattr__(self, "shape", Polyhedron.from_trimesh(self.shape).outward())
@@ -86,6 +88,7 @@ class Obstacle:
                 f"an obstacle of a {type(self.body).__name__}",
                 valid="Obstacle(Body(name, shape), pose)",
             )
+        require_types(self, mount=(Mount, None), moves=(PoseTable, None))
         with at(f"obstacle {self.name!r}"):
             object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))
             checked_padding(self.padding)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from clearance.errors import BadTime, Contradiction
+from clearance.world.field_types import require_types
 from clearance.world.timing import Window
 
 
@@ -36,6 +37,7 @@ class Carry:
     exact_grasp: bool = False
 
     def __post_init__(self) -> None:
+        require_types(self, part=str, by=str, window=Window)
         if not math.isfinite(self.window.start):
             raise BadTime(f"part {self.part!r} is carried from no time", valid="from: seconds")
         if self.part == self.by:

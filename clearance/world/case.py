@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from numbers import Real
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
 from clearance.errors import (
+    BadInput,
     BadTime,
     Contradiction,
     NothingToMeasure,
@@ -28,11 +30,12 @@ from clearance.world.distinct_bodies import (
     require_other_names,
     require_surfaces,
 )
+from clearance.world.field_types import require_two_patterns, require_types
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_links, checked_name, require_own_names
-from clearance.world.notice import Notice
+from clearance.world.notice import Notice, accepted_kind
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.recording import Recording
 from clearance.world.robot import Robot
@@ -44,6 +47,10 @@ from clearance.world.wrap import meant
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
+
+
+JOINT_RULES = ("warn", "fail")
+"""What a joint beyond its limits is."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +75,10 @@ class Limits:
     rounding: float = field(default=0.0, compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        require_types(self, rules=[Rule])
+        if self.joints not in JOINT_RULES:
+            where, valid = "Limits.joints", f"one of {', '.join(JOINT_RULES)}"
+            raise BadInput(f"{self.joints!r:.60} is given", where=where, valid=valid)
         fail = checked_level(self.fail, "fail")
         warn = None if self.warn is None else checked_level(self.warn, "warn")
         object.__setattr__(self, "fail", fail)
@@ -148,6 +159,9 @@ class SelfClearance:
     matrix: CollisionMatrix | None = None
     trust_never: bool = False
 
+    def __post_init__(self) -> None:
+        require_types(self, matrix=(CollisionMatrix, None))
+
 
 @dataclass(frozen=True, eq=False)
 class PlacedRobot:
@@ -160,7 +174,8 @@ class PlacedRobot:
         timing: when its trajectory is followed.
         fixed_positions: values [rad] or [m] of moving joints that the trajectory does not name.
         exclude_links: links that are not measured.
-        self_clearance: whether its links are measured against one another, and which pairs are excused.
+        self_clearance: True if its links are measured against one another; a `SelfClearance` also says which
+            pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
         motion_limits: how fast joints may be, where more than the robot's own file is known.
         path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
@@ -185,6 +200,13 @@ class PlacedRobot:
     recording: Recording | None = None
 
     def __post_init__(self) -> None:
+        if isinstance(self.self_clearance, bool):
+            asked = SelfClearance() if self.self_clearance else None
+            object.__setattr__(self, "self_clearance", asked)
+        require_types(
+            self, robot=Robot, trajectory=(Trajectory, None), self_clearance=(SelfClearance, None),
+            mount=(Mount, None), timing=Timing, padding=Mapping, fixed_positions=Mapping, exclude_links=[str],
+        )  # fmt: skip
         with at("world_from_base"):
             object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
             if self.mount is not None and not np.array_equal(self.world_from_base, np.eye(4)):
@@ -267,6 +289,7 @@ class Clock:
     slack: float = 0.0
 
     def __post_init__(self) -> None:
+        require_types(self, slack=Real)
         if not self.slack >= 0.0:
             raise BadTime(f"the slack of the clock is {self.slack} s", valid="0 or more")
 
@@ -320,11 +343,21 @@ class Case:
     def __post_init__(self) -> None:
         if not self.robots:
             raise NothingToMeasure(f"case {self.name!r} has no robot", valid="at least one")
+        require_types(
+            self, name=str, robots=[PlacedRobot], obstacles=[Obstacle], limits=Limits, carries=[Carry],
+            clock=Clock, tolerance=(Budget, None), waivers=[Waiver], profiles=[ReservedSpace],
+            accept=[str], allow=[object],
+        )  # fmt: skip
         checked_name(self.name)
         allow = (
-            row if isinstance(row, Allowance) else Allowance((row[0], row[1])) for row in self.allow
+            row
+            if isinstance(row, Allowance)
+            else Allowance(require_two_patterns(self, "allow", row))
+            for row in self.allow
         )
         object.__setattr__(self, "allow", tuple(allow))
+        with at("accept"):
+            object.__setattr__(self, "accept", tuple(map(accepted_kind, self.accept)))
         _require_bodies(self)
 
     def __repr__(self) -> str:

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import (
     JointCourse,
@@ -46,12 +45,7 @@ def notices_on_joints(
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
         extents: `joint_extents`, where they are known.
-
-    Raises:
-        BadInput: another rule.
     """
-    if rule not in ("warn", "fail"):
-        raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
     asked = placed.trajectory
     if _all_within(joint_extents(placed) if extents is None else extents, asked):
         return []

@@ -8,6 +8,7 @@ import numpy as np
 
 from clearance.errors import at
 from clearance.geometry.pose import validated_pose
+from clearance.world.field_types import require_types
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,5 +24,6 @@ class Mount:
     pose: np.ndarray = field(default_factory=lambda: np.eye(4))
 
     def __post_init__(self) -> None:
+        require_types(self, on=str)
         with at("pose"):
             object.__setattr__(self, "pose", validated_pose(self.pose))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from clearance.errors import BadDimension, BadInput
+from clearance.world.field_types import require_two_patterns, require_types
 from clearance.world.timing import ALWAYS, Window
 
 DEFAULT = "default"
@@ -36,6 +37,10 @@ class PairPattern:
     between: tuple[str, str]
     window: Window = ALWAYS
     while_carried: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "between", require_two_patterns(self, "between", self.between))
+        require_types(self, window=Window, while_carried=(str, None))
 
     def is_active(self, start: float, end: float, carried: Collection[str]) -> bool:
         """True if it applies from `start` to `end` [s], between which no window begins or ends."""
@@ -88,6 +93,7 @@ class Rule(PairPattern):
     warn: float | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not self.name:
             object.__setattr__(self, "name", " - ".join(self.between))
         if self.name == DEFAULT:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from numbers import Real
 
 import numpy as np
 
 from clearance.errors import BadInput, BadTime
+from clearance.world.field_types import require_types
 
 AFTER = ("hold", "loop", "absent")
 """After its last sample an actor stays there, begins again, or is not in the cell, which it is not
@@ -34,6 +36,7 @@ class Timing:
     said: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        require_types(self, start=Real, rate=Real)
         if not math.isfinite(self.start):
             raise BadTime(f"start is {self.start}", valid="a finite number of seconds")
         if not 0.0 < self.rate < math.inf:
@@ -89,6 +92,7 @@ class Window:
     end: float = math.inf
 
     def __post_init__(self) -> None:
+        require_types(self, start=Real, end=Real)
         if not self.start < self.end:
             raise BadTime(
                 f"from {self.start:g} s until {self.end:g} s", valid="`until` must be after `from`"

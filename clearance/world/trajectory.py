@@ -11,6 +11,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
 from clearance.world.corner_zone import CornerZone
+from clearance.world.field_types import require_types
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing
 
@@ -153,8 +154,9 @@ class Trajectory:
         return f"<Trajectory: samples {n_samples}, joints {n_joints}, {span}>"
 
     def __post_init__(self) -> None:
+        require_types(self, joint_names=[str])
         for name in ("times", "positions", "velocities"):
-            if getattr(self, name) is not None:
+            if getattr(self, name) is not None or name != "velocities":
                 object.__setattr__(self, name, _numbers(getattr(self, name), name))
         self._refuse_bad_samples()
         if self.wrap not in (None, *WRAPS):

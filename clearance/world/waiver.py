@@ -34,6 +34,7 @@ class Waiver(PairPattern):
     shared: bool = False
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         object.__setattr__(self, "at_least", checked_level(self.at_least, "at_least"))
         for name in ("reason", "by"):
             if not getattr(self, name).strip():

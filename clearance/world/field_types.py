@@ -1,0 +1,60 @@
+"""The types of what a constructor is given, in one line each. Not for: values, which each type checks itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from numbers import Real
+from typing import Any
+
+from clearance.errors import BadInput
+
+_NAMES: dict[type, str] = {Real: "number", Mapping: "mapping"}
+
+Kind = type | list[type] | tuple[type, None]
+"""A type; a list of one for a sequence of such; a pair with None where it may be None."""
+
+
+def require_types(made: object, **kinds: Kind) -> None:
+    """Nothing, if each field of an object is of its type.
+
+    Raises:
+        BadInput: the first that is not: its class and name, what is given, and what is needed.
+    """
+    for name, kind in kinds.items():
+        given = getattr(made, name)
+        if isinstance(kind, list):
+            _require_each(made, name, given, kind[0])
+        elif isinstance(kind, tuple):
+            if given is not None and not isinstance(given, kind[0]):
+                raise _wrong(made, name, given, _article(kind[0]))
+        elif not isinstance(given, kind):
+            raise _wrong(made, name, given, _article(kind))
+
+
+def _require_each(made: object, name: str, given: Any, kind: type) -> None:
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        raise _wrong(made, name, given, f"a sequence of {kind.__name__}")
+    for one in given:
+        if not isinstance(one, kind):
+            raise _wrong(made, name, one, _article(kind))
+
+
+def require_two_patterns(made: object, name: str, given: Any) -> tuple[str, str]:
+    """Two patterns of names.
+
+    Raises:
+        BadInput: anything else.
+    """
+    is_pair = isinstance(given, Sequence) and not isinstance(given, str) and len(given) == 2
+    if not is_pair or not all(isinstance(one, str) for one in given):
+        raise _wrong(made, name, given, "two patterns of names")
+    return given[0], given[1]
+
+
+def _article(kind: type) -> str:
+    return f"a {_NAMES.get(kind, kind.__name__)}"
+
+
+def _wrong(made: object, name: str, given: object, needed: str) -> BadInput:
+    where = f"{type(made).__name__}.{name}"
+    return BadInput(f"{given!r:.60} is given", where=where, valid=f"{needed} is needed")
