@@ -50,7 +50,7 @@ class Format(NamedTuple):
 
 _PLACES = frozenset(
     "origin axis mesh xyz rpy pose pos quat size radius radii length scale link filename file uri "
-    "include placement_frame relative_to attached_to".split()
+    "include placement_frame relative_to attached_to href unit units".split()
 )
 """Elements and attributes that give a shape or a place, in one format or another."""
 

@@ -165,12 +165,15 @@ def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
 
 
 def test_what_is_not_read_stands_in_a_note_or_where_it_may_be_a_shape_in_a_warning(tmp_path):
-    axis_free = joint("j", "a", "b", inner='<limit lower="-1" upper="1"/><stiffness value="3"/>')
+    axis_free = joint(
+        "j", "a", "b", inner='<limit lower="-1" upper="1" velocity="2,5"/><stiffness value="3"/>'
+    )
     contact = f"<contact>{BOX}</contact>"
     loop = '<loop_joint><link1 link="a" rpy="0 0 1"/></loop_joint>'
     made = load_urdf(tmp_path, robot(link(BOX + contact), link(BOX, "b"), axis_free, loop))
     assert made.notes == (
         "arm.urdf: joints without <axis>, taken as x: 'j'",
+        "arm.urdf: velocities that are no numbers, taken as unlimited: '2,5' of 'j'",
         "arm.urdf: not read: <stiffness>",
     )
     (notice,) = made.notices

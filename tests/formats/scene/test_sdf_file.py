@@ -215,6 +215,8 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
     placed = model(at(1), link(at(1), collision()))
     here = state(at("1.00001") + f'<link name="l">{at(2)}</link>')
     assert places_of(tmp_path, sdf(world(placed, here))) == {"m/l/c": 2}
+    with pytest.raises(BadInput, match="state: model 'm': it was saved with a scale of 2 2 2"):
+        content_of(tmp_path, sdf(world(placed, state("<scale>2 2 2</scale>"))))
     with pytest.raises(BadInput, match="state: model 'm': link 'l': it was saved elsewhere"):
         content_of(tmp_path, sdf(world(placed, state(f'<link name="l">{at(3)}</link>'))))
 
@@ -249,6 +251,7 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
         (sdf(model(link(collision(BOX.replace("</box>", "<pose>1</pose></box>"))))), "box: <pose> is not read"),
         (sdf(model(link(collision()), "<geom><box size='1'/></geom>")), "model 'm': <geom> is not read"),
         (sdf(world("<group>" + model(link(collision())) + "</group>")), "world 'w': <group> is not read"),
+        (sdf(model(link(collision(BOX, f"<geometry>{BOX}</geometry>")))), "collision 'c': two <geometry> are"),
         (sdf(model(*["<model name='x'>"] * 60, *["</model>"] * 60)), "40 deep in each other"),
     ],
 )  # fmt: skip

@@ -258,6 +258,8 @@ def _check(element: Element, where: str) -> None:
     for child in element:
         i = counted.get(child.tag, 0)
         counted[child.tag] = i + 1
+        if i and child.tag == "geometry":
+            raise BadRobot(f"<{element.tag}> has two <geometry>", where=where, valid="one")
         if i and child.tag in _SINGLE and child.attrib != element.find(child.tag).attrib:
             raise BadRobot(f"<{element.tag}> has two <{child.tag}>", where=where, valid="one")
         listed = child.tag in ("collision", "visual")

@@ -38,7 +38,7 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     require_own_names("joint", [joint.name for joint in joints])
     masters = masters_of(joints)
     fixed = {joint.name for joint in joints if joint.kind is JointKind.FIXED}
-    notes = [*notes_on_parts(joints), *_on_no_limits(joints), *_on_no_axis(root)]
+    notes = [*notes_on_parts(joints), *_on_no_limits(joints), *_on_no_axis(root), *_on_speeds(root)]
     for i, (joint, master, _, position) in enumerate(masters[joint.name] for joint in joints):
         if joint.mimic is not None and master in fixed:
             joints[i] = _at_rest(joint, position)
@@ -133,15 +133,32 @@ def _on_no_axis(root: Element) -> list[str]:
     return [f"joints without <axis>, taken as x: {listed(names, 8)}"] if names else []
 
 
+def _on_speeds(root: Element) -> list[str]:
+    """A note on speeds that are no numbers."""
+    given = ((limit.getparent(), limit.get("velocity", "")) for limit in root.iter("limit"))
+    names = [
+        f"{text!r:.20} of {joint.get('name')!r}"
+        for joint, text in given
+        if text.strip() and _number(text) is None
+    ]
+    return (
+        [f"velocities that are no numbers, taken as unlimited: {listed(names, 4)}"] if names else []
+    )
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
 def _velocity(element: Element | None) -> float:
     """The greatest speed; infinite where none is written, or what many exporters write for none: 0, or no
     number.
     """
-    try:
-        given = float("" if element is None else element.get("velocity", ""))
-    except ValueError:
-        return np.inf
-    return given if 0.0 < given < np.inf else np.inf
+    given = None if element is None else _number(element.get("velocity", ""))
+    return given if given is not None and 0.0 < given < np.inf else np.inf
 
 
 def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:

@@ -95,9 +95,10 @@ def sdf_element(data: bytes) -> tuple[Element, list[Unread]]:
     _require_version(root.get("version") or "")
     found = [*unread(root, _SDF)]
     for element in root.iter("model", "link", "collision", "include", "frame", "joint"):
-        if len(element.findall("pose")) > 1:
-            where = f"{element.tag} {element.get('name')!r}"
-            raise BadScene("two <pose> are given", where=where, valid="one")
+        for tag in ("pose", "geometry"):
+            if len(element.findall(tag)) > 1:
+                where = f"{element.tag} {element.get('name')!r}"
+                raise BadScene(f"two <{tag}> are given", where=where, valid="one")
     return root, found
 
 

@@ -15,7 +15,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clearance.errors import BadScene, at, nearest_name
-from clearance.formats.scene.sdf.document import base_of, name_of, pose_of, text_of
+from clearance.formats.scene.sdf.document import (
+    base_of,
+    name_of,
+    numbers_of,
+    pose_of,
+    text_of,
+)
 from clearance.formats.scene.sdf.geometry import geometry_of
 from clearance.geometry.pose import inverse
 
@@ -261,6 +267,9 @@ def require_state_as_placed(world: Element, frames: NamedFrames) -> None:
 
 
 def _require_same(element: Element, name: str, frames: NamedFrames) -> None:
+    scale = text_of(element, "scale", "1 1 1")
+    if any(factor != 1.0 for factor in numbers_of(element, "scale", 3, "1 1 1")):
+        raise BadScene(f"it was saved with a scale of {scale:.60}", valid="shapes of that size")
     if element.find("pose") is None:
         return
     if not np.abs(pose_of(element) - frames.pose(name)).max() <= SAME:
