@@ -5,7 +5,7 @@ Not for: how it is written down (`changed_files`), told (`sentences`) or shown (
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -174,7 +174,7 @@ def _refuse_programs(case: Case, request: Request) -> None:
         if asked is not None and tied and request.kind != "obstacle":
             deed = "moves" if asked.drives else "goes with"
             fault = f"the program of robot {placed.robot.name!r} {deed} {listed([*tied])} too"
-            raise BadChange(fault, valid="kind obstacle, which changes neither of their motions")
+            raise BadChange(fault, valid=_what_may_be_moved(case, {*asked.frames, *asked.rides}))
         if asked is None or not asked.moves or request.kind == "timing":
             continue
         if request.kind != "obstacle" or asked.frames:
@@ -182,6 +182,16 @@ def _refuse_programs(case: Case, request: Request) -> None:
                 f"robot {placed.robot.name!r} follows a program, and kind {request.kind} changes its joints",
                 valid="kind timing, or obstacle where no frame of the program is on one",
             )
+
+
+def _what_may_be_moved(case: Case, used: Container[str]) -> str:
+    """What is valid where a change may move no robot, and nothing that a program uses."""
+    carried = {one.part for one in case.carries}
+    obstacles = [one.name for one in case.obstacles if one.mount is None]
+    free = [name for name in obstacles if name not in carried and name not in used]
+    if free:
+        return f"kind obstacle with {listed(free)}, which changes neither of their motions"
+    return "another program: all obstacles ride on something, are carried or carry frames, so none may be moved"
 
 
 def _by_shift(case: Case, request: Request) -> Gain:
