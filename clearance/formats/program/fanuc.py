@@ -176,6 +176,10 @@ class _Fanuc:
         if unread:
             fault = f"{unread[0]} is not read, and may move the target or the way"
             raise BadProgram(fault, valid="take it out of the motion")
+        if any(
+            word.startswith("PSPD") for word in motion.options
+        ):  # a share of the speed in a process
+            run.note(UNSAID, f"{call.line}")
         if not kind or len(motion.points) != (2 if kind == "circ" else 1):
             fault = f"{call.name} with {len(motion.points)} points is not read"
             raise BadProgram(fault, valid="J and L with one, C with two")

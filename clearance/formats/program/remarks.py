@@ -56,4 +56,6 @@ class Remarks:
         if not 0.0 < share <= 1.0:
             fault, valid = f"{call.name} is {value:g}", f"more than 0, at most {whole:g}"
             raise BadProgram(fault, where=str(call.line), valid=valid)
+        if share < 1.0:
+            self.note("shares of all speeds are followed", f"{call.name} {value:g} ({call.line})")
         return share

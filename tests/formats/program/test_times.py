@@ -93,8 +93,9 @@ def test_a_share_of_all_speeds_counts(program, speed):
 def test_shares_of_all_speeds_count_for_joint_moves():
     (move,) = moves(ur("set_speed(0.5)", "movej([0,0,0,0,0,0], a=1.2, v=0.8)"))
     assert (move.axis_speed, move.axis_acceleration) == (0.4, 0.3)
-    (move,) = moves(fanuc("OVERRIDE=40%", "J P[1] 50% FINE"))
+    (move,) = moves(found := fanuc("OVERRIDE=40%", "J P[1] 50% FINE"))
     assert move.share == pytest.approx(0.2)
+    assert "shares of all speeds are followed: OVERRIDE 40 (line 3)" in found.notes
     (move,) = moves(krl("$OV_PRO=50", "BAS(#VEL_PTP,60)", "PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}"))
     assert move.share == pytest.approx(0.3)
 
@@ -128,6 +129,7 @@ UR_MOVE, RAPID_MOVE, FANUC_MOVE = (
         (lambda: fanuc("LINEAR_MAX_SPEED=200", FANUC_MOVE), ["the speed of LINEAR_MAX_SPEED (line 3)"]),
         (lambda: fanuc("L P[2] R[1]mm/sec FINE"), ["the speed of line 3"]),
         (lambda: fanuc("L P[2] R[1]sec FINE"), ["the speed of line 3"]),
+        (lambda: fanuc(FANUC_MOVE + " PSPD50"), ["the speed of line 3"]),
         (lambda: krl(f"LIN {AWAY}"), ["the speed of line 5"]),
         (lambda: krl(f"LIN {AWAY} WITH $VEL.CP=1.0", "HALT", skip=["HALT"]), ["HALT (line 6)"]),
     ],
