@@ -117,7 +117,11 @@ class ProgramCell:
 
     def _not_driven(self, other: PlacedRobot) -> BadProgram:
         """Why the program may not drive a robot whose joints its moves name."""
-        if other.trajectory is not None:
+        valid = "no trajectory of that robot, and bases that stand"
+        if other.robot.name in self.around.driven:
+            why = "the program of another robot moves them too"
+            valid = "one program that moves it: two on one positioner are not read"
+        elif other.trajectory is not None:
             why = f"robot {other.robot.name!r} follows a trajectory of its own"
         else:
             one = self.own if self.world_from_own is None else other
@@ -125,7 +129,7 @@ class ProgramCell:
             why = f"robot {one.robot.name!r} stands on {one.mount.on!r}, which may move"
         return BadProgram(
             f"the program moves joints of robot {other.robot.name!r}, and {why}",
-            valid="no trajectory of that robot, and bases that stand",
+            valid=valid,
         )
 
     def start(self, driven: Sequence[str]) -> dict[str, float]:
