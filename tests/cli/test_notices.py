@@ -36,11 +36,8 @@ def asked(tmp_path, capsys):
     return ask
 
 
-def test_a_sweep_says_what_is_suspect(asked):
+def test_a_sweep_says_what_is_suspect_and_not_accepted_unless_it_is_to_be_quiet(asked):
     assert "suspect: small: CHECK UNITS: no joint moves faster" in asked(CASE)
-
-
-def test_but_not_what_the_case_accepts_nor_when_it_is_to_be_quiet(asked):
     assert "CHECK UNITS" not in asked(CASE + "accept: [units]\n")
     assert "CHECK UNITS" not in asked(CASE, "--quiet")
 

@@ -92,9 +92,3 @@ def test_what_cannot_be_meant_is_refused_in_one_line(folder, capsys, robot, told
     assert run(["check", str(folder / "case.yaml")]) == 2
     (line,) = capsys.readouterr().err.strip().splitlines()
     assert told in line
-
-
-def test_an_obstacle_with_the_name_of_a_link_is_refused(folder, capsys):
-    (folder / "case.yaml").write_text((CASE % ("", "")).replace("name: far", "name: hand"))
-    assert run(["check", str(folder / "case.yaml")]) == 2
-    assert "both called 'hand'" in capsys.readouterr().err

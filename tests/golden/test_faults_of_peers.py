@@ -22,23 +22,6 @@ def test_a_needle_over_a_small_face_is_not_in_contact(gap, scale):
     assert near.distance == pytest.approx(truth, rel=1e-12)
 
 
-def test_a_box_inside_another_is_contact_with_a_common_point():
-    inner, outer = cl.box((0.2, 0.2, 0.2)), cl.box((1.0, 1.0, 1.0))
-    near = cl.distance(inner, outer, pose_a=at(0.1, 0.0, -0.1))
-    assert near.contact
-    assert near.distance == 0.0
-    assert np.array_equal(near.point_a, near.point_b)
-    assert np.abs(near.point_a - [0.1, 0.0, -0.1]).max() <= 0.1 + 1e-15
-
-
-def test_a_box_in_the_cavity_of_a_closed_shell_is_not_in_contact():
-    outer, cavity = cl.box((1.0, 1.0, 1.0)), cl.box((0.8, 0.8, 0.8)).flipped()
-    shell = cl.Polyhedron.merged([outer, cavity])
-    near = cl.distance(cl.box((0.2, 0.2, 0.2)), shell)
-    assert not near.contact
-    assert near.distance == pytest.approx(0.3, abs=1e-15)
-
-
 def test_overlapping_boxes_meet_in_a_point_of_both():
     a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.2, 0.2, 3.0))
     near = cl.distance(a, b, pose_b=at(0.3, -0.2, 0.0))

@@ -33,23 +33,23 @@ def as_triangle_set(corners) -> set:
     return found
 
 
-@pytest.mark.parametrize("write", [binary_stl, text_stl])
-def test_stl_in_both_forms_is_the_same_cube(write):
-    mesh = mesh_from_bytes(write(CUBE_CORNERS), "cube.STL")
+STL = {
+    "binary": binary_stl(CUBE_CORNERS),
+    "binary that begins with solid": binary_stl(
+        CUBE_CORNERS, header=b"solid by a careless exporter"
+    ),
+    "text": text_stl(CUBE_CORNERS),
+    "text of two solids": text_stl(CUBE_CORNERS[:4]) + text_stl(CUBE_CORNERS[4:]).upper(),
+}
+
+
+@pytest.mark.parametrize("form", STL)
+def test_stl_in_every_form_is_the_same_cube(form):
+    mesh = mesh_from_bytes(STL[form], "cube.STL")
     assert (mesh.n_triangles, mesh.shape.n_faces, len(mesh.shape.vertices)) == (12, 6, 8)
     assert signed_volume(mesh.shape) == 1
     assert mesh.shape.closed
     assert mesh.notes == ()
-
-
-def test_binary_stl_that_begins_with_solid_is_binary():
-    data = binary_stl(CUBE_CORNERS, header=b"solid written by a careless exporter")
-    assert mesh_from_bytes(data, "cube.stl").n_triangles == 12
-
-
-def test_text_stl_of_several_solids_keeps_all():
-    data = text_stl(CUBE_CORNERS[:4]) + text_stl(CUBE_CORNERS[4:]).upper()
-    assert signed_volume(mesh_from_bytes(data, "cube.stl").shape) == 1
 
 
 def test_single_precision_values_are_kept_and_nearly_equal_points_stay_apart():
@@ -193,26 +193,26 @@ def test_files_are_read_from_disk(tmp_path):
         read_mesh(tmp_path / "folder.stl")
 
 
-def test_a_closed_mesh_that_is_inside_out_is_turned_and_noted():
-    mesh = mesh_from_bytes(binary_stl(CUBE_CORNERS[:, ::-1]), "m.stl")
-    assert signed_volume(mesh.shape) == 1
-    assert mesh.notes == ("the closed surface was inside out and is turned round",)
+INSIDE_OUT = CUBE_CORNERS[:, ::-1]
+PARTS = {
+    # what: its parts, the note, its volume
+    "inside out": ([INSIDE_OUT], "the closed surface was inside out and is turned round", 1),
+    "a cavity": ([CUBE_CORNERS * 4, INSIDE_OUT], "", 63),
+    "two of three": (
+        [CUBE_CORNERS, INSIDE_OUT + 3.0, INSIDE_OUT + 6.0],
+        "2 of its 3 parts were inside out and are turned round", 3,
+    ),
+    "open": ([CUBE_CORNERS[1:]], OPEN, None),
+    "one open": ([CUBE_CORNERS[1:], CUBE_CORNERS + 3.0], "1 of its 2 parts is open: it has no inside", None),
+}  # fmt: skip
 
 
-def test_a_cavity_stays_a_cavity():
-    hollow = np.concatenate([CUBE_CORNERS * 4, CUBE_CORNERS[:, ::-1]])
-    mesh = mesh_from_bytes(binary_stl(hollow), "m.stl")
-    assert signed_volume(mesh.shape) == pytest.approx(63)
-    assert mesh.notes == ()
-
-
-def test_of_several_parts_those_that_are_inside_out_are_counted():
-    corners = np.concatenate(
-        [CUBE_CORNERS, CUBE_CORNERS[:, ::-1] + 3.0, CUBE_CORNERS[:, ::-1] + 6.0]
-    )
-    mesh = mesh_from_bytes(binary_stl(corners), "m.stl")
-    assert mesh.notes == ("2 of its 3 parts were inside out and are turned round",)
-    assert signed_volume(mesh.shape) == pytest.approx(3.0)
+@pytest.mark.parametrize("what", PARTS)
+def test_parts_that_are_inside_out_or_open_are_noted_and_cavities_stay(what):
+    parts, note, volume = PARTS[what]
+    mesh = mesh_from_bytes(binary_stl(np.concatenate(parts)), "m.stl")
+    assert mesh.notes == ((note,) if note else ())
+    assert volume is None or signed_volume(mesh.shape) == pytest.approx(volume)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -232,14 +232,6 @@ def test_exact_copies_of_faces_are_left_out_with_a_note():
     assert mesh.shape.closed and mesh.shape.component_closed.all()
     one = mesh_from_bytes(binary_stl(np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:1]])), "m.stl")
     assert one.notes == ("1 exact copy of a face is left out",)
-
-
-def test_open_surfaces_are_noted_and_parts_are_counted():
-    assert mesh_from_bytes(binary_stl(CUBE_CORNERS[1:]), "m.stl").notes == (OPEN,)
-    two = np.concatenate([CUBE_CORNERS[1:], CUBE_CORNERS + 3.0])
-    assert mesh_from_bytes(binary_stl(two), "m.stl").notes == (
-        "1 of its 2 parts is open: it has no inside",
-    )
 
 
 def test_obj_lines_end_where_lines_end_and_numbers_are_numbers():
