@@ -117,10 +117,25 @@ class _Files:
 
     def delay(self) -> None:
         """A start, or a rate, in place of another."""
-        if self.gain.request.slow_down:
-            self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate}, self._i_robot)
-            return
-        self._table({"start": self.gain.case.robots[self._i_robot].timing.start}, self._i_robot)
+        timing = self.gain.case.robots[self._i_robot].timing
+        key = "rate" if self.gain.request.slow_down else "start"
+        self._table({key: getattr(timing, key)}, self._i_robot)
+        self._changes.append(self._with_carries)
+
+    def _with_carries(self, node: Node) -> None:
+        """The times of parts that the delayed robot carries."""
+        before, after = (one.record.case.carries for one in (self.gain.before, self.gain.after))
+        for i, (was, now) in enumerate(zip(before, after, strict=True)):
+            if was == now:
+                continue
+            if i >= len(self.given.carry):
+                raise BadChange(
+                    f"the times at which part {now.part!r} is carried stand in the file of the scene",
+                    valid="a row of carry in the case",
+                )
+            for key, time in (("from", now.window.start), ("until", now.window.end)):
+                if key in node["carry"][i]:
+                    node["carry"][i][key] = time
 
     def base(self) -> None:
         """A place of a robot's base."""

@@ -17,6 +17,7 @@ import numpy as np
 from clearance.errors import BadChange
 from clearance.gains.delay_obstruction import is_at_any_delay, stays_whatever
 from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
+from clearance.gains.moved_windows import carries_moved, require_own_parts
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
@@ -26,6 +27,7 @@ from clearance.simulate.answers.point_motion import moves_with_joints
 from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
+from clearance.world.timing import Timing
 
 FINEST = 1e-3
 """[s] Delays are sought this finely: controllers run at some milliseconds."""
@@ -69,20 +71,28 @@ class TimingResult:
 
 
 def case_later(case: Case, i_robot: int, delay: float) -> Case:
-    """The case with one robot that begins later by `delay` [s]."""
-    robots = list(case.robots)
-    timing = robots[i_robot].timing
-    robots[i_robot] = replace(robots[i_robot], timing=replace(timing, start=timing.start + delay))
-    return replace(case, robots=tuple(robots))
+    """The case with one robot that begins later by `delay` [s], with the times of the parts that it carries."""
+    timing = case.robots[i_robot].timing
+    after = replace(timing, start=timing.start + delay)
+    return _retimed(case, i_robot, after, lambda time: time + delay)
 
 
 def case_slower(case: Case, i_robot: int, more: float) -> Case:
     """The case with one robot whose path takes `more` of its time longer, from its table's time 0 on."""
+    timing = case.robots[i_robot].timing
+    after = replace(timing, rate=timing.rate / (1.0 + more))
+    return _retimed(
+        case, i_robot, after, lambda time: timing.start + (time - timing.start) * (1.0 + more)
+    )
+
+
+def _retimed(case: Case, i_robot: int, timing: Timing, later: Callable[[float], float]) -> Case:
     robots = list(case.robots)
-    timing = robots[i_robot].timing
-    slowed = replace(timing, rate=timing.rate / (1.0 + more))
-    robots[i_robot] = replace(robots[i_robot], timing=slowed)
-    return replace(case, robots=tuple(robots))
+    placed = robots[i_robot]
+    begins = float(placed.timing.run_times(placed.given_trajectory.times)[0])
+    robots[i_robot] = replace(placed, timing=timing)
+    carries = carries_moved(case, i_robot, begins, later)
+    return replace(case, robots=tuple(robots), carries=carries)
 
 
 def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingResult:
@@ -92,6 +102,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingR
         BadInput: nothing else moves, or the robot goes through its path again and again.
     """
     _require_another(case, i_robot)
+    require_own_parts(case, i_robot)
     speed = greatest_speed(case, i_robot)
 
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
@@ -112,6 +123,7 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
         BadInput: as `least_delay`; a table that begins before its time 0.
     """
     _require_another(case, i_robot)
+    require_own_parts(case, i_robot)
     placed = case.robots[i_robot]
     if placed.given_trajectory.times[0] < 0.0:
         raise BadChange(

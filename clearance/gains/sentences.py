@@ -20,6 +20,7 @@ from clearance.gains.change_parts import (
 )
 from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
+from clearance.gains.moved_windows import windows_that_stay
 from clearance.gains.obstacles_met import obstacles_met
 from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
@@ -58,6 +59,8 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
     if gain.request.kind == "obstacle" and gain.size > 0.0:
         yield from (("warning", line) for line in _obstacles_met(gain))
         yield from (("note", line) for line in _programs_left(gain))
+    if gain.request.kind == "timing" and gain.size > 0.0:
+        yield from (("warning", line) for line in _windows_left(gain))
     if not is_hopeless(gain):
         yield "bound", bound_text(gain)
     fast = _too_fast(gain)
@@ -73,6 +76,15 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
 def _obstacles_met(gain: Gain) -> Iterator[str]:
     for moved, other in obstacles_met(gain.before.record, gain.after.record):
         yield f"{moved!r} stands in {other!r} after the change: obstacles are not measured against each other"
+
+
+def _windows_left(gain: Gain) -> Iterator[str]:
+    case = gain.case
+    for window in windows_that_stay(case, index_of_robot(case.robots, gain.who)):
+        yield (
+            f"{window} stays at its times, and robot {gain.who!r} is there later: "
+            "check that it still covers what it is meant for"
+        )
 
 
 def _programs_left(gain: Gain) -> Iterator[str]:

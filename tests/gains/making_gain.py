@@ -36,6 +36,14 @@ scene: {obstacles: []}
 limits: {fail: 0.05, warn: 0.05}
 """
 
+CARRYING = (
+    CROSSING.replace(
+        "obstacles: []",
+        "obstacles: [{name: part, box: {size: [0.04, 0.04, 0.04]}, pose: {xyz: [0.0, -0.5, 0.2]}}]",
+    )
+    + 'carry: [{part: part, by: other/tool, from: 0.25, until: 0.9, touch: ["other/*"]}]\n'
+)
+
 MOVING = """\
 robot: {urdf: robots/one.urdf}
 trajectory: along_x.csv

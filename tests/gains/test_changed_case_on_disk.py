@@ -15,7 +15,7 @@ from clearance.gains.folder import save_gain
 from clearance.gains.turn import Turn
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.trajectory import Hole
-from tests.gains.making_gain import CROSSING, MOVING, SLOT, write_cell
+from tests.gains.making_gain import CARRYING, CROSSING, MOVING, SLOT, write_cell
 from tests.simulate.measure.test_quintic_motion import there_and_back
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -111,6 +111,11 @@ CASES = {
         {"robot": "other", "slow_down": True},
     ),
     "timing": (lambda folder: write_cell(folder, CROSSING), "timing", {"robot": "other"}),
+    "timing of a part": (
+        lambda folder: write_cell(folder, CARRYING),
+        "timing",
+        {"robot": "other"},
+    ),
 }
 
 

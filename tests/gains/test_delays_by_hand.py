@@ -8,7 +8,9 @@ import pytest
 import clearance as cl
 from clearance.gains.answer import gain
 from clearance.gains.sentences import lines_of
-from clearance.world.timing import Timing
+from clearance.world.carry import Carry
+from clearance.world.rules import Allowance
+from clearance.world.timing import Timing, Window
 from tests.gains.gantries import along_x, crossing, gantry, standing
 
 
@@ -71,3 +73,39 @@ def test_a_run_that_begins_with_the_path_begins_later():
     found = gain(case, "timing")
     least = 0.08 / 4.4  # the part goes 0.88 m in 0.2 s, and 0.08 m are missing
     assert found.kept and found.lower_bound <= least <= found.size <= least + 2e-3
+
+
+def handing(*obstacles, allow=()):
+    """Two blocks that cross at the origin; one picks up a part above itself on its way along y, at 0.25 s."""
+    part = standing("part", cl.box((0.04, 0.04, 0.04)), (0.0, -0.5, 0.2))
+    carry = Carry("part", "other/tool", Window(0.25), touch=("other/*",))
+    return replace(crossing(0.05), obstacles=(part, *obstacles), carries=(carry,), allow=allow)
+
+
+@pytest.mark.parametrize("slow_down", [False, True])
+def test_a_part_is_picked_up_where_the_robot_is_there_later(slow_down):
+    found = gain(handing(), "timing", robot="other", slow_down=slow_down)
+    (carry,) = found.case.carries
+    later = 0.25 * (1.0 + found.size) if slow_down else 0.25 + found.size
+    assert found.kept and found.size > 0.0 and carry.window.start == pytest.approx(later, abs=1e-12)
+
+
+def test_no_delay_takes_a_part_past_a_post_in_its_way():
+    post = standing("post", cl.box((0.02, 0.02, 0.02)), (0.0, 0.5, 0.2))
+    found = gain(handing(post), "timing", robot="other")
+    assert not found.kept and "part and post" in str(found.blocked)
+
+
+def test_windows_that_a_delay_leaves_are_named_and_parts_that_change_hands_refused():
+    row = Allowance(("one/*", "other/*"), Window(0.8, 0.9))
+    lines = [*lines_of(gain(handing(allow=(row,)), "timing", robot="other"))]
+    assert any(
+        "allow[0] (from 0.8 s until 0.9 s) stays" in text
+        for label, text in lines
+        if label == "warning"
+    )
+    case = handing()
+    first = replace(case.carries[0], window=Window(0.25, 0.5))
+    handed = replace(case, carries=(first, Carry("part", "one/tool", Window(0.5))))
+    with pytest.raises(cl.BadInput, match="'part' changes hands"):
+        gain(handed, "timing", robot="other")
