@@ -104,6 +104,7 @@ CASES = {
         "obstacle",
         {"obstacle": "left", "within": (0.0, 0.03, 0.0), "turn": Turn("z", (0.3, 0.1, 0.0))},
     ),
+    "turned base": (lambda folder: write_cell(folder, SLOT), "base", {"turn": "z"}),
     "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
     "slowed": (
         lambda folder: write_cell(folder, CROSSING),

@@ -122,6 +122,30 @@ def test_the_outline_is_nowhere_far_from_what_is_swept(seed):
     )  # the samples' own steps
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["crate", "right/tool"])
+def test_a_section_holds_every_point_cut(name):
+    case, rng = cells.cell(4), np.random.default_rng(4)
+    times = np.linspace(0.0, end_of(case), 1000)
+    poses = np.array([cells.pose_at(case, name, t) for t in times])
+    height = float(np.median(poses[:, 2, 3]))
+    names = ([name], []) if name in LINKS else ([], [name])
+    found = cl.swept_profile(
+        case, section=height, tolerance=1e-2, links=names[0], obstacles=names[1]
+    )
+    low, high = body_of(case, name).bounds
+    box = found.curve.box
+    on_plane = rng.uniform(box[0] - 0.05, box[1] + 0.05, (1500, 2))
+    world = np.column_stack([on_plane, np.full(len(on_plane), height)])
+    local = np.einsum("nji,npj->npi", poses[:, :3, :3], world[None] - poses[:, None, :3, 3])
+    cut = ((local >= low) & (local <= high)).all(axis=2).any(axis=0)
+    if name == "right/tool":  # what it has in hand is in the section as well
+        assert {one.label for one in swept_bodies(over_time(case), [name], [])} >= {name, "part"}
+    assert cut.sum() >= 10
+    chosen = rows(found)
+    assert all(inside(point, chosen) for point in on_plane[cut][:60])
+
+
 @examples(10)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate", "part", "lid"]))
 def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, name):

@@ -12,6 +12,7 @@ from clearance.case.case_file import load_case
 from clearance.cli.commands import clearance as command
 from clearance.errors import BadInput, UnknownLink
 from clearance.profiles.compare import as_data, compare
+from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, read_outline
 from clearance.profiles.profile_file import write_profile
 from tests.profiles.moving import rows, slab, turning
@@ -174,6 +175,26 @@ def test_refusals_of_the_commands_are_one_line(arguments, said, tmp_path, monkey
     fault = out.exception
     assert isinstance(fault, BadInput) and said in str(fault)
     assert not (tmp_path / "x.yaml").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["d_cell", "port"])
+def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
+    """keep_in and port_fails are answered in full above and below; here their counterparts."""
+    for suffix, kept in (("", True), ("_fails", False)):
+        if (name, kept) in {("port", False), ("keep_in", True)}:
+            continue
+        case = load_case(SCENES / "profiles" / f"{name}{suffix}.yaml")
+        space = case.profiles[0]
+        swept = cl.swept_profile(
+            case, space.plane, links=space.links or None, section=space.section
+        )
+        gap, _ = proven_gap(
+            ClosedContours.of_curve(space.sketch.curves()),
+            ClosedContours.of(swept.contours),
+            around=True,
+        )
+        assert gap > 0.0 and (gap >= space.limit) == kept
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance
+from clearance.geometry.shapes import sphere
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
@@ -79,6 +80,26 @@ def test_far_from_the_origin_nothing_is_lost():
         )
         assert near.contact == (sq == 0)
         assert oracle.error(near.distance, sq) <= Fraction(2) ** -52 * oracle.root(sq)
+
+
+@pytest.mark.slow
+def test_tree_and_brute_force_agree_bit_for_bit():
+    """Each face alone as a body, so that nothing is pruned; least faces first."""
+    random = np.random.default_rng(13)
+    a, b = sphere(0.5, tolerance=0.06), sphere(0.3, tolerance=0.04)
+    faces_a = [Polyhedron(a.face(i), [range(len(a.face(i)))]) for i in range(a.n_faces)]
+    faces_b = [Polyhedron(b.face(i), [range(len(b.face(i)))]) for i in range(b.n_faces)]
+    for _ in range(1):
+        pose = pose_of(random, 0.0)
+        pose[:3, 3] = random.normal(size=3)
+        pose[:3, 3] *= 1.2 / np.linalg.norm(pose[:3, 3])
+        near = distance(a, b, pose_b=pose)
+        every = [
+            (distance(one, other, pose_b=pose).distance, i, j)
+            for i, one in enumerate(faces_a)
+            for j, other in enumerate(faces_b)
+        ]
+        assert (near.distance, near.face_a, near.face_b) == min(every)
 
 
 OCTAHEDRON = np.array(

@@ -79,6 +79,19 @@ def test_the_course_of_figure_16():
     assert len(steps[-1].uses) == 6 and steps[-1].assumptions == 0
 
 
+def test_rule_b_begins_bodies_in_cycles_without_one():
+    """Two rings with spokes: two bodies begin in a cycle each; what is left takes an extended cluster."""
+    sketch = load("under_constrained_prism")
+    result = sketch.solve()
+    assert len(sketch.entities) == 18 and len(sketch.constraints) == 30
+    assert result.status == "under" and result.freedom == 3 and result.residual <= 1e-12 * 5.0
+    steps = result.plan
+    assert [step.assumptions for step in steps if step.assumptions] == [1, 1, 1]
+    begun = [step.figure for step in steps if step.assumptions]
+    assert begun == ["Fig. 13 (a)", "Fig. 13 (b)", "Fig. 13 (a)"]
+    assert steps[-1].figure == "Fig. 11" and steps[-1].assumptions == 0
+
+
 FREEDOM = {"e": 0, "b": 2, "c": 2, "d": 3}
 """Of each stage of the midship section."""
 

@@ -69,6 +69,15 @@ def test_two_sliders_that_cross_share_a_cube():
 
 
 @WITH_MANIFOLD
+def test_of_three_robots_what_two_reach_counts_once():
+    cases = [slider("x", (1, 0, 0), -1, 1), slider("y", (0, 1, 0), -1, 1, (0.0, 0.0, 0.001))]
+    cases.append(slider("z", (0, 0, 1), -1, 1, (0.0, 0.001, 0.0)))
+    found = shared_workspace(cases)
+    assert found.volume == pytest.approx(0.2**3, rel=0.05)
+    assert len(found.links) == 3
+
+
+@WITH_MANIFOLD
 def test_what_may_be_passed_in_a_corner_zone_is_shared():
     """The two are 10 mm apart, and the first may be 15 mm off on part of its way."""
     one, other = (

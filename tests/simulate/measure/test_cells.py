@@ -124,6 +124,17 @@ def standing_of(near, limits):
     return int(near < limits.warn)
 
 
+@pytest.mark.parametrize("need", first_fast(["limit", "minimum"], 1))
+def test_other_needs_know_the_same_worst(need):
+    case = ruled(0)
+    whole, run = cl.check(case), cl.check(case, need=need)
+    assert run.record.worst.clearance == pytest.approx(whole.record.worst.clearance, abs=1e-4)
+    assert run.status == whole.status
+    for rule in whole.record.rules:
+        found = run.record.rule(rule.name)
+        assert found.worst_sample.clearance == pytest.approx(rule.worst_sample.clearance, abs=1e-9)
+
+
 def answered(case, **asked):
     return cl.answer(cl.Question(case, certify=False, **asked)).record
 

@@ -7,7 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.simulate.replay.replay import replay_of
-from clearance.world.timing import Timing
+from clearance.world.carry import Carry
+from clearance.world.timing import Timing, Window
+from tests.made_cases import at
 from tests.report.cells import box, cell, sliding, table_of
 
 
@@ -94,6 +96,24 @@ def test_the_line_ends_on_the_bodies_drawn(record, replay):
             )
             inside = end - poses[i if len(poses) > 1 else 0, :3]
             assert (inside > low - 1e-6).all() and (inside < high + 1e-6).all()
+
+
+def test_moments_between_steps_are_drawn_where_things_are_then():
+    """The cart passes below the tool between two steps; the part it carries goes with it."""
+    robots = (sliding("left", [(0, 0), (1, 0)]), sliding("right", [(0, 3), (1, 3)]))
+    obstacles = (
+        box("cart", (0.2, 0.2, 0.2), moves=table_of([(0, -1, 0.0, 0.2), (1, 1.5, 0.0, 0.2)])),
+        box("part", (0.1, 0.1, 0.1), at(-1, 0, 0.38)),
+    )
+    carries = (Carry("part", "cart", Window(0.0)),)
+    run = cl.check(cell((), robots, obstacles, carries))
+    record, replay = run.record, replay_of(run.session)
+    assert record.worst.between
+    i = replay.i_worst
+    assert replay.between[i] and replay.times[i] == record.worst.time
+    share = record.worst.time
+    (part,) = [k for k, body in enumerate(replay.bodies) if body.name == "part"]
+    assert replay.poses[part][i, :3] == pytest.approx([-1 + 2.5 * share, 0, 0.38], abs=1e-6)
 
 
 def test_a_robot_that_comes_and_goes_is_hidden_before_and_after():
