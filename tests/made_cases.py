@@ -29,7 +29,7 @@ from scripts.makers.hostile_cases import (
 
 __all__ = (
     "SOLIDS", "WORST", "arm", "arm_among_obstacles", "at", "ball", "corners_moved", "dented", "faces_below",
-    "faces_of", "flying", "l_prism", "random_robot", "spindle", "torus", "with_copies", "without_cones",
+    "faces_of", "flying", "l_prism", "prism", "random_robot", "spindle", "torus", "with_copies", "without_cones",
 )  # fmt: skip
 
 
@@ -67,6 +67,16 @@ def l_prism() -> Polyhedron:
     points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
     caps = [[6, 7, 8, 9], [6, 9, 10, 11], [3, 2, 1, 0], [5, 4, 3, 0]]
     return Polyhedron(points, caps + [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)])
+
+
+def prism(radius: float, height: float, n: int = 64) -> Polyhedron:
+    """An upright prism about the origin, its two caps of `n` corners first, so that they own all corners."""
+    angles = 2.0 * np.pi * np.arange(n) / n
+    ring = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    low, high = (np.column_stack([ring, np.full(n, z)]) for z in (-0.5 * height, 0.5 * height))
+    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
+    faces = [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides]
+    return Polyhedron(np.concatenate([low, high]), faces)
 
 
 def with_copies(shape: Polyhedron, faces: Sequence[int], *, turned_round: bool) -> Polyhedron:

@@ -132,16 +132,19 @@ def random_case(seed: int, n_steps: int = 5) -> Case:
                 Body("label", cl.box([0.03, 0.03, 0.03])), mount=Mount("part", at(0.12, 0.05))
             ),
             Obstacle(Body("cup", cl.box([0.03, 0.03, 0.06])), mount=Mount("o0", at(0.0, 0.0, 0.3))),
-            Obstacle(Body("cart", cl.box([0.2, 0.1, 0.1])), moves=_table(rng, n_steps)),
+            Obstacle(Body("cart", cl.box([0.2, 0.1, 0.1])), moves=cart_table(rng, n_steps)),
         ]
     case = Case("random", tuple(robots), tuple(obstacles))
     return replace(case, tolerance=random_budget(case, rng))
 
 
-def _table(rng: np.random.Generator, n_steps: int) -> PoseTable:
+def cart_table(
+    rng: np.random.Generator, n_steps: int, turn: float = 0.1, speed: float = 0.05
+) -> PoseTable:
+    """A cart that drives any way, and turns by `turn` [rad/s] about z."""
     times = 0.1 * np.arange(n_steps)
-    positions = np.array([0.3, -0.7, 0.0]) + 0.05 * times[:, None] * rng.normal(size=3)
-    half = 0.05 * times
+    positions = np.array([0.3, -0.7, 0.0]) + speed * times[:, None] * rng.normal(size=3)
+    half = 0.5 * turn * times
     quaternions = np.column_stack([0.0 * half, 0.0 * half, np.sin(half), np.cos(half)])
     return PoseTable(times, positions, quaternions)
 

@@ -13,10 +13,10 @@ from clearance.simulate.measure.measure import measure
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from clearance.world.mount import Mount
-from clearance.world.pose_table import PoseTable
 from tests.budget.budget_cases import (
     arm_robot,
     bar,
+    cart_table,
     pair_names,
     random_budget,
     sections_of,
@@ -54,7 +54,10 @@ def handling(seed: int) -> Case:
         Obstacle(Body("label", cl.box([0.03] * 3)), mount=Mount("part", at(0.0, 0.1, 0.05))),
         Obstacle(Body("table", cl.box([0.2, 0.2, 0.05])), at(0.2, -0.7, 0.1, turned=turned[2])),
         Obstacle(Body("post", cl.box([0.05, 0.05, 0.4])), at(0.6, -0.4, 0.1, turned=turned[3])),
-        Obstacle(Body("cart", cl.box([0.2, 0.1, 0.1])), moves=driving(rng)),
+        Obstacle(
+            Body("cart", cl.box([0.2, 0.1, 0.1])),
+            moves=cart_table(rng, N_STEPS, turn=0.4, speed=0.3),
+        ),
     )
     exact = (rng.random(3) < 0.25).tolist()
     carries = (
@@ -64,15 +67,6 @@ def handling(seed: int) -> Case:
     )
     case = Case("handling", robots, obstacles, carries=carries)
     return replace(case, tolerance=random_budget(case, rng))
-
-
-def driving(rng: np.random.Generator) -> PoseTable:
-    """A cart's table."""
-    times = 0.1 * np.arange(N_STEPS)
-    half = 0.2 * times
-    positions = [0.3, -0.9, 0.0] + 0.3 * times[:, None] * rng.normal(size=3)
-    quaternions = np.column_stack([0.0 * half, 0.0 * half, np.sin(half), np.cos(half)])
-    return PoseTable(times, positions, quaternions)
 
 
 def of_parts(case: Case):

@@ -21,7 +21,7 @@ from clearance.world.trajectory import MoveSpan
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
-from tests.made_cases import at
+from tests.made_cases import at, prism
 from tests.simulate.measure.test_refine import sliding
 
 FINE = 1e-6
@@ -276,18 +276,11 @@ def test_a_change_between_few_samples_counts(n):
     assert found.lower_bound == pytest.approx(0.01, rel=1e-4)
 
 
-def prism(radius, n=64):
-    """A disc with its corners on a circle, four of them along x and y: those come nearest to a post."""
-    turns = np.arange(n) * 2.0 * np.pi / n
-    ring = radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    low, high = (np.column_stack([ring, np.full(n, z)]) for z in (-0.05, 0.05))
-    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
-    faces = [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides]
-    return cl.Polyhedron(np.concatenate([low, high]), faces)
-
-
 def disc_past_two_posts(way, *short):
-    """A disc on a line, or on two at a right angle, past a post beside each half, too near by what is given."""
+    """A disc on a line, or on two at a right angle, past a post beside each half, too near by what is given.
+
+    Four of its corners lie along x and y: those come nearest to a post.
+    """
     times, along = np.linspace(0.0, 1.0, 81), np.linspace(-1.0, 1.0, 81)
     first, second = (0.37 - one for one in short)
     if way == "line":
@@ -295,7 +288,7 @@ def disc_past_two_posts(way, *short):
     else:
         at = np.stack([np.minimum(along, 0.0), np.maximum(along, 0.0)], axis=1)
         posts = ((-0.5, first), (-second, 0.5))
-    robot = replace(gantry(), bodies=(cl.Body("tool", prism(0.1)),))
+    robot = replace(gantry(), bodies=(cl.Body("tool", prism(0.1, 0.1)),))
     placed = cl.PlacedRobot(robot, cl.Trajectory(times, ("x", "y"), at))
     post = cl.PointCloud([[0.0, 0.0, 0.0]], 0.05)
     named = (

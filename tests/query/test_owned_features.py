@@ -12,23 +12,13 @@ from clearance.kernels.mesh.surface import ANYTHING, LISTED
 from clearance.kernels.search.pair_query import AFRESH, FRONT_CAPACITY, nearest_at_poses, track_pair
 from clearance.kernels.search.scratch import new_scratch
 from tests.examples import examples, first_fast
-from tests.made_cases import torus
+from tests.made_cases import prism, torus
 from tests.strategies import rotations
-
-
-def prism(n: int) -> Polyhedron:
-    """Upright, its many-sided caps first, so that they own all corners."""
-    angle = 2.0 * np.pi * np.arange(n) / n
-    ring = np.round(np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle)], axis=1), 6)
-    corners = np.concatenate([np.column_stack([ring, np.full(n, z)]) for z in (-0.5, 0.5)])
-    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
-    return Polyhedron(corners, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
-
 
 BODIES = {
     "box": box((1.0, 0.7, 0.4)),
-    "many-sided caps": prism(40),
-    "eight-sided caps": prism(LISTED),
+    "many-sided caps": prism(0.3, 1.0, 40),
+    "eight-sided caps": prism(0.3, 1.0, LISTED),
     "cylinder": cylinder(radius=0.3, length=1.0, tolerance=0.001),
     "ball": sphere(0.4, tolerance=0.01),
     "ring": torus(0.5, 0.12, 40, 14),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from clearance.record.table import Names
 from clearance.simulate.answers import intervals as room
@@ -23,7 +24,8 @@ def session_of(letters: str, gaps: list[float]):
 
 
 def test_intervals_by_hand():
-    found = intervals(session_of(LETTERS, GAPS))
+    run = session_of(LETTERS, GAPS)
+    found = intervals(run)
     spans = {
         level: [(i.first_step, i.last_step, i.worst_step) for i in some]
         for level, some in found.items()
@@ -33,38 +35,30 @@ def test_intervals_by_hand():
         "below_fail": [(2, 5, 3)],
         "contact": [(3, 4, 3)],
     }
+    (below,), times = found["below_fail"], run.record.steps["time"].to_pylist()
+    assert (below.start, below.end, below.clearance) == (times[2], times[5], 0.0)
 
 
-def test_intervals_carry_times_and_the_least_clearance():
-    run = session_of(LETTERS, GAPS)
-    interval = intervals(run)["below_fail"][0]
-    times = run.record.steps["time"].to_pylist()
-    assert (interval.start, interval.end, interval.clearance) == (times[2], times[5], 0.0)
+WARN, FAIL, TOUCH = (
+    ("warn limit entered", "warn limit left"),
+    ("fail limit entered", "fail limit left"),
+    ("contact begins", "contact ends"),
+)
 
 
-def test_events_by_hand():
-    found = [(event.step, event.what) for event in events(session_of(LETTERS, GAPS))]
-    assert found == [
-        (1, "warn limit entered"),
-        (2, "fail limit entered"),
-        (3, "contact begins"),
-        (5, "contact ends"),
-        (6, "fail limit left"),
-        (7, "warn limit left"),
-        (8, "warn limit entered"),
-    ]
-
-
-def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepest_first():
-    found = [(event.step, event.what) for event in events(session_of("c x c", [0.1, 0.0, 0.1]))]
-    assert found == [
-        (1, "warn limit entered"),
-        (1, "fail limit entered"),
-        (1, "contact begins"),
-        (2, "contact ends"),
-        (2, "fail limit left"),
-        (2, "warn limit left"),
-    ]
+@pytest.mark.parametrize(
+    ("letters", "gaps", "expected"),
+    [
+        (LETTERS, GAPS, [(1, WARN[0]), (2, FAIL[0]), (3, TOUCH[0]), (5, TOUCH[1]), (6, FAIL[1]), (7, WARN[1]),
+                         (8, WARN[0])]),
+        ("c x c", [0.1, 0.0, 0.1], [(1, WARN[0]), (1, FAIL[0]), (1, TOUCH[0]), (2, TOUCH[1]), (2, FAIL[1]),
+                                    (2, WARN[1])]),
+    ],
+    ids=["one by one", "all levels at once"],
+)  # fmt: skip
+def test_events_enter_the_widest_level_first_and_leave_the_deepest_first(letters, gaps, expected):
+    found = [(event.step, event.what) for event in events(session_of(letters, gaps))]
+    assert found == expected
 
 
 def test_events_tell_the_least_until_the_level_is_left():

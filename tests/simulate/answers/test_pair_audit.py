@@ -20,7 +20,7 @@ from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from tests import oracle
 from tests.examples import examples
-from tests.made_cases import at, random_robot
+from tests.made_cases import at, prism, random_robot
 
 Z = np.array([0.0, 0.0, 1.0])
 
@@ -63,19 +63,11 @@ def test_a_narrow_meeting_between_the_samples_is_found():
     assert audit_pair(robot, "a", "b").status is PairStatus.MEETS
 
 
-def disc(radius, height, n=64):
-    angles = 2 * np.pi * np.arange(n) / n
-    ring = np.stack([radius * np.cos(angles), radius * np.sin(angles)], axis=1)
-    vertices = np.concatenate([np.c_[ring, np.full(n, z)] for z in (0.0, height)])
-    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
-    return Polyhedron(vertices, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("gap", [1e-3])
 def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
     robot = robot_of(
-        [Body("a", disc(0.2, 0.05)), Body("b", disc(0.2, 0.05))],
+        [Body("a", prism(0.2, 0.05)), Body("b", prism(0.2, 0.05))],
         turning("a", "b", at(z=0.05 + gap)),
     )
     found = audit_pair(robot, "a", "b")
@@ -88,7 +80,7 @@ def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
 @pytest.mark.slow
 def test_a_gap_below_the_resolution_is_undecided_and_told():
     robot = robot_of(
-        [Body("a", disc(0.2, 0.05)), Body("b", disc(0.2, 0.05))],
+        [Body("a", prism(0.2, 0.05)), Body("b", prism(0.2, 0.05))],
         turning("a", "b", at(z=0.05 + 0.4 * GAP)),
     )
     found = audit_pair(robot, "a", "b")
@@ -190,7 +182,7 @@ def test_a_leader_without_limits_has_those_of_what_follows_it():
 
 
 def test_an_open_surface_is_never_proven_apart():
-    shell = disc(2.0, 4.0).transformed(at(z=-2.0))
+    shell = prism(2.0, 4.0)
     holed = Polyhedron(shell.vertices, shell.triangles()[:-16])  # a stripe of its side is missing
     robot = robot_of(
         [Body("a", holed), Body("b", arm(0.5))],

@@ -10,10 +10,6 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.interval_middle import IntervalMiddle
-from clearance.kernels.motion.interval_motion_bound import (
-    fill_motion_radii,
-    interval_motion_bound_of,
-)
 from clearance.kernels.motion.joint_motion_bound import (
     loosened,
     motion_bound_of,
@@ -35,6 +31,7 @@ from tests.examples import examples
 from tests.made_cases import at, dented
 from tests.simulate.measure import floating
 from tests.simulate.measure.floating import Scene, chain, orientations, two_floating
+from tests.simulate.measure.forests import ways_in
 
 TURNS = {"usual": 0.7, "half a turn": np.pi, "tiny": 1e-9, "none": 0.0}
 SHAPE = cl.box((0.3, 0.1, 0.2))
@@ -84,16 +81,6 @@ def test_half_a_turn_sweeps_the_side_of_the_given_signs():
         assert (bounds.lower[0] == 0.0) == touches
         if not touches:  # nearest where it begins and ends
             assert bounds.lower[0] == pytest.approx(floating.swept(scene)[0].clearance[0], abs=1e-4)
-
-
-def ways_in(surface, world, positions):
-    radii = np.empty((len(world.frames), positions.shape[1]))
-    noise = np.empty(len(world.frames))
-    fill_motion_radii(surface, world, positions, radii, noise)
-    bounds = np.empty(len(positions))
-    for step in range(len(positions)):
-        bounds[step] = interval_motion_bound_of(positions, 0, step, radii[0], noise[0])
-    return bounds
 
 
 KINDS = st.lists(st.sampled_from([FIXED, TURNING, SLIDING, BALL]), max_size=4)

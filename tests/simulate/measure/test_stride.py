@@ -11,10 +11,6 @@ from hypothesis import strategies as st
 import clearance as cl
 from clearance.geometry.shapes import box, cylinder
 from clearance.geometry.tree import surface_of
-from clearance.kernels.motion.interval_motion_bound import (
-    fill_motion_radii,
-    interval_motion_bound_of,
-)
 from clearance.kernels.motion.world import World
 from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.kinematics import link_poses
@@ -22,7 +18,7 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.made_cases import arm, at, dented, random_robot, spindle, torus
-from tests.simulate.measure.forests import links_of
+from tests.simulate.measure.forests import links_of, ways_in
 from tests.strategies import rotations
 
 SCENES = Path(__file__).parents[3] / "scenes"
@@ -30,16 +26,6 @@ SHAPE = box((0.3, 0.1, 0.2))
 ASIDE = np.block(
     [[np.eye(3), np.array([[0.4], [0.0], [-0.2]])], [np.zeros((1, 3)), np.ones((1, 1))]]
 )
-
-
-def ways_in(surface, world, positions):
-    reach = np.empty((1, positions.shape[1]))
-    noise = np.empty(1)
-    fill_motion_radii(surface, world, positions, reach, noise)
-    bounds = np.empty(len(positions))
-    for step in range(len(positions)):
-        bounds[step] = interval_motion_bound_of(positions, 0, step, reach[0], noise[0])
-    return bounds
 
 
 def ways(surface, frames, links, positions):
