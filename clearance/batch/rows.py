@@ -58,6 +58,8 @@ FINDING = pa.schema(
         ("accepted", pa.bool_()),
         ("move", pa.string()),
         ("moves", pa.string()),
+        ("penetration", pa.float64()),
+        ("penetration_at_least", pa.float64()),
     ]
 )
 """What is kept of a `findings.finding.Finding`; of what waives it, the reason and by whom."""

@@ -20,6 +20,7 @@ from clearance.findings.findings_file import FindingList
 from clearance.findings.known_less import known_less, motion_shorter, slack_text
 from clearance.findings.measurement_conditions import MeasurementConditions
 from clearance.record.status import Status
+from clearance.record.wording import depth_text
 
 TOLERANCE = 1e-4
 """[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""
@@ -45,7 +46,8 @@ class ComparedFinding:
 
     Attributes:
         before, now: None where that run has none.
-        why: why the two are not comparable, or what let the rule be broken before and does not now.
+        why: why the two are not comparable, how deep both are, or what let the rule be broken before and does not
+            now.
     """
 
     change: FindingChange
@@ -249,6 +251,8 @@ class _Comparer:
             excuse = "" if why else _lost_excuse(before, now)
             if excuse:
                 return ComparedFinding(FindingChange.WORSE, before, now, excuse)
+            if not why and before.status == now.status == Status.CONTACT:
+                return self._of_contacts(before, now)
         return ComparedFinding(FindingChange.NOT_COMPARABLE if why else change, before, now, why)
 
     def _change(self, before: Finding, now: Finding) -> FindingChange:
@@ -267,6 +271,21 @@ class _Comparer:
         if abs(gained) <= self.tolerance:
             return FindingChange.UNCHANGED
         return FindingChange.BETTER if gained > 0.0 else FindingChange.WORSE
+
+    def _of_contacts(self, before: Finding, now: Finding) -> ComparedFinding:
+        """Two contacts by the bounds of their depths; where these overlap, the same contact is unchanged."""
+        was, is_now = before.depth, now.depth
+        same = was == is_now and _contact(before) == _contact(now)
+        if was is None or is_now is None or same:
+            return ComparedFinding(FindingChange.UNCHANGED, before, now)
+        why = f"{depth_text(is_now)}, and was {depth_text(was)}"
+        if is_now.at_least > was.penetration + self.tolerance:
+            return ComparedFinding(FindingChange.WORSE, before, now, why)
+        if is_now.penetration < was.at_least - self.tolerance:
+            return ComparedFinding(FindingChange.BETTER, before, now, why)
+        is_open = is_now.penetration > was.at_least + self.tolerance
+        change = FindingChange.NOT_COMPARABLE if is_open else FindingChange.UNCHANGED
+        return ComparedFinding(change, before, now, why if is_open else "")
 
     def _changed_inputs(self, finding: Finding) -> str:
         """Why a finding of one run says nothing of the other: its robot or its rule is another."""
@@ -318,8 +337,10 @@ def _level(finding: Finding) -> float | None:
 
 def _no_number(before: Finding, now: Finding) -> str:
     """Why it is not known which of two findings is worse; empty where it is."""
-    if before.status == now.status == Status.CONTACT and _contact(before) != _contact(now):
-        return "both are in contact, elsewhere or at another time, and findings do not say how deep"
+    if before.status == now.status == Status.CONTACT:
+        if _contact(before) == _contact(now) or (before.depth and now.depth):
+            return ""
+        return "both are in contact, elsewhere or at another time, and it is not known how deep"
     if _level(before) is not None and _level(now) is not None:
         return ""
     if before.status == now.status == Status.CLEAR or before.text == now.text:

@@ -10,6 +10,7 @@ import json
 from dataclasses import dataclass, replace
 
 from clearance.codes import codes
+from clearance.record.moment import Depth
 from clearance.record.status import Status
 from clearance.world.made_moves import MadeMoves
 
@@ -81,6 +82,8 @@ class Finding:
         start, end: [s] the stretch, proven from outside; of samples from its first step to its last.
             first_step, last_step: inside it.
         point_a, point_b: [m] witness points in the world. joints: [rad] or [m] by name, at that moment.
+        penetration, penetration_at_least: [m] bounds of the depth of a contact where it is deepest of what was
+            worked out; None where nothing was.
         move: of a program at that moment. moves: the first and the last of the stretch. Empty without a program.
         text: what else is to say, one line.
         waived: by what, if it is. accepted: not proven with the tolerances, which the case lets pass.
@@ -113,6 +116,8 @@ class Finding:
     text: str = ""
     waived: AppliedWaiver | None = None
     accepted: bool = False
+    penetration: float | None = None
+    penetration_at_least: float | None = None
 
     def with_moves(self, made: MadeMoves) -> Finding:
         """The same with the names of the moves that programs make then."""
@@ -124,6 +129,18 @@ class Finding:
     def code(self) -> str:
         """The stable code of its kind; empty for a kind that a file has and this version does not."""
         return codes().get(self.kind, "")
+
+    def holds_at(self, time: float) -> bool:
+        """True if a time [s] is in its stretch."""
+        return self.start is not None and self.end is not None and self.start <= time <= self.end
+
+    @property
+    def depth(self) -> Depth | None:
+        """Of a contact, where it was worked out."""
+        if self.penetration is None or self.penetration_at_least is None:
+            return None
+        exact = self.penetration == self.penetration_at_least
+        return Depth(self.penetration, self.penetration_at_least, exact)
 
     @property
     def broken(self) -> bool:

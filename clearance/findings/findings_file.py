@@ -82,8 +82,8 @@ def finding_list_of(
 
 
 def findings_text(found: FindingList) -> str:
-    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances and moves
-    nothing where there are none."""
+    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances, moves
+    and depths nothing where there are none."""
     content = {"$schema": SCHEMA, **asdict(found)}
     for name in ("doubts", "findings"):
         rows = zip(content[name], getattr(found, name), strict=True)
@@ -91,8 +91,8 @@ def findings_text(found: FindingList) -> str:
     if not found.measured.tolerances:
         del content["measured"]["tolerances"]
     for finding in content["findings"]:
-        for key in ("accepted", "move", "moves"):
-            if not finding[key]:
+        for key in ("accepted", "move", "moves", "penetration", "penetration_at_least"):
+            if finding[key] in (None, "", False):
                 del finding[key]
     return json.dumps(content, indent=1, sort_keys=True, allow_nan=False) + "\n"
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from clearance.findings.finding import JOINT_LIMITS, PROFILE, Finding, FindingName
 from clearance.findings.judgement import Judgement
 from clearance.findings.occurrences import release_level
+from clearance.record.contact import StepContact
 from clearance.record.record import ProfileAnswer, Record
 from clearance.record.rule_answer import MOST_NEAR_STEPS
 from clearance.record.session import Session
@@ -25,10 +27,30 @@ def findings_of(
     Args:
         of_tolerances: the findings of `of_budget`.
     """
-    found = [*judgement.findings, *of_tolerances]
+    found = [*_with_depths(record, judgement.findings), *of_tolerances]
     found += [_of_profile(record, answer) for answer in record.profiles]
     found += _of_joints(record)
     return tuple(sorted(found, key=lambda finding: finding.standing))
+
+
+def _with_depths(record: Record, findings: Sequence[Finding]) -> Iterator[Finding]:
+    """The findings; contacts with the depth of the deepest overlap of theirs that was worked out."""
+    overlaps: dict[frozenset[str], list[StepContact]] = {}
+    for one in record.worked_out:
+        overlaps.setdefault(frozenset((one.link, one.obstacle)), []).append(one)
+    for finding in findings:
+        own = overlaps.get(frozenset((finding.body_a, finding.body_b)), [])
+        own = [one for one in own if finding.holds_at(one.time)]
+        deepest = max(own, key=lambda one: one.penetration, default=None)
+        if finding.status != Status.CONTACT or deepest is None or deepest.known is None:
+            yield finding
+        else:
+            depth = deepest.known
+            yield replace(
+                finding,
+                penetration=depth.penetration,
+                penetration_at_least=depth.penetration_at_least,
+            )
 
 
 def why_incomplete(session: Session) -> str:

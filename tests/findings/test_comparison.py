@@ -19,9 +19,11 @@ A, B = "gate_a", "gate_b"
 BEFORE = {A: (-0.5, 0.003), B: (0.5, 0.1)}
 
 
-def found(folder, gates, *extra, need="steps", certify=True, **changes) -> FindingList:
-    run = cl.check(load_gates(folder, gates, *extra, **changes), need=need, certify=certify)
-    return run.finding_list
+def found(
+    folder, gates, *extra, need="steps", certify=True, contact="events", **changes
+) -> FindingList:
+    case = load_gates(folder, gates, *extra, **changes)
+    return cl.check(case, need=need, certify=certify, contact=contact).finding_list
 
 
 @pytest.fixture
@@ -67,13 +69,42 @@ def test_what_became_of_each_finding(what, before, tmp_path):
     assert sum(comparison.counts.values()) == len(comparison.rows)
 
 
-def test_another_contact_of_the_same_pair_may_be_a_deeper_one(tmp_path):
-    touching = found(tmp_path, {A: (-0.5, -0.005)})
-    assert compared(touching, touching).passed
-    comparison = compared(touching, found(tmp_path / "now", {A: (-0.5, -0.02)}))
-    (row,) = comparison.rows
-    assert row.change == FindingChange.NOT_COMPARABLE and "how deep" in row.why
-    assert not comparison.passed
+@pytest.mark.parametrize(
+    ("gate", "change", "why"),
+    [
+        ((-0.5, -0.005), FindingChange.UNCHANGED, ""),
+        ((0.3, -0.005), FindingChange.UNCHANGED, ""),
+        ((0.3, -0.005 - 0.5 * TOLERANCE), FindingChange.UNCHANGED, ""),
+        ((-0.5, -0.02), FindingChange.WORSE, "20.00 mm deep, and was 5.000 mm deep"),
+        ((-0.5, -0.001), FindingChange.BETTER, "1.000 mm deep, and was 5.000 mm deep"),
+    ],
+)
+def test_contacts_are_compared_by_their_depth(gate, change, why, tmp_path):
+    before, now = (found(tmp_path / n, {A: at}) for n, at in (("a", (-0.5, -0.005)), ("b", gate)))
+    assert [one.penetration for one in now.findings] == [pytest.approx(-gate[1], abs=1e-12)]
+    (row,) = compared(before, now).rows
+    assert (row.change, row.why) == (change, why)
+    assert compared(before, now).passed is (change != FindingChange.WORSE)
+
+
+def test_contacts_at_another_place_are_not_comparable_if_depths_do_not_decide(tmp_path):
+    gates = {"before": (-0.5, -0.005), "now": (0.3, -0.005)}
+    before, now = (found(tmp_path / n, {A: at}, contact="none") for n, at in gates.items())
+    (row,) = compared(before, now).rows
+    assert row.change == FindingChange.NOT_COMPARABLE and "how deep" in row.why and row.alarms
+    assert compared(before, before).passed
+    old, new = (
+        dataclasses.replace(
+            one,
+            findings=tuple(
+                dataclasses.replace(f, penetration=high, penetration_at_least=low)
+                for f in one.findings
+            ),
+        )
+        for one, low, high in ((before, 0.001, 0.004), (now, 0.003, 0.006))
+    )
+    (row,) = compared(old, new).rows
+    assert row.change == FindingChange.NOT_COMPARABLE and "3.000 to 6.000 mm deep" in row.why
 
 
 def waived_found(folder, gates) -> FindingList:
