@@ -145,12 +145,13 @@ _OTHER = ("eff", "torque", "force", "curr", "temp", "target", "err", "status", "
 def quantity(header: str, joints: Sequence[str]) -> str:
     """What a column's name looks like: `j1`, `j1/velocity` or `j1/acceleration` of a joint; nothing for others."""
     for joint in sorted(joints, key=len, reverse=True):
-        part = rf"(.*[^a-z0-9])?{re.escape(joint)}([^a-z0-9].*)?"
+        part = rf"(.*[^a-z0-9]|[dv])?{re.escape(joint)}([^a-z0-9].*|d|dot)?"
         found = re.fullmatch(part, header, re.IGNORECASE)
         if found:
             before, behind = (re.findall("[a-z]+", (one or "").lower()) for one in found.groups())
             words = [*before, *behind]
-            endings = {_ENDINGS[one] for one in _ENDINGS for word in words if word.startswith(one)}
+            endings = {VELOCITY for word in words if word in ("d", "v", "dot")}
+            endings |= {_ENDINGS[one] for one in _ENDINGS for word in words if word.startswith(one)}
             if any(word.startswith(_OTHER) for word in words) or len(endings) > 1:
                 return ""
             is_said = bool(endings) or UNITS.keys() >= {*behind}

@@ -369,7 +369,7 @@ def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str
 
 
 def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:
-    with at(place):
+    with at(place or "message"):
         require_spelt(fields, *read, *_STARTS, "header")
         header_of(fields)
     for key, value in fields.items():

@@ -26,7 +26,7 @@ from clearance.formats.message.values import (
     items,
     message,
     numbers,
-    require_spelt,
+    require_fields,
     text,
 )
 from clearance.formats.motion.pose_file import (
@@ -101,7 +101,7 @@ def _poses_in(given: Any) -> Iterator[_StampedPose]:
 def _pose(given: Any) -> _StampedPose:
     if not isinstance(given, Fields) or not {"header"} < set(given):
         raise MissingKey(f"{described(given)} has no header with a time", valid=_NEEDED)
-    require_spelt(given, "header", "pose", "transform", "child_frame_id")
+    require_fields(given, "header", "pose", "transform", "child_frame_id", "twist")
     header = header_of(given)
     time = nanoseconds_in(header.get("stamp"))
     if time is None:
@@ -114,7 +114,10 @@ def _pose(given: Any) -> _StampedPose:
     if "transform" in given:
         pose, keys = message(given, "transform"), ("translation", "rotation")
     elif "pose" in pose:
+        require_fields(pose, "pose", "covariance")
         pose = message(pose, "pose")
+    with at("pose" if "pose" in given else "transform"):
+        require_fields(pose, *keys)
     for key in keys:
         if key not in pose:
             raise MissingKey(f"there is no {key!r}", valid=_NEEDED)

@@ -32,7 +32,7 @@ from clearance.formats.table.csv_table import (
     columns_of,
     header_of,
     line_of_row,
-    note_on_separators,
+    notes_on_writing,
     refuse_standing_time,
     require_time,
 )
@@ -68,7 +68,7 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     refuse_standing_time(times[:, 0], table)
     _refuse_far(positions, table)
     refuse_off_length_one(quaternions, table)
-    notes = (*note_on_separators(table), *notes_on_names(header, columns), *note_on_units(columns))
+    notes = (*notes_on_writing(table), *notes_on_names(header, columns), *note_on_units(columns))
     return samples_of(PoseSamples(times[:, 0], positions, quaternions), notes)
 
 

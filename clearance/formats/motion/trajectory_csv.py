@@ -41,7 +41,7 @@ from clearance.formats.table.csv_table import (
     columns_of,
     first_row,
     header_of,
-    note_on_separators,
+    notes_on_writing,
     refuse_standing_time,
     require_time,
 )
@@ -164,7 +164,7 @@ def _values(
 
 
 def _notes(table: TextTable, choice: Choice) -> list[str]:
-    notes = note_on_separators(table)
+    notes = notes_on_writing(table)
     if choice.joints is not None:
         notes.append(f"no header; the columns are {', '.join(table.names or ())}")
     if choice.period is not None:

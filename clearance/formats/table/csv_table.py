@@ -27,6 +27,7 @@ from clearance.errors import (
     NotFinite,
 )
 from clearance.world.names import checked_name
+from clearance.world.notice import listed
 
 TIME = "time"
 
@@ -52,14 +53,14 @@ class TextTable(NamedTuple):
 
     Attributes:
         opened: opens it, again and again. names: of its columns, where it has no header.
-        n_comments: lines above the table that are passed over.
+        above: the lines above the table, which are passed over.
     """
 
     opened: Opener
     delimiter: str = ","
     decimal: str = "."
     names: tuple[str, ...] | None = None
-    n_comments: int = 0
+    above: tuple[bytes, ...] = ()
 
     def float_of(self, cell: str) -> float | None:
         """The number in a cell, or None."""
@@ -82,38 +83,40 @@ def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTabl
     Args:
         names: of the columns, where there is no header.
     """
-    n_comments = _n_comments(opened, names)
+    above = _above(opened, names)
     with opened() as file:
-        above = sum(len(file.readline()) for _ in range(n_comments))
+        file.seek(sum(map(len, above)))
         start = file.read(65536).removeprefix(BOM_UTF8).lstrip().partition(b"\n")[0]
         if _is_of_blanks(start):
-            return as_written(blanks_as_tabs(opened, n_comments), names)
+            return as_written(blanks_as_tabs(opened, len(above)), names)._replace(above=above)
         others = [mark for mark in _SEPARATORS if mark.encode() in start]
         if not others or (names is None and b"," in start):
-            return TextTable(opened, names=names, n_comments=n_comments)
-        file.seek(above)
+            return TextTable(opened, names=names, above=above)
+        file.seek(sum(map(len, above)))
         has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
-    return TextTable(opened, others[0], "," if has_comma else ".", names, n_comments)
+    return TextTable(opened, others[0], "," if has_comma else ".", names, above)
 
 
 MARKS = b"#", b"%"
 """How a comment begins, and the header of programs that mark what is no number."""
 
 
-def _n_comments(opened: Opener, names: tuple[str, ...] | None) -> int:
-    """The number of lines to pass over: those that are marked, above a header; the last one is the header itself
-    where numbers follow it.
+def _above(opened: Opener, names: tuple[str, ...] | None) -> tuple[bytes, ...]:
+    """The lines to pass over: those that are marked, above a header; the last one is the header itself where
+    numbers follow it.
     """
-    marked = []
+    lines: list[bytes] = []
+    last = 0
     with opened() as file:
-        for i, line in enumerate(iter(lambda: file.readline(65536), b"")):
-            row = line.removeprefix(BOM_UTF8 if i == 0 else b"").strip()
-            if row.startswith(MARKS):
-                marked.append(i)
-            elif row:
+        for line in iter(lambda: file.readline(65536), b""):
+            row = line.removeprefix(b"" if lines else BOM_UTF8).strip()
+            if row and not row.startswith(MARKS):
                 is_header = names is not None or not _has_number(row)
-                return i if is_header and marked else marked[-1] if marked else 0
-    return marked[-1] if marked else 0
+                any_marked = any(one.strip() for one in lines)
+                return tuple(lines if is_header and any_marked else lines[:last])
+            last = len(lines) if row else last
+            lines.append(line)
+    return tuple(lines[:last])
 
 
 def _has_number(row: bytes) -> bool:
@@ -150,12 +153,15 @@ def blanks_as_tabs(opened: Opener, n_comments: int = 0) -> Opener:
     return lambda: io.BytesIO(content)
 
 
-def note_on_separators(table: TextTable) -> list[str]:
-    """A line that says so where columns are separated otherwise than by commas."""
+def notes_on_writing(table: TextTable) -> list[str]:
+    """Lines on comments above, and on columns that are separated otherwise than by commas."""
+    said = [line.decode("utf-8", "replace").strip("\ufeff#% \t\r\n") for line in table.above]
+    shown = listed([f"{one!r:.60}" for one in said if one])
+    notes = [f"above the header, passed over: {shown}"] if shown else []
     if table.delimiter == ",":
-        return []
+        return notes
     decimals = ", decimals written with commas" if table.decimal == "," else ""
-    return [f"columns are separated by {_SEPARATORS[table.delimiter]}{decimals}"]
+    return [*notes, f"columns are separated by {_SEPARATORS[table.delimiter]}{decimals}"]
 
 
 def first_row(table: TextTable) -> list[str]:
@@ -365,16 +371,17 @@ def _rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
     """(line number, cells) of every row that is not blank; lines count from 1."""
     with table.opened() as file:
         text = io.TextIOWrapper(file, encoding="utf-8-sig", newline="")
-        reader = csv.reader(islice(text, table.n_comments, None), delimiter=table.delimiter)
+        n_above = len(table.above)
+        reader = csv.reader(islice(text, n_above, None), delimiter=table.delimiter)
         try:
             for cells in reader:
                 if cells:
-                    yield table.n_comments + reader.line_num, cells
+                    yield n_above + reader.line_num, cells
         except UnicodeDecodeError:
             raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
         except csv.Error as error:
             raise BadSyntax(
-                f"not CSV: {error}", where=f"line {table.n_comments + reader.line_num}"
+                f"not CSV: {error}", where=f"line {n_above + reader.line_num}"
             ) from None
 
 
@@ -388,7 +395,7 @@ def _data_rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
 
 def _n_above(table: TextTable) -> int:
     """Number of lines up to and with the header."""
-    return table.n_comments if table.names is not None else next(_rows(table))[0]
+    return len(table.above) if table.names is not None else next(_rows(table))[0]
 
 
 def line_of_row(table: TextTable, i_row: int) -> int:

@@ -31,6 +31,8 @@ def read(text, turns=TURNS, **choice):
     return read_trajectory(request, "path.csv")
 
 
+ABOVE, BLANKS = "above the header, passed over:", "columns are separated by tabs or blanks"
+
 WAYS = [
     ("Time,shoulder,lift\n0,1,2\n1,3,4\n", []),
     ("t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
@@ -40,21 +42,21 @@ WAYS = [
         ["column 'timestamp_ns' is taken for time", "read in nanoseconds: 'time'"],
     ),
     ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
-    ("% time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
+    ("% time shoulder lift\n0 1 2\n1 3 4\n", [BLANKS]),
     ("# time,shoulder,lift\n0,1,2\n1,3,4\n", []),
-    ("# run 7\n# of arm\ntime,shoulder,lift\n0,1,2\n1,3,4\n", []),
-    ("\ufeff# run 7, 1 kHz\n\n#time,shoulder,lift\n0,1,2\n1,3,4\n", []),  # as numpy.savetxt writes two lines
-    ("# run 7\n# time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
+    ("# run 7\n# of arm\ntime,shoulder,lift\n0,1,2\n1,3,4\n", [f"{ABOVE} 'run 7', 'of arm'"]),
+    ("\ufeff# run 7, 1 kHz\n\n#time,shoulder,lift\n0,1,2\n1,3,4\n", [f"{ABOVE} 'run 7, 1 kHz'"]),
+    ("# run 7\n# time shoulder lift\n0 1 2\n1 3 4\n", [f"{ABOVE} 'run 7'", BLANKS]),
     (
         "% run; 7\ntime;shoulder;lift\n0;1,0;2\n1;3;4\n",
-        ["columns are separated by semicolons, decimals written with commas"],
+        [f"{ABOVE} 'run; 7'", "columns are separated by semicolons, decimals written with commas"],
     ),
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
-    ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", ["columns are separated by tabs or blanks"]),
-    ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", ["columns are separated by tabs or blanks"]),
+    ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", [BLANKS]),
+    ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", [BLANKS]),
     (
         "# t shoulder lift\r\n0.0 1 2\r\n1.0 3 4\r\n",
-        ["columns are separated by tabs or blanks", "column 't' is taken for time"],
+        [BLANKS, "column 't' is taken for time"],
     ),
     (
         "time\tshoulder\tlift\n0\t1,0\t2\n1\t3\t4,0\n",
@@ -154,7 +156,11 @@ def test_each_error_on_a_header_has_columns_that_can_be_pasted(tmp_path, header,
 
 
 def test_an_unknown_column_is_told_by_what_it_looks_like(tmp_path):
-    for name, meant in (("Lift", "lift"), ("shoulder_speed", "shoulder/velocity")):
+    for name, meant in (
+        ("Lift", "lift"),
+        ("shoulder_speed", "shoulder/velocity"),
+        ("dshoulder", "shoulder/velocity"),
+    ):
         with pytest.raises(UnknownJoint, match=f"unknown joint '{name}'; did you mean '{meant}'"):
             load_small(tmp_path, urdf=TWO_JOINTS, trajectory=f"time,shoulder,{name}\n0,0,0\n")
 

@@ -132,6 +132,12 @@ def test_paths_transforms_and_covariances_are_poses_too():
         ([pose(0, 2, header={"frame_id": "a"})], BadTime, "message 1: header.stamp: None is given"),
         ([{"poses": [{"position": {"x": 1}}]}], BadInput, r"poses\[0\].*has no header"),
         ([[1]], BadInput, "a list of 1 is not a message"),
+        ([pose(0, 2, offset=1)], BadInput, "message 1: unknown field 'offset'"),
+        (
+            [pose(0, 2) | {"pose": pose(0, 2)["pose"] | {"scale": 2}}],
+            BadInput,
+            "pose: unknown field 'scale'",
+        ),
     ],
 )
 def test_what_is_no_motion_of_one_thing_is_refused(messages, fault, said):
