@@ -28,14 +28,13 @@ from clearance.formats.table.column_units import (
 from clearance.formats.table.csv_table import (
     TIME,
     TextTable,
-    as_written,
     columns_of,
     header_of,
     line_of_row,
-    notes_on_writing,
     refuse_standing_time,
     require_time,
 )
+from clearance.formats.table.table_start import as_written, notes_on_writing
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.tolerance import LARGEST, ROUNDED_ROTATION
 from clearance.world.pose_table import PoseTable

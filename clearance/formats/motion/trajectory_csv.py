@@ -37,14 +37,13 @@ from clearance.formats.table.csv_table import (
     TIME,
     UNNAMED,
     TextTable,
-    as_written,
     columns_of,
     first_row,
     header_of,
-    notes_on_writing,
     refuse_standing_time,
     require_time,
 )
+from clearance.formats.table.table_start import as_written, notes_on_writing
 from clearance.world.trajectory import Trajectory
 
 

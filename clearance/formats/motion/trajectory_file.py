@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 from clearance.errors import BadMotion, at
 from clearance.formats.known_formats import BAGS, Kind, format_of, function_at
-from clearance.formats.table.csv_table import Opener, as_written, first_row, line_of_row
+from clearance.formats.table.csv_table import Opener, first_row, line_of_row
+from clearance.formats.table.table_start import as_written
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
