@@ -13,6 +13,7 @@ from ruamel.yaml import YAML
 
 import clearance
 from clearance import codes
+from clearance.batch.answer import STATUSES
 from clearance.cli import run
 from clearance.errors import BadInput, ClearanceError
 from clearance.findings import doubts, finding
@@ -109,7 +110,13 @@ def test_explain_prints_what_the_table_has_and_names_the_nearest_code(capsys):
     told, entry = capsys.readouterr().out, codes.entries()["CL120"]
     assert all(text in told for text in (entry.title, entry.means, entry.remedy, entry.example))
     assert run(["explain"]) == 0
-    assert [line[:5] for line in capsys.readouterr().out.splitlines()] == list(GIVEN)
+    codes_told, words_told = capsys.readouterr().out.split("\n\n")
+    assert [line[:5] for line in codes_told.splitlines()] == list(GIVEN)
+    for word in (*STATUSES, "FAIL", "certified", "at the samples only"):
+        assert run(["explain", *word.split()]) == 0
+        assert capsys.readouterr().out.startswith(word.lower())
+        assert f"\n{word.lower()} " in f"\n{words_told}"
+    assert run(["explain", "contact"]) == 0 and "CL611" in capsys.readouterr().out
     assert run(["explain", "CL121x"]) == 2
     assert "did you mean 'CL121'? [CL105]" in capsys.readouterr().err
     for kind, code in (("inside", "CL320"), ("MissingKey", "CL104")):
@@ -117,6 +124,8 @@ def test_explain_prints_what_the_table_has_and_names_the_nearest_code(capsys):
         assert capsys.readouterr().out.startswith(code)
     assert run(["explain", "unitz"]) == 2
     assert "did you mean 'units'?" in capsys.readouterr().err
+    assert run(["explain", "suspekt"]) == 2
+    assert "did you mean 'suspect'?" in capsys.readouterr().err
     assert run(["explain", "qqq"]) == 2
     assert "`clearance explain` lists all" in capsys.readouterr().err
 
