@@ -252,6 +252,7 @@ def _least_of_several(
             best = _best_from_sides(search, shift, best, far)
     if best.kept and shift.size(best.state.x) > NO_WORSE * at_least:
         best = _best_from_sides(search, shift, best, INSIDE * shift.size(best.state.x))
+        best = search.shortened(best)
     return best
 
 

@@ -68,6 +68,9 @@ SMALLER = 1e-5
 SURELY = 1.0 - 1e-9
 """[-] A size is below another if it is by more than rounding."""
 
+NEARLY, HALVINGS = 0.99, 8
+"""[-] If so much of a change is enough, it is shortened by so many halvings."""
+
 LEAST_SHARE, GOOD_SHARE = 0.05, 0.5
 """[-] Of what is foretold: with less a step is not taken, with more the next goes farther."""
 
@@ -194,6 +197,21 @@ class Search:
                 break
             state, record = self._wanting_more(state, record), None
         return SearchResult(state, record, self.n_measured)
+
+    def shortened(self, found: SearchResult) -> SearchResult:
+        """The least share of a change that is proven to be enough: a long interval may have asked for too much."""
+        least, low, share, high = found, 0.0, NEARLY, 1.0
+        for _ in range(HALVINGS if found.kept and found.state.x.any() else 0):
+            state = self.state_at(share * found.state.x)
+            record = proven(state.case, self.margin)
+            if keeps(record):
+                least, high = SearchResult(state, record, self.n_measured), share
+            elif share == NEARLY:
+                break
+            else:
+                low = share
+            share = 0.5 * (low + high)
+        return least
 
     def _wanting_more(self, state: State, unproven: Record) -> State:
         """The same variables, measured by what is wanted so that the motion between the steps is proven too."""

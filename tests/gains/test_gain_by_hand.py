@@ -10,7 +10,9 @@ from clearance.errors import BadInput
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
 from clearance.gains.obstruction import Obstruction
+from clearance.gains.search import Search, SearchResult
 from clearance.gains.sentences import lines_of
+from clearance.gains.shift import obstacle_shift
 from clearance.gains.shortfalls import proven
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle
@@ -52,6 +54,14 @@ def test_an_overlap_is_parted_by_its_depth_and_the_limit():
     assert found.kept and found.size == pytest.approx(0.04, abs=FINE)
     assert found.change[1] == pytest.approx(0.04, abs=FINE)
     assert found.lower_bound == pytest.approx(0.04, rel=1e-4)
+
+
+def test_a_change_that_is_more_than_enough_is_shortened_along_its_own_line():
+    """The left wall has to be moved by 10 mm; 15 mm and 5 mm aside are enough too."""
+    search = Search(obstacle_shift(slot(fail=0.03), "left"), 0.0)
+    far = search.state_at(np.array([0.005, 0.015, 0.0]))
+    found = search.shortened(SearchResult(far, proven(far.case, 0.0), 1))
+    assert found.kept and found.state.x == pytest.approx([0.01 / 3.0, 0.01, 0.0], rel=0.01)
 
 
 def test_an_obstacle_moves_without_the_program_that_may_work_on_it():
