@@ -58,7 +58,7 @@ def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:
     """A warning that nothing comes near to anything, which boxes of hollow meshes do not show."""
     least = min((one.found.clearance.min(initial=np.inf) for one in found), default=np.inf)
     reach = max(map(reach_of, case.robots))
-    is_noted = any(notice.kind == "units" for notice in case.notices)
+    is_noted = any(notice.kind in ("units", "reach") for notice in case.notices)
     if FAR_OFF * reach < least < np.inf and not is_noted:
         text = f"nothing comes nearer than {metres(least)} m to the robot"
         yield far_off_notice(text, least / reach)

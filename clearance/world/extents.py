@@ -10,13 +10,20 @@ import numpy as np
 
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
+from clearance.world.mimics import followers
 from clearance.world.robot import WORLD_LINK, JointKind, Robot
 
 
 def reach_of(placed: PlacedRobot) -> float:
-    """[m] length of its longest chain of joints, slides included, and of its median body."""
-    lengths = [length_of(body) for body in own_bodies(placed.robot)]
-    return chain_of(placed) + (float(np.median(lengths)) if lengths else 0.0)
+    """[m] No point of its links gets farther from its root: offsets, slides and the farthest corner of a link."""
+    paths = _paths(placed)
+    ends = (paths[body.name] + farthest_corner(body) for body in own_bodies(placed.robot))
+    return max(ends, default=chain_of(placed))
+
+
+def farthest_corner(body: Body) -> float:
+    """[m] No point of a body is farther from its frame."""
+    return float(np.linalg.norm(np.abs(body.shape.bounds).max(axis=0)))
 
 
 def own_bodies(robot: Robot) -> list[Body]:
@@ -32,24 +39,33 @@ def own_floor(placed: PlacedRobot) -> str | None:
 
 def chain_of(placed: PlacedRobot) -> float:
     """[m] the longest path from the root over joints' origins, sliding joints as far as they go."""
+    return max(_paths(placed).values())
+
+
+def _paths(placed: PlacedRobot) -> dict[str, float]:
+    """[m] the length of the path from the root to each link."""
     slides = dict(slides_of(placed))
     path = {placed.robot.link_names[0]: 0.0}
     for joint in placed.robot.joints:
         step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
         step += slides.get(joint.name, 0.0)
         path[joint.child] = path[joint.parent] + step
-    return max(path.values())
+    return path
 
 
 def slides_of(placed: PlacedRobot) -> tuple[tuple[str, float], ...]:
-    """How far [m] each sliding joint goes that is asked to."""
-    asked = placed.trajectory
+    """How far [m] each sliding joint goes from 0."""
+    asked, found = placed.trajectory, []
     columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
-    return tuple(
-        (joint.name, float(np.abs(asked.positions[:, columns[joint.name]]).max(initial=0.0)))
-        for joint in placed.robot.joints
-        if asked is not None and joint.kind is JointKind.PRISMATIC and joint.name in columns
-    )
+    for joint, master, factor, offset in followers(placed.robot):
+        if joint.kind is not JointKind.PRISMATIC:
+            continue
+        at = np.array([placed.fixed_positions.get(master, 0.0)])
+        if asked is not None and master in columns:
+            at = asked.positions[:, columns[master]]
+        ends = factor * np.array([at.min(), at.max()]) + offset
+        found.append((joint.name, float(np.abs(ends).max())))
+    return tuple(found)
 
 
 def length_of(body: Body) -> float:

@@ -15,6 +15,7 @@ from clearance.world.case import Case, PlacedRobot
 from clearance.world.cell import once_a_cell
 from clearance.world.extents import (
     chain_of,
+    farthest_corner,
     greatest,
     length_of,
     metres,
@@ -25,6 +26,7 @@ from clearance.world.extents import (
 from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import JointKind
 
 RATIO = 200.0
 """[-] An obstacle this many times as long as the robot reaches, or a body this many times shorter, is in another
@@ -88,16 +90,15 @@ def _odd_links(placed: PlacedRobot, before: str) -> list[str]:
     lengths = [length_of(body) for body in bodies]
     if not lengths:
         return []
-    reach = reach_of(placed)
     usual = chain_of(placed) + sorted(lengths)[(len(lengths) - 1) // 2]
     long, tiny = [], []
     for body, length in zip(bodies, lengths, strict=True):
         text = f"link {before + body.name!r} is {metres(length)} m long"
         if length >= RATIO * usual > 0:
             long.append((length, text))
-        elif _is_mesh(body) and length * RATIO <= reach:
+        elif _is_mesh(body) and length * RATIO <= usual:
             tiny.append((-length, text))
-    return _lengths_in_words(long, tiny, reach)
+    return _lengths_in_words(long, tiny, usual)
 
 
 def _lengths_in_words(
@@ -198,24 +199,66 @@ def _may_be_wall(body: Body, gap: float) -> bool:
 
 
 FAR_OFF = 5.0
-"""[-] What stays this many times as far away as `reach_of`, about ten times that of a data sheet, is idle."""
+"""[-] What stays this many times as far away as `reach_of` is idle."""
 
 
 def _far_off(case: Case) -> list[Notice]:
-    """A warning on obstacles that no robot ever comes near to; where others are near, as in a hall, not on walls,
-    and on shapes without a file only from twice as far."""
+    """A warning where no obstacle is within reach, else on those that no robot ever comes near to."""
+    gaps = _gaps(case, _bases(case))
+    return _out_of_reach(case, gaps) or _idle(case, gaps)
+
+
+def _out_of_reach(case: Case, gaps: Sequence[Sequence[float]]) -> list[Notice]:
+    """A warning where no robot, with what is mounted on it, reaches any obstacle. Carried parts are anywhere."""
+    standing = [one for one in zip(case.obstacles, gaps, strict=True) if not _rides(case, one[0])]
+    if case.carries or not standing:
+        return []
+    mounts = [(one.body, one.mount) for one in case.obstacles if one.mount and _rides(case, one)]
+    longest = max((_length_on(case, *one) for one in mounts), default=0.0)
+    reaches = [reach_of(one) + longest + _slides_left(one) for one in case.robots]
+    within = [reach * _farther(one) for one, reach in zip(case.robots, reaches, strict=True)]
+    if any(gap <= reach for _, own in standing for gap, reach in zip(own, within, strict=True)):
+        return []
+    gap, name = min((min(own), one.name) for one, own in standing)
+    text = (
+        f"no obstacle is within reach: {name!r}, the nearest, stays {metres(gap)} m and more away from "
+        f"{_whose_base(case)}, and no point of a link gets farther than {metres(max(reaches))} m from it; "
+        "are base, places and units right?"
+    )
+    return [Notice(Severity.WARNING, "reach", text)]
+
+
+def _slides_left(placed: PlacedRobot) -> float:
+    """[m] How much farther its sliding joints can go than they do, where they have limits."""
+    gone = dict(slides_of(placed))
+    ends = [(gone[j.name], max(-j.lower, j.upper)) for j in placed.robot.joints if j.name in gone]
+    return sum(max(0.0, end - way) for way, end in ends if np.isfinite(end))
+
+
+def _farther(placed: PlacedRobot) -> float:
+    """[-] How many times its reach a robot may get: what slides without limits is only held against far things."""
+    slides = [one for one in placed.robot.joints if one.kind is JointKind.PRISMATIC]
+    is_free = any(not np.isfinite([one.lower, one.upper]).all() for one in slides)
+    return FAR_OFF if is_free else 1.0
+
+
+def _length_on(case: Case, body: Body, mount: Mount) -> float:
+    """[m] No point of a body is farther from the link that it is mounted on."""
+    return float(np.linalg.norm(resolved_mount(case, mount).pose[:3, 3])) + farthest_corner(body)
+
+
+def _idle(case: Case, gaps: Sequence[Sequence[float]]) -> list[Notice]:
+    """A warning on what stays far away where others are near, as in a hall: not on walls, and on shapes without a
+    file only from twice as far."""
     reach = max(map(reach_of, case.robots))
-    gaps = [min(one) for one in _gaps(case, _bases(case))]
-    all_far = min(gaps, default=0.0) > FAR_OFF * reach
     far = [
-        (gap, f"obstacle {one.name!r} stays {metres(gap)} m")
-        for one, gap in zip(case.obstacles, gaps, strict=True)
-        if all_far or (gap > _idle_from(one.body) * reach and not _may_be_wall(one.body, gap))
+        (min(own), f"obstacle {one.name!r} stays {metres(min(own))} m")
+        for one, own in zip(case.obstacles, gaps, strict=True)
+        if min(own) > _idle_from(one.body) * reach and not _may_be_wall(one.body, min(own))
     ]
     if not far:
         return []
-    whose = "the robot's base" if len(case.robots) == 1 else "every robot's base"
-    text = f"{listed([text for _, text in greatest(far)])} and more away from {whose}"
+    text = f"{listed([text for _, text in greatest(far)])} and more away from {_whose_base(case)}"
     return [far_off_notice(text, min(far)[0] / reach)]
 
 
@@ -227,6 +270,10 @@ def far_off_notice(text: str, times: float) -> Notice:
     """A warning that what is measured is many times the reach away."""
     asks = "are sizes and places in metres, not in millimetres?"
     return Notice(Severity.WARNING, "units", f"{text}, {times:.0f} times its reach: {asks}")
+
+
+def _whose_base(case: Case) -> str:
+    return "the robot's base" if len(case.robots) == 1 else "every robot's base"
 
 
 def _bases(case: Case) -> list[Place]:
@@ -244,7 +291,7 @@ def _gaps(case: Case, bases: Sequence[Place]) -> list[list[float]]:
 def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> list[str]:
     base = max(float(np.abs(place.pose[:3, 3]).max()) for place in bases)
     hint = "lengths are in metres, is this millimetres?"
-    whose = "the robot's base" if len(bases) == 1 else "every robot's base"
+    whose = _whose_base(case)
     if len(far) == len(case.obstacles) and base > FAR:
         gap_text = f"{metres(far[-1][0])} m from the nearest obstacle"
         return [f"{whose} stands {metres(base)} m away, {gap_text}; {hint}"]
@@ -269,11 +316,11 @@ def _from_surface(body: Body, point: np.ndarray) -> float:
     """[m] No point of a body's surface is nearer to a point in its frame; 0 in a solid that is no box."""
     low, high = body.shape.bounds
     outside = float(np.linalg.norm(point - np.clip(point, low, high)))
-    if outside > 0.0 or length_of(body) < FAR:
+    if outside > 0.0 or body.is_cloud:
         return outside
     if body.origin == "box":
         return float(min((point - low).min(), (high - point).min()))
-    return distance(PointCloud(point[None], POINT), body.shape).distance if _is_mesh(body) else 0.0
+    return distance(PointCloud(point[None], POINT), body.shape).distance
 
 
 def _robot_place(case: Case, i_robot: int) -> Place:

@@ -31,7 +31,7 @@ def test_a_small_case_arrives_whole(tmp_path):
     assert placed.world_from_base.tolist() == np.eye(4).tolist()
     assert (case.limits.fail, case.limits.warn) == (0.005, 0.02)
     assert [o.name for o in case.obstacles] == ["post"]
-    assert case.obstacles[0].world_from_body[:3, 3].tolist() == [2, 0, 0]
+    assert case.obstacles[0].world_from_body[:3, 3].tolist() == [1.2, 0, 0]
     assert case.obstacles[0].body.shape.bounds[1].tolist() == [0.05, 0.05, 0.5]
     assert case.contact_response is False
     assert case.notes == ()
@@ -102,7 +102,8 @@ def test_poses_take_quaternions_or_roll_pitch_yaw(tmp_path):
     half = float(np.sqrt(0.5))
     base = f"arm.urdf, base: {{xyz: [1, 2, 3], quat_xyzw: [0, 0, {half!r}, {half!r}]}}"
     case = load_small(
-        tmp_path, changed("arm.urdf", base, "{xyz: [2, 0, 0]}", "{rpy: [0, 0, 1.5707963267948966]}")
+        tmp_path,
+        changed("arm.urdf", base, "{xyz: [1.2, 0, 0]}", "{rpy: [0, 0, 1.5707963267948966]}"),
     )
     turned = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     assert case.robots[0].world_from_base[:3, :3] == pytest.approx(turned, abs=1e-15)

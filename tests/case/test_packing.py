@@ -23,7 +23,7 @@ WAIVERS = """- {between: [upper, post], at_least: 0.001, reason: shown, by: ann,
 """
 
 SCENE = """obstacles:
-- {name: post, pose: {xyz: [2, 0, 0]}, box: {size: [0.1, 0.1, 1]}}
+- {name: post, pose: {xyz: [1.2, 0, 0]}, box: {size: [0.1, 0.1, 1]}}
 - {name: near, pose: {xyz: [-2, 0, 0]}, mesh: {file: PLACE/lab/parts/cube.stl, scale: 0.1}}
 - {name: brought, pose: {xyz: [0, 3, 0]}, mesh: {file: "pybullet_data:cube.obj", scale: 0.1}}
 """

@@ -77,9 +77,9 @@ def test_limits_and_radii_in_millimetres_are_suspect(tmp_path):
         ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 90]}", "base has an angle of 90 rad"),
         ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 5]}", "base has an angle of 5 rad"),
         ("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [-1200, 0, 0]}", "base stands 1200 m away"),
-        ("xyz: [2, 0, 0]", "rpy: [0, -45, 0]", "obstacle 'post' has an angle of 45 rad"),
-        ("xyz: [2, 0, 0]", "xyz: [0, 0, 650]", "obstacle 'post' stands 650 m away"),
-        ("xyz: [2, 0, 0]", "xyz: [40, 0, 25]", "obstacle 'post' stands 46.9 m away"),
+        ("xyz: [1.2, 0, 0]", "rpy: [0, -45, 0]", "obstacle 'post' has an angle of 45 rad"),
+        ("xyz: [1.2, 0, 0]", "xyz: [0, 0, 650]", "obstacle 'post' stands 650 m away"),
+        ("xyz: [1.2, 0, 0]", "xyz: [40, 0, 25]", "obstacle 'post' stands 46.9 m away"),
         ("size: [0.1, 0.1, 1]", "size: [600, 400, 5]", "obstacle 'post' is 600 m long"),
         ("size: [0.1, 0.1, 1]", "size: [0.002, 0.001, 0.001]", "obstacle 'post' is 0.002 m long"),
     ],
@@ -105,13 +105,13 @@ def test_the_usual_is_not_suspect(tmp_path):
     floor = "  - {name: floor, pose: {xyz: [0, 0, -0.1]}, box: {size: [80, 80, 0.02]}}\n"
     pin = "  - {name: pin, pose: {xyz: [1, 0, 0]}, cylinder: {radius: 0.002, length: 0.03}}\n"
     case = CASE.replace("trajectory:", floor + pin + "trajectory:")
-    turned = case.replace("xyz: [2, 0, 0]", "xyz: [2, 0, 0], rpy: [4.71, 6.2832, -5.1234567]")
+    turned = case.replace("xyz: [1.2, 0, 0]", "xyz: [1.2, 0, 0], rpy: [4.71, 6.2832, -5.1234567]")
     assert found(tmp_path, turned) == []
     wall = "  - {name: wall, pose: {xyz: [30, 0, 3]}, box: {size: [0.3, 60, 6]}}\n"
     pillar = "  - {name: pillar, pose: {xyz: [20, 22, 3]}, box: {size: [0.5, 0.5, 6]}}\n"
     assert found(tmp_path, case.replace("trajectory:", wall + pillar + "trajectory:")) == []
-    hall = CASE.replace("xyz: [2, 0, 0]", "xyz: [112, 0, 0]")
-    hall = hall.replace("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [110, 0, 0]}")
+    hall = CASE.replace("xyz: [1.2, 0, 0]", "xyz: [112, 0, 0]")
+    hall = hall.replace("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [110.8, 0, 0]}")
     assert found(tmp_path, hall) == []
 
 
@@ -169,7 +169,7 @@ def test_parts_of_a_turn_of_few_digits_are_no_degrees_and_others_may_be():
 
 def test_quaternions_of_three_digits_stand_in_a_case_with_a_note(tmp_path):
     quaternion = "quat_xyzw: [0, 0.707, 0, 0.707]"
-    case = changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], {quaternion}",
+    case = changed("xyz: [1.2, 0, 0]", f"xyz: [1.2, 0, 0], {quaternion}",
                    "arm.urdf", f"arm.urdf, base: {{{quaternion}}}")  # fmt: skip
     made = load_small(tmp_path, case)
     upright = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]

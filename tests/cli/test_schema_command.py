@@ -88,7 +88,7 @@ def test_what_it_takes_is_taken(errors, old, new):
         ("box: {size: [0.1, 0.1, 1]}", "box: {size: [0.1, 1]}"),
         ("box: {size: [0.1, 0.1, 1]}", "box: {size: [0.1, 0.1, 1]}\n    sphere: {radius: 1}"),
         ("box: {size: [0.1, 0.1, 1]}", "sphere: {radius: 0}"),
-        ("xyz: [2, 0, 0]", "rpy: [0, 0, 0], quat_xyzw: [0, 0, 0, 1]"),
+        ("xyz: [1.2, 0, 0]", "rpy: [0, 0, 0], quat_xyzw: [0, 0, 0, 1]"),
         ("warn: 0.02", "warn: 0.02, joints: stop"),
         ("limits:", "accept: [unit]\nlimits:"),
         ("limits:", "tolerance: {}\nlimits:"),

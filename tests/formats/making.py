@@ -73,7 +73,7 @@ robot: {urdf: arm.urdf}
 scene:
   obstacles:
   - name: post
-    pose: {xyz: [2, 0, 0]}
+    pose: {xyz: [1.2, 0, 0]}
     box: {size: [0.1, 0.1, 1]}
 trajectory: {file: path.csv}
 limits: {fail: 0.005, warn: 0.02}

@@ -31,7 +31,7 @@ def test_a_gap_may_catch_what_needs_more(tmp_path):
 
 
 def test_pairs_that_both_stand_are_left_out(tmp_path):
-    text = CASE.replace("xyz: [2, 0, 0]", "xyz: [0.2, 0.3, 0]")
+    text = CASE.replace("xyz: [1.2, 0, 0]", "xyz: [0.2, 0.3, 0]")
     assert text != CASE
     file = write_case(tmp_path, text)
     found = cl.answer(cl.Question(cl.load_case(file), body_gaps=True))
@@ -43,7 +43,7 @@ def test_pairs_that_both_stand_are_left_out(tmp_path):
 
 
 def test_on_the_command_line(tmp_path, capsys):
-    file = write_case(tmp_path, CASE.replace("xyz: [2, 0, 0]", "xyz: [0.2, 0.6, 0]"))
+    file = write_case(tmp_path, CASE.replace("xyz: [1.2, 0, 0]", "xyz: [0.2, 0.6, 0]"))
     run(["check", str(file), "--body-gaps"])
     assert "body gaps   " in capsys.readouterr().out
     assert run(["check", str(file), "--body-gaps", "--need", "minimum"]) == 2

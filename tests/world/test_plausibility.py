@@ -8,6 +8,7 @@ import pytest
 from clearance import box, check
 from clearance.errors import BadDimension, BadInput, UnknownJoint
 from clearance.formats.plausibility import angle_notices
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.report.topics.worst import lines
 from clearance.world.body import Body, Obstacle
@@ -37,7 +38,7 @@ def case_of(
     asked = Trajectory(np.array(times), ("elbow",), np.array(positions)[:, None])
     body = Body("block", obstacle or box((0.2, 0.2, 0.2)))
     placed = PlacedRobot(robot or arm(), asked)
-    return Case("made", (placed,), (Obstacle(body, at(1.5) if pose is None else pose),), **more)
+    return Case("made", (placed,), (Obstacle(body, at(0.8) if pose is None else pose),), **more)
 
 
 def reported(case: Case) -> list[tuple[str, str]]:
@@ -87,28 +88,56 @@ def frame_around(side: float, share: float = 0.01) -> Polyhedron:
     return Polyhedron(np.concatenate(parts), faces)
 
 
+POINTS = PointCloud(np.array([[9.5, 0, 0], [-9.5, 0, 0], [0, 9.5, 0], [0, -9.5, 0]]), 0.01)
+
+
 @pytest.mark.parametrize(
-    ("changes", "severity", "says"),
+    ("obstacle", "pose", "severity", "says"),
     [
-        ({"obstacle": box((60.0, 60.0, 60.0)), "pose": at(0.0, 0.0, -35.0)}, "warning",
-         "obstacle 'block' stays 5 m and more away from the robot's base, 6 times its reach"),
-        ({"pose": at(15.0)}, "warning", "obstacle 'block' stays 14.9 m and more away"),
-        ({"obstacle": frame_around(19.0), "pose": at(0.0)}, "warning",
-         "nothing comes nearer than 9.21 m to the robot, 12 times its reach"),
-        ({"obstacle": frame_around(20.0), "pose": at(0.0)}, "warning",
-         "obstacle 'block' stays 9.9 m and more away from the robot's base, 12 times its reach"),
-        ({"obstacle": frame_around(90.0), "pose": at(0.0)}, "suspect", "'block' is 90.9 m long"),
+        (box((60.0, 60.0, 60.0)), at(0.0, 0.0, -35.0), "warning", "'block', the nearest, stays 5 m and more away"),
+        (box((0.2, 0.2, 0.2)), at(15.0), "warning", "'block', the nearest, stays 14.9 m and more away"),
+        (box((0.2, 0.2, 0.2)), at(0.87), "warning", "stays 0.77 m and more away from the robot's base, "
+         "and no point of a link gets farther than 0.76 m from it"),
+        (box((0.2, 0.2, 0.2)), at(0.85), None, ""),
+        (frame_around(19.0), at(0.0), "warning", "stays 9.4 m and more away"),
+        (frame_around(90.0), at(0.0), "suspect", "'block' is 90.9 m long"),
+        (POINTS, np.eye(4), "warning", "nothing comes nearer than 9.3 m to the robot, 12 times its reach"),
     ],
 )  # fmt: skip
-def test_what_is_far_from_the_robot_is_no_quiet_clear(changes, severity, says):
-    case = case_of(**changes)
+def test_what_is_far_from_the_robot_is_no_quiet_clear(obstacle, pose, severity, says):
+    """The base's corners are 0.26 m from its middle, and so are those of the arm half a metre on."""
+    case = case_of(obstacle=obstacle, pose=pose)
     if severity == "suspect":
         frame = case.obstacles[0]
         mesh = replace(frame, body=replace(frame.body, origin="frame.stl"))
         case = replace(case, obstacles=(mesh,))
-    found = [one for one in check(case).record.notices if one.kind == "units"]
-    assert [one.severity for one in found] == [severity]
-    assert says in found[0].text
+    found = check(case).record.notices
+    assert [str(one.severity) for one in found] == ([severity] if severity else [])
+    assert all(says in one.text for one in found)
+
+
+def test_what_a_link_bears_and_how_far_its_slides_go_count_as_its_reach():
+    """A block 0.8 m farther is in reach of an arm that stands, or goes, 0.8 m up, and of a rod of 0.9 m on it."""
+    far = case_of(pose=at(0.0, 0.0, 1.6))
+    assert reported(far) == [("warning", "reach")]
+    rod = Obstacle(Body("rod", box((0.1, 0.1, 0.1))), mount=Mount("upper", at(0.8)))
+    assert reported(replace(far, obstacles=(*far.obstacles, rod))) == []
+    slide = replace(far.robots[0].robot.joints[0], kind=JointKind.PRISMATIC)
+
+    def on_slide(case, lower, upper, **changes):
+        joints = (replace(slide, lower=lower, upper=upper),)
+        placed = replace(case.robots[0], robot=replace(case.robots[0].robot, joints=joints))
+        return reported(replace(case, robots=(replace(placed, **changes),)))
+
+    assert on_slide(far, -0.6, 0.6) == [("warning", "reach")]
+    assert on_slide(far, -0.8, 0.6) == on_slide(far, -np.inf, np.inf) == []
+    higher = case_of(pose=at(0.0, 0.0, 6.5))  # five times 0.5 + 0.5 + 0.26 m is 6.3 m
+    assert on_slide(higher, -np.inf, np.inf) == [("warning", "reach")]
+    asked = far.robots[0].trajectory
+    farther = replace(asked, positions=1.6 * asked.positions)
+    assert on_slide(higher, -np.inf, np.inf, trajectory=farther) == []
+    lifted = {"trajectory": None, "fixed_positions": {"elbow": 0.8}}
+    assert on_slide(higher, -np.inf, np.inf, **lifted) == []
 
 
 @pytest.mark.parametrize(
@@ -143,7 +172,7 @@ def test_angles_that_look_like_degrees_are_told_how_to_say_so():
 
 
 def test_a_small_box_of_a_robot_is_a_sensor():
-    assert reported(case_of(arm(0.001, "box"))) == []
+    assert reported(case_of(arm(0.001, "box"), pose=at(0.5))) == []
 
 
 def test_a_mesh_is_also_held_against_the_other_obstacles():

@@ -50,6 +50,6 @@ def test_a_case_without_a_name_has_that_of_its_file_or_folder(tmp_path):
 def test_a_robot_without_joints_needs_times_only(tmp_path):
     case = load_small(tmp_path, urdf=robot(link(BOX, "base")), trajectory="time\n0\n1\n")
     assert case.robots[0].trajectory.positions.shape == (2, 0)
-    assert check(case).worst["clearance"] == pytest.approx(1.45, abs=1e-12)
+    assert check(case).worst["clearance"] == pytest.approx(0.65, abs=1e-12)
     with pytest.raises(BadShape, match="there is no joint column"):
         load_small(tmp_path, trajectory="time\n0\n1\n")

@@ -20,7 +20,7 @@ from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
 
 CASE = """robot: {{urdf: arm/urdf/arm.urdf.xacro, {0}}}
-scene: {{obstacles: [{{name: post, box: {{size: [0.1, 0.1, 1]}}, pose: {{xyz: [2, 0, 0]}}}}]}}
+scene: {{obstacles: [{{name: post, box: {{size: [0.1, 0.1, 1]}}, pose: {{xyz: [1.2, 0, 0]}}}}]}}
 trajectory: path.csv
 """
 
@@ -128,7 +128,7 @@ def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
     )
     (tmp_path / "arm.srdf.xacro").write_text(body(f'<xacro:property name="g" value="a"/>{state}'))
     path.write_text(path.read_text().replace("trajectory: path.csv", "").replace(
-        "pose: {xyz: [2, 0, 0]}", "moves: door.csv"))  # fmt: skip
+        "pose: {xyz: [1.2, 0, 0]}", "moves: door.csv"))  # fmt: skip
     (tmp_path / "door.csv").write_text("time,x,y,z,qx,qy,qz,qw\n0,2,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n")
     case = load_case(path)
     assert case.robots[0].fixed_positions == {"shoulder": math.pi / 4}
