@@ -17,7 +17,7 @@ from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.extents import metres
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_positions import joint_extents
-from clearance.world.joint_speeds import notices_on_speed
+from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN, notices_on_speed
 from clearance.world.notice import WRAP, Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import (
     CREEP_SLIDE,
@@ -117,6 +117,9 @@ def _in_millimetres(large: list[str], what: str) -> list[Notice]:
 LARGE_TRAVEL = 100.0
 """[m] Nothing in a cell goes so far; in millimetres it is usual."""
 
+FAST_SLIDE, FAST_TURN = 20.0, 100.0
+"""[m/s], [rad/s] Nothing in a cell is so fast: delta robots reach 10 m/s. A table that jumps is."""
+
 
 HALF_TURN = 2e-3
 """[rad] A turn that is as near to half a turn is one: quaternions of three digits are off by so much."""
@@ -147,29 +150,52 @@ def _half_turns(what: str, table: PoseTable) -> list[str]:
 
 
 def _odd(what: str, table: PoseTable) -> list[str]:
-    texts = []
     travel = float(np.linalg.norm(np.ptp(table.positions, axis=0)))
     if travel > LARGE_TRAVEL:
-        texts.append(
-            f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?"
-        )
+        return [f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?"]
+    if len(table) < 2:
+        return []
     if _creeps(table):
         length = float(table.times[-1] - table.times[0]) / table.timing.rate
-        texts.append(
+        return [
             f"{what} moves no faster than {CREEP_SLIDE * 1000:g} mm/s and {CREEP_TURN:g} rad/s in {length:g} s; "
             "times are in seconds, is this milliseconds?"
-        )
-    return texts
+        ]
+    return _jump(what, table)
+
+
+def _jump(what: str, table: PoseTable) -> list[str]:
+    """The fastest step of a table, if nothing is so fast. A short way is no jump: stamps can lie close."""
+    for ways, least, fast, unit in zip(
+        _ways(table), (STEP_SLIDE, STEP_TURN), (FAST_SLIDE, FAST_TURN), ("m", "rad"), strict=True
+    ):
+        speeds = np.where(ways > least, ways, 0.0) / _lengths(table)
+        step = int(speeds.argmax())
+        if speeds[step] > fast:
+            start, end = table.times[step : step + 2].tolist()
+            return [
+                f"{what} goes {ways[step]:.3g} {unit} from {start:g} to {end:g} s of its table, at "
+                f"{metres(speeds[step])} {unit}/s: does it jump, or are its lengths or times in another unit?"
+            ]
+    return []
+
+
+def _ways(table: PoseTable) -> tuple[np.ndarray, np.ndarray]:
+    """(n - 1,) [m] and [rad] How far a table goes and turns from sample to sample."""
+    ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
+    chords = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
+    return ways, 4.0 * np.arcsin(np.minimum(1.0, chords / 2.0))
+
+
+def _lengths(table: PoseTable) -> np.ndarray:
+    """(n - 1,) [s] of the run from sample to sample."""
+    return np.diff(table.times) / table.timing.rate
 
 
 def _creeps(table: PoseTable) -> bool:
     """True for a motion that gets somewhere, but never faster than creeping."""
-    if len(table) < 2:
-        return False
-    ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
-    chords = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
-    turns = 4.0 * np.arcsin(np.minimum(1.0, chords / 2.0))
-    lengths = np.diff(table.times) / table.timing.rate
+    ways, turns = _ways(table)
+    lengths = _lengths(table)
     slow = (ways / lengths).max() <= CREEP_SLIDE and (turns / lengths).max() <= CREEP_TURN
     return bool(slow and (ways.sum() > LEAST_SLIDE or turns.sum() > LEAST_TURN))
 

@@ -16,8 +16,10 @@ from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.mimics import followers
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
-from clearance.world.plausibility import notices_of
+from clearance.world.plausibility import notices_of, notices_on_tables
+from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, faces_of
 
@@ -267,6 +269,39 @@ def test_joints_that_nobody_gives_are_a_warning_since_a_column_may_be_lost(given
     case_says = {f"j{i}": 0.1 for i in "01234" if i not in given}
     assert not texts(fixed_positions=case_says)
     assert not texts(trajectory=None)
+
+
+HALF = np.sqrt(0.5)
+
+
+@pytest.mark.parametrize(
+    ("step", "place", "turn", "rate", "told"),
+    [
+        (
+            0.0005,
+            1.9,
+            0.0,
+            1.0,
+            "goes 1.9 m from 1 to 1.0005 s of its table, at 3800 m/s: does it jump",
+        ),
+        (0.5, 1.9, 0.0, 1000.0, "goes 1.9 m from 1 to 1.5 s of its table, at 3800 m/s"),
+        (0.001, 0.0, HALF, 1.0, "goes 1.57 rad from 1 to 1.001 s of its table, at 1571 rad/s"),
+        (0.1, 1.9, 0.0, 1.0, None),
+        (0.0001, 0.004, 0.0, 1.0, None),
+        (0.0005, 1900.0, 0.0, 1.0, "moves 1900 m; lengths are in metres"),
+    ],
+)
+def test_a_table_that_jumps_is_suspect(step, place, turn, rate, told):
+    """A block moves by 0.3 m in the first second, or turns by a quarter in the step after it."""
+    times = np.array([0.0, 1.0, 1.0 + step, 2.0 + step])
+    places = np.array([[0.8, 0, 0], [0.8, 0.3, 0], [0.8, 0.3, place], [0.8, 0.3, place]])
+    turns = np.array([[0, 0, 0, 1], [0, 0, 0, 1], *[[0, 0, turn, np.sqrt(1 - turn**2)]] * 2])
+    moves = PoseTable(times, places, turns, Timing(rate=rate))
+    case = case_of()
+    case = replace(case, obstacles=(Obstacle(case.obstacles[0].body, moves=moves),))
+    found = [one.text for one in notices_on_tables(case)]
+    assert len(found) == (told is not None)
+    assert all(text.startswith(f"CHECK UNITS: obstacle 'block' {told}") for text in found)
 
 
 def test_a_robot_that_need_not_move_is_checked_too():
