@@ -32,7 +32,7 @@ that could go either way (then as written), and goals without a start (then sing
 WRAP, START = "wrap", "start"
 
 WARNINGS = (
-    "geometry", "equality", "scene", "padding", "reach", "program", "carry", "rest", "neighbours",
+    "geometry", "equality", "scene", "padding", "reach", "scan", "program", "carry", "rest", "neighbours",
     "columns", "recorded run", "pairs", "paper", "certificate", "contact", "cross-check",
 )  # fmt: skip
 """Kinds of warnings alone, which a case can accept too: where warnings fail, these do not then."""

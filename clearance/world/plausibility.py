@@ -28,6 +28,7 @@ from clearance.world.plausible_motion import (
 )
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_rest import notices_on_rest
+from clearance.world.plausible_scans import notices_on_scans
 from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.pose_table import PoseTable
@@ -50,6 +51,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     found += _notices_on_limits(case.limits)
     found += _notices_on_padding(case)
     found += notices_on_sizes(case)
+    found += notices_on_scans(case)
     found += notices_on_tables(case)
     found += notices_on_clocks(case)
     found += _rides_with_tolerance(case)

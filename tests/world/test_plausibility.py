@@ -90,7 +90,8 @@ def frame_around(side: float, share: float = 0.01) -> Polyhedron:
     return Polyhedron(np.concatenate(parts), faces)
 
 
-POINTS = PointCloud(np.array([[9.5, 0, 0], [-9.5, 0, 0], [0, 9.5, 0], [0, -9.5, 0]]), 0.01)
+CROSS = np.array([[9.5, 0, 0], [-9.5, 0, 0], [0, 9.5, 0], [0, -9.5, 0]])
+POINTS = PointCloud(np.concatenate([CROSS, 1.001 * CROSS]), 0.01)
 
 
 @pytest.mark.parametrize(
@@ -302,6 +303,16 @@ def test_a_table_that_jumps_is_suspect(step, place, turn, rate, told):
     found = [one.text for one in notices_on_tables(case)]
     assert len(found) == (told is not None)
     assert all(text.startswith(f"CHECK UNITS: obstacle 'block' {told}") for text in found)
+
+
+@pytest.mark.parametrize(("radius", "n_told"), [(0.0051, 0), (0.0049, 1)])
+def test_a_scan_whose_balls_stand_alone_is_a_warning(radius, n_told):
+    """Points 10 mm apart in a row."""
+    row = PointCloud(np.arange(60)[:, None] * [0.01, 0.0, 0.0] + [0.5, 0.0, 0.0], radius)
+    found = notices_of(case_of(obstacle=row, pose=np.eye(4)))
+    assert [(str(one.severity), one.kind) for one in found] == [("warning", "scan")] * n_told
+    for one in found:
+        assert one.text.startswith("scan 'block': most of its balls of 4.9 mm touch no other")
 
 
 def test_a_robot_that_need_not_move_is_checked_too():

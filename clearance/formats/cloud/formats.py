@@ -15,9 +15,6 @@ from clearance.formats.files.input_files import read_bytes
 from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
 
-SAMPLED = 200
-"""Points that are asked whether their ball touches another."""
-
 
 @dataclass(frozen=True, eq=False)
 class LoadedCloud:
@@ -73,7 +70,7 @@ def cloud_from_bytes(
         if in_millimetres and not found.in_metres:
             places = places / 1000.0
         shape = PointCloud(_scaled(places, scale), radius)
-        notes += [*_on_copies(len(places), shape), *_on_gaps(shape)]
+        notes += _on_copies(len(places), shape)
         return LoadedCloud(shape, (*found.notes, *notes))
 
 
@@ -97,27 +94,6 @@ def _on_copies(n_given: int, shape: PointCloud) -> list[str]:
     if not n_copies:
         return []
     return [f"{n_copies:,} of its points are there more than once and count once"]
-
-
-def _on_gaps(shape: PointCloud) -> list[str]:
-    """A note where most balls stand alone, by some of them, evenly spread."""
-    points = shape.vertices
-    chosen = points[:: -(-len(points) // SAMPLED)]
-    n_alone = sum(not _touches_another(point, points, shape.ball_radius) for point in chosen)
-    if 2 * n_alone <= len(chosen):
-        return []
-    return [
-        f"most of its balls of {1e3 * shape.ball_radius:.4g} mm touch no other: what is thinner than the gaps "
-        "between them passes through"
-    ]
-
-
-def _touches_another(point: np.ndarray, points: np.ndarray, radius: float) -> bool:
-    """True if the ball about a point touches that of another of `points` (n, 3), which are ordered by x."""
-    reach = 2.0 * radius
-    ends = np.searchsorted(points[:, 0], [point[0] - reach, np.nextafter(point[0] + reach, np.inf)])
-    near = points[ends[0] : ends[1]] - point
-    return int(np.count_nonzero((near**2).sum(axis=1) <= reach * reach)) > 1
 
 
 def _scaled(points: np.ndarray, scale: float | Sequence[float]) -> np.ndarray:
