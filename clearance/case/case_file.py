@@ -7,7 +7,7 @@ something, numbers are finite, shapes are solids, times increase.
 from __future__ import annotations
 
 import os
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from os import PathLike
@@ -45,6 +45,7 @@ from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneContent
 from clearance.formats.schema import case as schema
 from clearance.world.body import Obstacle
+from clearance.world.carry import Carry
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -134,11 +135,10 @@ def with_trajectory_file(
             )
         entry = entry._replace(trajectory=given, trajectory_field="trajectory")
         others = [one for i, one in enumerate(cell.case.robots) if i != i_robot]
-        carried = {one.part for one in cell.case.carries}
         driven = (one.trajectory.drives for one in others if one.trajectory is not None)
         around = Surroundings(
             tuple(others),
-            tuple(_rider(one, carried) for one in cell.case.obstacles),
+            tuple(_rider(one, cell.case.carries) for one in cell.case.obstacles),
             frozenset(chain.from_iterable(driven)),
         )
         moved = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files, around)
@@ -292,8 +292,8 @@ def _moving(
     found = {
         i: reader.moving(one, Surroundings()) for i, one in enumerate(entries) if not has_program[i]
     }
-    carried = {one.part for one in given.carry}
-    riders = tuple(_rider(one, carried) for one in obstacles)
+    carries = carries_of(given.carry)
+    riders = tuple(_rider(one, carries) for one in obstacles)
     read: dict[int, InMotion] = {}
     driven: frozenset[str] = frozenset()
     for i, entry in enumerate(entries):
@@ -312,10 +312,15 @@ def _moving(
     return [(found | read)[i] for i in range(len(entries))]
 
 
-def _rider(obstacle: Obstacle, carried: Container[str]) -> Rider:
-    mount, is_carried = obstacle.mount, obstacle.name in carried
+def _rider(obstacle: Obstacle, carries: Sequence[Carry]) -> Rider:
+    mount = obstacle.mount
+    own = sorted((one for one in carries if one.part == obstacle.name), key=_start)
     on, pose = (None, obstacle.world_from_body) if mount is None else (mount.on, mount.pose)
-    return Rider(obstacle.name, on, pose, obstacle.moves, is_carried)
+    return Rider(obstacle.name, on, pose, obstacle.moves, tuple(own))
+
+
+def _start(carry: Carry) -> float:
+    return carry.window.start
 
 
 def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:

@@ -14,7 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.geometry.pose import inverse
-from clearance.programs.carriage import Carriage, Step, steps_of_joint, steps_of_poses
+from clearance.programs.carriage import (
+    Carriage,
+    Handed,
+    Step,
+    series_of,
+    steps_of_joint,
+    steps_of_poses,
+)
+from clearance.world.carry import Carry
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.kinematics import link_poses, moving_positions
@@ -27,14 +35,14 @@ class Rider(NamedTuple):
     """An obstacle: its pose (4, 4) [m] in the world, or on what it is on. moves: its own motion there.
 
     Attributes:
-        is_carried: it changes hands.
+        carries: who carries it, and when, the first first.
     """
 
     name: str
     on: str | None
     pose: np.ndarray
     moves: PoseTable | None = None
-    is_carried: bool = False
+    carries: tuple[Carry, ...] = ()
 
 
 class Place(NamedTuple):
@@ -92,18 +100,40 @@ class Places:
         """The motion of what moves by itself, seen from what stands at a pose (4, 4) [m]."""
         return Carriage(name, (inverse(seen_from), *self._steps(name)))
 
-    def _steps(self, name: str) -> Iterator[Step]:
+    def _steps(self, name: str) -> tuple[Step, ...]:
+        """From the world to what moves by itself."""
         mover = self._movers[name]
-        if mover.base.on:
-            yield from self._steps(mover.base.on)
-        yield mover.base.pose
+        base = self._steps_to(mover.base)
         if isinstance(mover.of, PlacedRobot):
-            yield from _steps_of_link(mover.of, mover.link)
-            return
-        if mover.of.on is not None:
-            yield mover.of.pose
-        assert mover.of.moves is not None
-        yield from steps_of_poses(knots_of_poses(mover.of.moves))
+            return (*base, *_steps_of_link(mover.of, mover.link))
+        found = (*base, *_steps_of_rider(mover.of))
+        return (self._handed(mover.of, found),) if mover.of.carries else found
+
+    def _steps_to(self, place: Place) -> tuple[Step, ...]:
+        return (*(self._steps(place.on) if place.on else ()), place.pose)
+
+    def _handed(self, part: Rider, first: tuple[Step, ...]) -> Handed:
+        """A part that changes hands, which goes by some steps at first."""
+        starts, ways = list[float](), [first]
+        ends = [*(one.window.start for one in part.carries[1:]), np.inf]
+        for carry, following in zip(part.carries, ends, strict=True):
+            start, end, by = carry.window.start, carry.window.end, self._found.get(carry.by)
+            if not isinstance(by, Place) or by.on in {*self.moved.values(), *self._under_way}:
+                return Handed(np.array(starts), tuple(ways), start)
+            self._under_way.append(part.name)
+            carrier = self._steps_to(by)
+            self._under_way.pop()
+            starts.append(start)
+            ways.append((*carrier, inverse(_pose(carrier, start)) @ _pose(ways[-1], start)))
+            if end < following:
+                starts.append(end)
+                ways.append((_pose(ways[-1], end),))
+        return Handed(np.array(starts), tuple(ways))
+
+    @cached_property
+    def _under_way(self) -> list[str]:
+        """The parts whose carriers are looked for."""
+        return []
 
     @cached_property
     def _movers(self) -> dict[str, _Mover]:
@@ -135,11 +165,10 @@ class Places:
             return dict(self._of_robot(one, base))
         if isinstance(base, str):
             return {one.name: base}
-        if one.is_carried:
-            return {one.name: "changes hands (carry)"}
-        if one.moves is None:
+        if one.moves is None and not one.carries:
             return {one.name: base.on_it(one.pose)}
-        return {one.name: self._mover(one.name, _Mover(one, base), one.moves.timing.after)}
+        after = "hold" if one.moves is None else one.moves.timing.after
+        return {one.name: self._mover(one.name, _Mover(one, base), after)}
 
     def _mover(self, name: str, mover: _Mover, after: str) -> Place | str:
         """The place of what moves by itself, from its first sample to its last and beyond."""
@@ -148,7 +177,7 @@ class Places:
         if after != "hold":
             return f"does not stay where its table ends (after: {after})"
         if mover.base.on in self.moved.values():
-            return f"moves by a table of its own on {mover.base.on!r}, which the program moves"
+            return f"moves by itself on {mover.base.on!r}, which the program moves"
         self._movers[name] = mover
         return Place(name, np.eye(4))
 
@@ -202,6 +231,19 @@ def _below(one: Rider | PlacedRobot) -> str | None:
     if isinstance(one, PlacedRobot):
         return None if one.mount is None else one.mount.on
     return one.on
+
+
+def _pose(steps: Sequence[Step], time: float) -> np.ndarray:
+    """(4, 4) at the end of steps at a time [s]."""
+    return np.asarray(series_of(steps, np.array([time]), np.ones(1)).poses[0])
+
+
+def _steps_of_rider(rider: Rider) -> Iterator[Step]:
+    """From what an obstacle is on, or the world, to the obstacle by its own table."""
+    if rider.moves is None or rider.on is not None:
+        yield rider.pose
+    if rider.moves is not None:
+        yield from steps_of_poses(knots_of_poses(rider.moves))
 
 
 def _steps_of_link(placed: PlacedRobot, link: str) -> Iterator[Step]:

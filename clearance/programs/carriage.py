@@ -7,13 +7,14 @@ Not for: where the chain comes from (`case.standing`), how joints follow (`follo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import BadProgram
 from clearance.geometry.quaternions import rotations_of
 from clearance.programs.series import (
     ORDER,
@@ -101,7 +102,34 @@ class Turn(NamedTuple):
     off: float = 0.0
 
 
-Step = np.ndarray | Slide | Turn
+class Handed(NamedTuple):
+    """Ways that take turns, as a part changes hands; where one begins the pose is that of the one before.
+
+    Attributes:
+        starts: (m,) [s] when all but the first begin. ways: (m + 1) steps of each.
+        until: [s] from when on nobody knows.
+    """
+
+    starts: np.ndarray
+    ways: tuple[tuple[Step, ...], ...]
+    until: float = np.inf
+
+    def series(self, times: np.ndarray, half: np.ndarray, before: bool) -> Carried:
+        """What `series_of` says of the ways of the times."""
+        turns = np.searchsorted(self.starts, times + (-AT_KNOT if before else AT_KNOT))
+        n = len(times)
+        turn, origin = np.zeros((ORDER + 1, n, 3, 3)), np.zeros((ORDER + 1, n, 3))
+        majorants, turned, off = np.zeros((2, ORDER + 2, n)), np.zeros(n), np.zeros(2)
+        for k in np.unique(turns):
+            rows = turns == k
+            own = series_of(self.ways[k], times[rows], half[rows], before)
+            turn[:, rows], origin[:, rows] = own.turn, own.origin
+            majorants[:, :, rows] = own.turn_majorant, own.way_majorant
+            turned[rows], off = own.turned, np.maximum(off, own.off)
+        return Carried(turn, origin, majorants[0], majorants[1], turned, off)
+
+
+Step = np.ndarray | Slide | Turn | Handed
 """A fixed pose (4, 4) [m], or what moves."""
 
 
@@ -154,6 +182,12 @@ class Carried(NamedTuple):
         turn, way = self.turn_majorant[:, i], self.way_majorant[:, i]
         return Carried(self.turn[:, i], self.origin[:, i], turn, way, self.turned[i], self.off)
 
+    def then(self, other: Carried) -> Carried:
+        """Those of another carriage that is on this one."""
+        series = self.seen(other.turn, other.origin)
+        majorants = self.majorants(other.turn_majorant, other.way_majorant)
+        return Carried(*series, *majorants, self.turned + other.turned, self.off + other.off)
+
     def seen(self, turn: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The series of a pose on it, seen from the root."""
         way = matrix_product(self.turn, origin[..., None])[..., 0]
@@ -202,8 +236,12 @@ class Carriage:
     @cached_property
     def knots(self) -> np.ndarray:
         """(m,) [s] the times between which it moves on one cubic, in order."""
-        own = [one.table.knots for one in self.steps if not isinstance(one, np.ndarray)]
-        return np.unique(np.concatenate(own))
+        return np.unique(np.concatenate([*_knots(self.steps)]))
+
+    @cached_property
+    def until(self) -> float:
+        """[s] When nobody knows any more where it is."""
+        return min(_untils(self.steps), default=np.inf)
 
     @cached_property
     def turning_points(self) -> np.ndarray:
@@ -212,18 +250,24 @@ class Carriage:
         speeds, spins = after.speeds - before.speeds, after.spins - before.spins
         return self.knots[np.abs(np.hstack([speeds, spins])).max(axis=1) > SMOOTH]
 
+    def require_known(self, time: float) -> None:
+        """Nothing, if it is known where it is until a time [s].
+
+        Raises:
+            BadInput: it is carried by what a program moves.
+        """
+        if time > self.until + AT_KNOT:
+            raise BadProgram(
+                f"from {self.until:.6g} s on {self.name!r} is carried by what a program moves, or is not there; "
+                f"the move in its frame ends at {time:.6g} s",
+                valid="moves that end before, or a frame on what it lies on",
+            )
+
     def in_time_of(self, timing: Timing) -> Carriage:
         """The same by the time of a table that a run follows so."""
         if timing.start == 0.0 and timing.rate == 1.0:
             return self
-        scale = np.power(1.0 / timing.rate, np.arange(4))[:, None, None]
-        steps = list[Step]()
-        for one in self.steps:
-            if not isinstance(one, np.ndarray):
-                knots = (one.table.knots - timing.start) * timing.rate
-                one = one._replace(table=Cubics(knots, one.table.powers * scale))
-            steps.append(one)
-        return replace(self, steps=tuple(steps))
+        return replace(self, steps=_by_time_of(self.steps, timing))
 
     def at(self, times: np.ndarray, before: bool = False) -> Moved:
         """Where it is at times (n,) [s], and how it moves from then on; until then with `before`."""
@@ -233,32 +277,83 @@ class Carriage:
 
     def series(self, times: np.ndarray, half: np.ndarray, before: bool = False) -> Carried:
         """About times (n,) [s] in units of half (n,) [s], which reaches no farther than the next knots."""
-        n = len(times)
-        turn, origin = np.zeros((ORDER + 1, n, 3, 3)), np.zeros((ORDER + 1, n, 3))
-        turn[0] = np.eye(3)
-        turns, lengths, off = np.zeros((ORDER + 2, n)), np.zeros((ORDER + 2, n)), np.zeros(2)
-        for one in self.steps:
-            if isinstance(one, np.ndarray):
-                origin += turn @ one[:3, 3]
-                turn = turn @ one[:3, :3]
-                lengths[0] += np.linalg.norm(one[:3, 3])
-                continue
-            places = one.table.places(times, before)
-            series = one.table.series(times, half, places)
-            if isinstance(one, Slide):
-                ways = series @ one.axes
-                origin += matrix_product(turn, ways[..., None])[..., 0]
-                sizes = np.linalg.norm(ways, axis=2)
-                lengths += moved(sizes)
-                lengths[0] += sizes.sum(axis=0)
-                off[0] += one.off
-                continue
-            axes = one.axes[places] if one.axes.ndim == 2 else one.axes
-            if one.first is not None:
-                turn = turn @ one.first[places]
-            turn = matrix_product(turn, turns_about(axes, series[..., 0]))
-            turns += moved(np.abs(series[..., 0]))
-            off[1] += one.off
-        majorant = majorant_of_turns(turns)
-        turned = turns[1:].sum(axis=0)
-        return Carried(turn, origin, majorant, majorant_product(majorant, lengths), turned, off)
+        return series_of(self.steps, times, half, before)
+
+
+def series_of(
+    steps: Sequence[Step], times: np.ndarray, half: np.ndarray, before: bool = False
+) -> Carried:
+    """The poses at the end of steps, as `Carriage.series`."""
+    for i, one in enumerate(steps):
+        if isinstance(one, Handed):
+            found = _series(steps[:i], times, half, before).then(one.series(times, half, before))
+            return found.then(series_of(steps[i + 1 :], times, half, before))
+    return _series(steps, times, half, before)
+
+
+def _knots(steps: Sequence[Step]) -> Iterator[np.ndarray]:
+    for one in steps:
+        if isinstance(one, Handed):
+            yield one.starts
+            yield np.array([one.until])[np.isfinite([one.until])]
+            for way in one.ways:
+                yield from _knots(way)
+        elif not isinstance(one, np.ndarray):
+            yield one.table.knots
+
+
+def _untils(steps: Sequence[Step]) -> Iterator[float]:
+    for one in steps:
+        if isinstance(one, Handed):
+            yield one.until
+            for way in one.ways:
+                yield from _untils(way)
+
+
+def _by_time_of(steps: Sequence[Step], timing: Timing) -> tuple[Step, ...]:
+    """The steps by the time of a table that a run follows so."""
+    found, scale = list[Step](), np.power(1.0 / timing.rate, np.arange(4))[:, None, None]
+    for one in steps:
+        if isinstance(one, Handed):
+            ways = tuple(_by_time_of(way, timing) for way in one.ways)
+            starts = (one.starts - timing.start) * timing.rate
+            one = Handed(starts, ways, (one.until - timing.start) * timing.rate)
+        elif not isinstance(one, np.ndarray):
+            knots = (one.table.knots - timing.start) * timing.rate
+            one = one._replace(table=Cubics(knots, one.table.powers * scale))
+        found.append(one)
+    return tuple(found)
+
+
+def _series(steps: Sequence[Step], times: np.ndarray, half: np.ndarray, before: bool) -> Carried:
+    """The same of steps that stay the same."""
+    n = len(times)
+    turn, origin = np.zeros((ORDER + 1, n, 3, 3)), np.zeros((ORDER + 1, n, 3))
+    turn[0] = np.eye(3)
+    turns, lengths, off = np.zeros((ORDER + 2, n)), np.zeros((ORDER + 2, n)), np.zeros(2)
+    for one in steps:
+        assert not isinstance(one, Handed)
+        if isinstance(one, np.ndarray):
+            origin += turn @ one[:3, 3]
+            turn = turn @ one[:3, :3]
+            lengths[0] += np.linalg.norm(one[:3, 3])
+            continue
+        places = one.table.places(times, before)
+        series = one.table.series(times, half, places)
+        if isinstance(one, Slide):
+            ways = series @ one.axes
+            origin += matrix_product(turn, ways[..., None])[..., 0]
+            sizes = np.linalg.norm(ways, axis=2)
+            lengths += moved(sizes)
+            lengths[0] += sizes.sum(axis=0)
+            off[0] += one.off
+            continue
+        axes = one.axes[places] if one.axes.ndim == 2 else one.axes
+        if one.first is not None:
+            turn = turn @ one.first[places]
+        turn = matrix_product(turn, turns_about(axes, series[..., 0]))
+        turns += moved(np.abs(series[..., 0]))
+        off[1] += one.off
+    majorant = majorant_of_turns(turns)
+    turned = turns[1:].sum(axis=0)
+    return Carried(turn, origin, majorant, majorant_product(majorant, lengths), turned, off)

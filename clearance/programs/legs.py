@@ -210,6 +210,7 @@ def _joint_way_to(
             break
         planned, arrival = arrival, now + duration_of(arm, move, way)
         if abs(arrival - planned) <= ON_TIME:
+            carriage.require_known(arrival)
             return way
     raise BadProgram(
         f"the joints do not catch up with a target on {carriage.name!r}, which moves on meanwhile",

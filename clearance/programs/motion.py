@@ -186,7 +186,7 @@ class _Samples:
                 one.name for one in self.program.moves
                 if not isinstance(one, ToolChange) and one.seen_from == name
             ]  # fmt: skip
-            yield f"{listed(moves, 8)}: seen from {name!r}, which moves by a table of its own"
+            yield f"{listed(moves, 8)}: seen from {name!r}, which moves by itself"
 
     def _on_jumps(self, samples: JumpingSamples) -> Iterator[str]:
         """A line on where the tool changes its speed at once, by more than from row to row of a table."""
@@ -231,6 +231,8 @@ class _Samples:
             return
         move, carriage = leg.move, self._carriage_of(leg.move)
         ride = None if carriage is None else Ride(carriage, self.now, leg.pieces)
+        if ride is not None:
+            ride.carriage.require_known(self.now + ride.duration)
         follower = Follower(self.arm, stretch, self.at, ride)
         samples, wide = self._enclosed(follower, leg.pieces, self._seam)
         if leg.corner is not None:

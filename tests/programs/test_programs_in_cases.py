@@ -521,7 +521,6 @@ def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows, base
 @pytest.mark.parametrize(
     ("on", "told"),
     [
-        ("far", "no frame can be on 'far': it changes hands"),
         ("arm/forearm", "3 joints are free .* a frame on what the arm does not move"),
         ("turntable/late", "'turntable/late' is not there; did you mean 'turntable/plate'"),
     ],
