@@ -152,6 +152,18 @@ class SampledMachine:
         )
         return near.distance - self.surfaces(pair)
 
+    def apart(self, time: float, pair: tuple[str, str], points: np.ndarray):
+        """How far apart [m] at errors are points that two bodies carry, given where they are without."""
+        poses = self.poses(time, {})
+        own = [np.linalg.inv(poses[n]) @ [*x, 1.0] for n, x in zip(pair, points, strict=True)]
+
+        def at(errors) -> float:
+            moved = self.poses(time, errors)
+            p, q = (moved[n] @ x for n, x in zip(pair, own, strict=True))
+            return float(np.linalg.norm(q - p))
+
+        return at
+
     def random(self, rng: np.random.Generator):
         """Errors, most of them at their greatest size."""
         found = {}

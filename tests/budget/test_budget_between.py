@@ -186,17 +186,11 @@ def test_the_deviation_of_clocks_is_that_of_drawn_errors(cubic):
         case, budget, section.phase.motions, section.pairs[int(found.pair[n])],
         np.array([n]), found.points[[n]],
     )  # fmt: skip
-    poses = machine.poses(section.phase.times[n], {})
-    held = [
-        np.linalg.inv(poses[name]) @ np.append(x, 1.0)
-        for name, x in zip(pair, witness.points[0], strict=True)
+    length = machine.apart(section.phase.times[n], pair, witness.points[0])
+    lengths = [
+        length({key: rng.uniform(-most, most, 1) for key, (most, _) in machine.most.items()})
+        for _ in range(800)
     ]
-    lengths = []
-    for _ in range(800):
-        errors = {key: rng.uniform(-most, most, 1) for key, (most, _) in machine.most.items()}
-        moved = machine.poses(section.phase.times[n], errors)
-        a, b = (moved[name] @ x for name, x in zip(pair, held, strict=True))
-        lengths.append(np.linalg.norm(b - a))
     assert np.std(lengths) == pytest.approx(deviations(case, budget, witness)[0], rel=0.1)
 
 

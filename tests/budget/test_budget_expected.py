@@ -13,7 +13,13 @@ from clearance.budget.sources import slopes
 from clearance.report.topics.tolerances import least_expected
 from clearance.simulate.measure.measure import measure
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
-from tests.budget.budget_cases import proven_sections, random_budget, random_case, sections_of
+from tests.budget.budget_cases import (
+    pair_names,
+    proven_sections,
+    random_budget,
+    random_case,
+    sections_of,
+)
 from tests.budget.sampled_machine import SampledMachine
 from tests.simulate.measure.test_between_steps import PAST, THROUGH, sweeping
 
@@ -51,21 +57,13 @@ def test_deviation_is_that_of_drawn_errors(seed, normal):
     (section,) = sections_of(case)
     found, witness = nearest_points(case, section, 2)
     machine = SampledMachine(case)
-    names = [_name(case, body) for body in witness.pair]
-    time = section.phase.times[2]
-    poses = machine.poses(time, {})
-    carried = [
-        poses[name][:3, :3].T @ (point - poses[name][:3, 3])
-        for name, point in zip(names, witness.points[0], strict=True)
-    ]
+    names = pair_names(case, section)[int(found.pair[2])]
+    length = machine.apart(section.phase.times[2], names, witness.points[0])
     rng = np.random.default_rng(seed)
     lengths = np.empty(N_SAMPLES)
     for i in range(N_SAMPLES):
         errors = {key: drawn(most, n, normal, rng) for key, (most, n) in machine.most.items()}
-        errors |= joint_errors(case, normal, rng)
-        moved = machine.poses(time, errors)
-        p, q = (moved[n][:3, :3] @ x + moved[n][:3, 3] for n, x in zip(names, carried, strict=True))
-        lengths[i] = np.linalg.norm(q - p)
+        lengths[i] = length(errors | joint_errors(case, normal, rng))
         for name in names:
             lengths[i] -= _surface(machine.surfaces([name]), normal, rng)
     deviation = float(deviations(case, case.tolerance, witness)[0])
@@ -90,30 +88,13 @@ def _surface(most: float, normal: bool, rng: np.random.Generator) -> float:
     return float(rng.normal() * most / 3.0 if normal else rng.uniform(-most, most))
 
 
-def _name(case, body) -> str:
-    own = body.own_name_in(case)
-    return own if body.is_obstacle else f"{case.robots[body.i_robot].robot.name}/{own}"
-
-
 def test_slopes_are_differences():
     """Each slope against the distance of the points with that error alone."""
     case = random_case(0)
     (section,) = sections_of(case)
-    _, witness = nearest_points(case, section, 1)
-    machine = SampledMachine(case)
-    names = [_name(case, body) for body in witness.pair]
-    time, step = section.phase.times[1], 1e-6
-    poses = machine.poses(time, {})
-    carried = [
-        poses[n][:3, :3].T @ (x - poses[n][:3, 3])
-        for n, x in zip(names, witness.points[0], strict=True)
-    ]
-
-    def length(errors) -> float:
-        moved = machine.poses(time, errors)
-        p, q = (moved[n][:3, :3] @ x + moved[n][:3, 3] for n, x in zip(names, carried, strict=True))
-        return float(np.linalg.norm(q - p))
-
+    measured, witness = nearest_points(case, section, 1)
+    names, step = pair_names(case, section)[int(measured.pair[1])], 1e-6
+    length = SampledMachine(case).apart(section.phase.times[1], names, witness.points[0])
     found = slopes(case, case.tolerance, witness)
     assert found
     for slope in found:

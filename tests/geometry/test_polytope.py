@@ -11,8 +11,11 @@ from clearance.errors import BadPolygon, BadShape, ClearanceError, EmptyMesh, No
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid, Unbounded
-from clearance.kernels.polytope.exits import cell_of, exit_in
+from clearance.kernels.polytope.exits import cell_of, exit_in, is_in_ball
+from clearance.query.intersection import intersect
+from tests.made_cases import at
 from tests.oracle.polytope_volumes import half_spaces, shared_volume
+from tests.strategies import rotations
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
 WALLS = np.vstack(
@@ -91,6 +94,7 @@ def test_a_concave_or_open_polyhedron_is_refused():
 )
 @pytest.mark.parametrize("n", [4, 12, 400])
 def test_the_map_of_directions_finds_the_face_that_looking_at_all_finds(shape, n):
+    """And the inner ball holds nothing that is not inside."""
     rng = np.random.default_rng([n, 5])
     v = rng.normal(size=(n, 3)) * shape @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
     body = Polytope(v + [3.0, -2.0, 1.0])
@@ -103,6 +107,12 @@ def test_the_map_of_directions_finds_the_face_that_looking_at_all_finds(shape, n
         cell, bound = cell_of(body.packed, *point)
         assert exit_in(body.packed, cell, *point)[1] == pytest.approx(gauge, rel=rounding)
         assert bound >= gauge * (1.0 - rounding)
+        assert not is_in_ball(
+            body.packed, *(point * (1.0 - 1e-9) / gauge)
+        )  # all but on the surface
+    if n == 400 and max(shape) / min(shape) < 1e5:
+        inside = 0.9 * x / gauges[:, None]
+        assert any(is_in_ball(body.packed, *point) for point in inside)
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.longdouble, object])
@@ -113,3 +123,14 @@ def test_a_pose_of_other_numbers_moves_a_body_as_one_of_doubles_does(kind):
     moved = cube.moved(pose.astype(kind))
     assert np.array_equal(moved.vertices, cube.moved(pose).vertices)
     assert (moved.volume, moved.vertices.dtype) == (1.0, np.float64)
+
+
+def test_a_moved_body_is_the_hull_of_the_moved_corners():
+    body, other = (Polytope(np.random.default_rng(i).normal(size=(60, 3))) for i in range(2))
+    pose = at(1.0, -2.0, 0.5, turned=rotations(np.random.default_rng(5), 1)[0])
+    moved = body.moved(pose)
+    again = Polytope(body.vertices @ pose[:3, :3].T + pose[:3, 3])
+    assert moved.volume == pytest.approx(again.volume, rel=1e-14)
+    assert moved.n_faces == again.n_faces
+    both, there = intersect([body, other]), intersect([moved, other.moved(pose)])
+    assert there.volume == pytest.approx(both.volume, rel=1e-13)

@@ -108,26 +108,6 @@ def test_a_sphere_on_a_line_sweeps_a_stadium():
 
 
 @pytest.mark.slow
-def test_a_straight_two_link_arm_reaches_a_disc():
-    first, second, wide = 0.6, 0.4, 0.06
-    case = moved(
-        [joint(0, JointKind.REVOLUTE, Z), joint(1, JointKind.REVOLUTE, Z, (first, 0, 0))],
-        {
-            1: slab([0, -wide / 2, 0], [first, wide / 2, 0.1]),
-            2: slab([0, -wide / 2, 0], [second, wide / 2, 0.1]),
-        },
-        [[0, 0], [3.0, 0], [2 * math.pi, 0]],
-    )
-    found = cl.swept_profile(case)
-    reach = math.hypot(first + second, wide / 2)
-    assert len(found.contours) == 1
-    radius = np.hypot(*found.contours[0].flattened(1e-7).T)
-    assert reach <= radius.min() and radius.max() <= reach + found.bound
-    assert found.n_pieces <= 12
-    assert {found.maker(i)[0] for i in range(found.n_pieces)} == {"l2"}
-
-
-@pytest.mark.slow
 def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
     found = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.5, 0.1, 0.1]), [0, 3.2, 6.4]))
     outer, hole = found.contours

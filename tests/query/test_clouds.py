@@ -103,22 +103,6 @@ def test_a_contact_has_one_point_in_the_ball_and_on_the_body():
     assert near.point_a.tolist() == near.point_b.tolist() == [0.5, 0.1, 0.2]
 
 
-@pytest.mark.parametrize("n", [1, 2, 400])
-def test_a_solid_round_points_is_in_contact(n):
-    """However far its surface is, and however many others are outside."""
-    random = np.random.default_rng(3)
-    outside = random.uniform(5.0, 6.0, (n, 3))
-    inside = random.uniform(-0.4, 0.4, (n, 3))
-    solid = box([2.0, 2.0, 2.0])
-    for cloud in (PointCloud(np.concatenate([outside, inside]), 0.001), PointCloud(inside, 0.001)):
-        for one, other in ((solid, cloud), (cloud, solid)):
-            near = distance(one, other)
-            assert near.contact and near.distance == 0.0
-            assert near.inside == "yes"
-            assert np.abs(near.point_a).max() <= 0.4
-    assert not distance(solid, PointCloud(outside, 0.001)).contact
-
-
 def without(solid, omitted):
     """The solid without the faces whose centres are so."""
     corners = np.split(solid.face_vertices, solid.face_starts[1:-1])
@@ -251,4 +235,5 @@ def test_contact_and_distance_are_those_of_all_points(seed, n, kind, turn):
     pose[:3, :3], pose[:3, 3] = turn, random.integers(-8, 8, 3) / 4
     true, near = answer(scan(random, n, kind), pose)
     assert near.contact == (true == 0.0)
+    assert near.inside == "yes" or kind != "one deep inside"
     assert abs(near.distance - true) <= near.error_bound + 4 * np.spacing(true)
