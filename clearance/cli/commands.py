@@ -5,6 +5,9 @@ Not for: what a command does (a file each).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import click
 
 from clearance import __version__
@@ -32,13 +35,31 @@ def clearance() -> None:
     """How close a robot's path comes to anything, where, when, and how sure that is."""
 
 
+RESULTS = ("summary", "findings", "gain", "workspace", "comparison", "audit")
+"""The results that have a JSON Schema."""
+
+
+def made_schema(results: str | None) -> dict[str, Any]:
+    """The JSON Schema of one of `RESULTS`, or of case files."""
+    from clearance.formats.schema.json_schema import case_schema
+    from clearance.gains.figures import figures_schema
+    from clearance.report.answers_schema import audit_schema, comparison_schema, workspace_schema
+    from clearance.report.results_schema import findings_schema, summary_schema
+
+    of_results = (
+        summary_schema, findings_schema, figures_schema, workspace_schema, comparison_schema, audit_schema,
+    )  # fmt: skip
+    made: dict[str | None, Callable[[], dict[str, Any]]] = {None: case_schema}
+    return (made | dict(zip(RESULTS, of_results, strict=True)))[results]()
+
+
 @click.command()
 @click.option(
     "--results",
     is_flag=False,
     flag_value="summary",
-    type=click.Choice(["summary", "findings", "gain"]),
-    help="Print the schema of summary.json, findings.json or gain.json instead.",
+    type=click.Choice(RESULTS),
+    help="Print the schema of this result file instead (summary.json, …), or of `srdf audit --json`.",
 )
 def schema(results: str | None) -> None:
     """Prints the JSON Schema of case or result files.
@@ -50,17 +71,7 @@ def schema(results: str | None) -> None:
     """
     import json
 
-    from clearance.formats.schema.json_schema import case_schema
-    from clearance.gains.figures import figures_schema
-    from clearance.report.results_schema import findings_schema, summary_schema
-
-    made = {
-        None: case_schema,
-        "summary": summary_schema,
-        "findings": findings_schema,
-        "gain": figures_schema,
-    }
-    click.echo(json.dumps(made[results](), indent=2))
+    click.echo(json.dumps(made_schema(results), indent=2))
 
 
 for command in (

@@ -120,10 +120,15 @@ def _beyond(side: str, drawn: DrawnOutline, profile: Deviation) -> list[Exceedan
     return found
 
 
+SCHEMA = "urn:clearance:comparison:1"
+"""The name of the JSON Schema, which `clearance schema --results comparison` prints."""
+
+
 def as_data(found: OutlineComparison) -> dict[str, Any]:
     """A comparison as JSON-ready values."""
     whole = found.found
     return {
+        "$schema": SCHEMA,
         "a": found.a.name,
         "b": found.b.name,
         "hausdorff": {

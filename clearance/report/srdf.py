@@ -12,10 +12,14 @@ from clearance.record.wording import count, joint_value, mm
 from clearance.world.collision_matrix import ADJACENT, NEVER
 from clearance.world.robot import Robot
 
+SCHEMA = "urn:clearance:audit:1"
+"""The name of the JSON Schema, which `clearance schema --results audit` prints."""
+
 
 def audit_summary(pairs: Sequence[ExcusedPair]) -> dict[str, Any]:
     """The findings as JSON-ready values: lengths in metres, positions in radians or metres."""
     return {
+        "$schema": SCHEMA,
         "never_refuted": sum(pair.refuted for pair in pairs),
         "never_unproven": sum(pair.unproven for pair in pairs),
         "pairs": [

@@ -16,11 +16,15 @@ MESHES = {"workspace.stl": "stl", "workspace.glb": "glb"}
 OWN = ("workspace.svg", "workspace.json", *MESHES)
 """All files that it can have."""
 
+SCHEMA = "urn:clearance:workspace:1"
+"""The name of the JSON Schema, which `clearance schema --results workspace` prints."""
+
 
 def workspace_summary(workspace: Workspace) -> dict[str, Any]:
     """The figures as JSON-ready values: lengths in metres, volume in cubic metres."""
     region = workspace.region
     return {
+        "$schema": SCHEMA,
         "robots": list(workspace.names),
         "volume": workspace.volume,
         "volume_is": "upper bound",

@@ -8,6 +8,7 @@ import pytest
 from clearance.cli import run
 from clearance.formats.robot.srdf import load_srdf
 from clearance.formats.robot.urdf.robot import load_urdf
+from tests.report.schemas import objections
 
 ROOT = Path(__file__).parents[2]
 
@@ -69,6 +70,7 @@ def test_a_pair_that_can_meet_is_told_first_with_its_pose(robot, capsys):
 def test_json_holds_the_same(robot, capsys):
     assert run(["srdf", "audit", *robot(upper=0.4), "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
+    assert objections("audit", found) == []
     assert found["never_refuted"] == 1 and found["never_unproven"] == 0
     (worst,) = [pair for pair in found["pairs"] if pair["reason"] == "Never"]
     assert worst["status"] == "meets" and worst["least"] == 0.0

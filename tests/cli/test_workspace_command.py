@@ -10,6 +10,7 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.geometry import boolean
+from tests.report.schemas import objections
 
 URDF = """<robot name="cart"><link name="ground"/>
   <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
@@ -51,6 +52,7 @@ def test_it_tells_and_writes_the_region(folder, capsys):
     assert told.startswith("shared at most 8.001 litres, about (0.300, 0.000, 0.050) m\n")
     assert "along/cart/slider - across/cart/slider" in told and "upper bound" in told
     figures = json.loads((out / "workspace.json").read_text())
+    assert objections("workspace", figures) == []
     assert figures["volume"] == pytest.approx(0.008, rel=1e-6)
     for name in ("workspace.stl", "workspace.glb"):
         mesh = cl.read_mesh(out / name)
@@ -70,6 +72,7 @@ def test_nothing_shared_leaves_no_older_mesh(folder, capsys):
     assert run(["workspace", *paths(folder, "along", "away"), "--out", str(out)]) == 0
     assert capsys.readouterr().out.startswith("nothing is shared by along/cart, away/cart\n")
     assert sorted(path.name for path in out.iterdir()) == ["workspace.json", "workspace.svg"]
+    assert objections("workspace", json.loads((out / "workspace.json").read_text())) == []
 
 
 @pytest.mark.parametrize(("limit", "code"), [("9", 0), ("7", 1)])

@@ -16,6 +16,7 @@ from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, read_outline
 from clearance.profiles.profile_file import write_profile
 from tests.profiles.moving import rows, slab, turning
+from tests.report.schemas import objections
 
 SCENES = Path(__file__).parents[2] / "scenes"
 
@@ -83,7 +84,7 @@ def test_compare_agrees_with_the_distance_and_names_the_maker():
         not found.within_limit and found.makers["b"][0] == "l1" and found.makers["b"][1] in (1, 2)
     )
     assert found.beyond and max(b.distance for b in found.beyond) <= whole.distance + 1e-9
-    json.dumps(as_data(found))
+    assert objections("comparison", json.loads(json.dumps(as_data(found)))) == []
     same = compare(
         DrawnOutline("one", one.curve, one), DrawnOutline("one", one.curve, one), limit=1e-9
     )
