@@ -354,7 +354,7 @@ def folder(tmp_path_factory) -> Path:
     return place
 
 
-WIDTHS = (420, 2000)
+WIDTHS = (420, 1400, 2000)
 
 
 def test_both_pages_fit_every_width_and_a_finding_moves_the_replay(folder):
@@ -370,6 +370,9 @@ def test_both_pages_fit_every_width_and_a_finding_moves_the_replay(folder):
         for width in WIDTHS:
             page.open(f"file://{folder}/now/report.html", "window.clearance", width)
             assert page.run("document.documentElement.scrollWidth") <= width
+            box = "document.querySelector('table.findings').parentElement"
+            is_cut = page.run(f"{box}.scrollWidth > {box}.clientWidth")
+            assert is_cut is (width == 420)
         told = page.run("document.querySelector('table.findings').textContent")
         assert "not comparable" in told and "worse, was 3.000 mm" in told and "N. N." in told
         assert "gate_<b>" in page.run("document.body.textContent")
