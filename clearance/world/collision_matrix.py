@@ -7,6 +7,9 @@ from functools import cached_property
 
 ADJACENT, NEVER = "Adjacent", "Never"
 
+PARENT = "MuJoCo's filter of parent and child"
+"""The reason of a parent and a child that more than one joint joins: MuJoCo excuses them too, named by nobody."""
+
 BY_DEFAULT = "off by default"
 """The reason of a pair that is excused since one of its links is, with all others."""
 

@@ -11,6 +11,7 @@ Source of the advancement: Mirtich 1996.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
@@ -19,7 +20,8 @@ import numpy as np
 from clearance.query.pair_query import Query
 from clearance.tolerance import REACH
 from clearance.world.body import Body
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.collision_matrix import ADJACENT, PARENT
 from clearance.world.cubic import Cubics, cubics_of, extremes_between
 from clearance.world.extents import metres
 from clearance.world.kinematic_chain import chain_between
@@ -28,7 +30,7 @@ from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import BodyIndex, names_of
 from clearance.world.phase import Phase
 from clearance.world.robot import JointKind, Robot
-from clearance.world.self_pairs import neighbours
+from clearance.world.self_pairs import self_pairs
 
 APART = 5e-3
 """[m] Links that are nearer than this at home and at first are joined there: they may touch as the joint turns."""
@@ -106,7 +108,7 @@ class Neighbours:
 
         Exactness: no position before it meets. It is `end`, or the links are no farther apart there than `GAP`.
         """
-        at, way, arm = start, np.sign(end - start), self._arm()
+        at, way, arm = start, math.copysign(1.0, end - start), self._arm()
         while (end - at) * way > 0.0:
             gap = float(self.gaps(np.array([[at]]))[0])
             if gap <= GAP:
@@ -138,26 +140,20 @@ class Neighbours:
 
 
 def excused_neighbours(case: Case, i_robot: int) -> Iterator[Neighbours]:
-    """The pairs of bodies that are excused as neighbours, and by nothing else."""
+    """The pairs of links that are excused as neighbours, and by nothing else."""
     placed = case.robots[i_robot]
-    for a, b in _excused(placed):
-        pair = BodyIndex(i_robot, a), BodyIndex(i_robot, b)
+    asked = placed.self_clearance
+    number = {body.name: BodyIndex(i_robot, k) for k, body in enumerate(placed.robot.bodies)}
+    for one in self_pairs(placed.robot) if asked and asked.matrix is None else ():
+        pair = number[one.link_a], number[one.link_b]
+        if one.excused not in (ADJACENT, PARENT) or {one.link_a, one.link_b} & {
+            *placed.exclude_links
+        }:
+            continue
         names = [names_of(case, body) for body in pair]
         if not any(row.matches(*names) for row in case.allow if not row.when):
-            a_body, b_body = (body.body_in(case) for body in pair)
-            text = " - ".join(body.name_in(case) for body in pair)
-            yield Neighbours(placed.robot, a_body, b_body, text)
-
-
-def _excused(placed: PlacedRobot) -> Iterator[tuple[int, int]]:
-    asked = placed.self_clearance
-    if asked is None or asked.matrix is not None or placed.robot.own_matrix is not None:
-        return
-    number = {body.name: k for k, body in enumerate(placed.robot.bodies)}
-    for pair in neighbours(placed.robot):
-        if pair.isdisjoint(placed.exclude_links):
-            a, b = sorted(number[name] for name in pair)
-            yield a, b
+            a, b = (body.body_in(case) for body in pair)
+            yield Neighbours(placed.robot, a, b, " - ".join(body.name_in(case) for body in pair))
 
 
 def neighbours_that_meet(phases: Sequence[Phase]) -> Iterator[Notice]:

@@ -14,7 +14,7 @@ import pytest
 import clearance as cl
 from clearance.formats.robot.compound_joints import chained
 from clearance.simulate.measure.neighbours import Neighbours
-from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.collision_matrix import PARENT, CollisionMatrix
 from clearance.world.robot import Joint, JointKind
 from clearance.world.rules import Allowance
 from tests.made_cases import at
@@ -103,6 +103,11 @@ def test_what_a_file_excuses_or_a_row_allows_is_told_of_no_more():
     assert told_of(replace(folded, allow=(row,))) == []
     matrix = CollisionMatrix(disabled=(("arm", "hand", "Adjacent"),))
     assert told_of(folding([0.0, 2.9], matrix=matrix)) == []
+    for reason, n_told in ((PARENT, 1), ("excluded", 0)):
+        (placed,) = folded.robots
+        own = CollisionMatrix(disabled=(("arm", "hand", reason),))
+        filtered = replace(placed, robot=replace(placed.robot, own_matrix=own))
+        assert len(told_of(replace(folded, robots=(filtered,)))) == n_told
     run = cl.check(folding([0.0, 2.9], matrix=CollisionMatrix()))
     assert run.status == "contact" and {run.worst["link"], run.worst["obstacle"]} == {"arm", "hand"}
 

@@ -35,7 +35,7 @@ from clearance.formats.robot.shape_kinds import (
 from clearance.formats.robot.tree import links_from_root
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
-from clearance.world.collision_matrix import ADJACENT, CollisionMatrix
+from clearance.world.collision_matrix import ADJACENT, PARENT, CollisionMatrix
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import WORLD_LINK, Robot
@@ -197,7 +197,6 @@ def _notes(
     return [*notes, *notes_on_bare(kinds)]
 
 
-PARENT = "MuJoCo's filter of parent and child"
 EXCLUDE = "<exclude> in the model"
 BITS = "contype and conaffinity"
 """Reasons why MuJoCo does not test two bodies, beside being neighbours on one joint."""
