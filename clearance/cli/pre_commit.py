@@ -63,13 +63,13 @@ def _checked(path: Path, options: CheckOptions) -> ExitCode:
 
 def _why(run: Run) -> list[str]:
     """What is broken, the worst first, then what else fails the run: input in doubt, waivers that should go."""
-    from clearance.findings.doubts import doubts_of
+    from clearance.findings.doubts import WARNING, doubts_of
     from clearance.findings.finding_text import coded_line
     from clearance.report.comparison_text import doubt_text
 
     broken = [coded_line(finding) for finding in run.findings if finding.fails]
     more = [f"and {len(broken) - MOST} more"] if len(broken) > MOST else []
-    doubts = [
-        doubt_text(doubt) for doubt in doubts_of(run.record, run.report.waived) if doubt.fails
-    ]
+    warned = {WARNING} if run.record.case.fail_on_warning else set()
+    found = doubts_of(run.record, run.report.waived)
+    doubts = [doubt_text(one) for one in found if one.fails or one.kind in warned]
     return [*broken[:MOST], *more, *doubts]

@@ -262,6 +262,20 @@ def test_the_hook_tells_all_that_fails(place, capsys):
     assert lines[2].startswith("  unused waiver: waiver box - gate_a") and len(lines) == 3
 
 
+def test_warnings_that_fail_are_told_as_what_fails(place, capsys, monkeypatch):
+    text = (place / "clear" / "case.yaml").read_text()
+    (place / "clear" / "case.yaml").write_text(text.replace("xyz: [0.5,", "xyz: [18,"))
+    assert run(["pre-commit", "clear/case.yaml"]) == 0
+    assert run(["pre-commit", "clear/case.yaml", "--fail-on-warning"]) == 1
+    first, line = capsys.readouterr().out.splitlines()
+    assert first == "clear/case.yaml: WARNING (would be CLEAR)"
+    assert line.startswith("  warning units: ") and line.endswith("[CL120]")
+    assert check("clear/case.yaml", "--fail-on-warning", "--github", "--quiet") == 1
+    assert capsys.readouterr().out.startswith("::error title=clearance%3A")
+    accepted = ("clear/case.yaml", "--fail-on-warning", "--accept", "CL120", "--github", "--quiet")
+    assert check(*accepted) == 0 and capsys.readouterr().out.startswith("::warning ")
+
+
 def test_a_refused_case_leaves_nothing_green(place, capsys, monkeypatch):
     step = place / "step.md"
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(step))
