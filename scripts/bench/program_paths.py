@@ -14,9 +14,12 @@ import numpy as np
 from program_arms import LONG, ArmFile, OwnArm, Poses, turned
 
 import clearance as cl
+from clearance.geometry.quaternions import quaternions_of
+from clearance.programs.carriage import Carriage, steps_of_poses
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import Move, PathMove, Program
-from clearance.world.robot import Joint, JointKind
+from clearance.world.knots import knots_of
+from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 
 TOOL = np.eye(4)
@@ -130,21 +133,92 @@ class Plate(NamedTuple):
         turn = self.turn @ turned(self.axis[None] * self.first)[0]
         return turn.T @ pose[0], turn.T @ (pose[1] - self.origin)
 
-    def carried(self, poses: Poses, shares: np.ndarray) -> Poses:
+    def followed(
+        self, robot: Robot, link: str, move: PathMove, joints: dict[str, float]
+    ) -> Trajectory:
+        """What a move on it makes of a robot whose program turns it meanwhile."""
+        root, move = robot.link_names[0], replace(move, seen_from="plate")
+        beside = replace(
+            robot,
+            link_names=(*robot.link_names, "plate"),
+            joints=(*robot.joints, self.joint(root)),
+        )
+        move = replace(move, hold={"plate": self.first + self.by})
+        program = Program(link, TOOL, (move,), {**joints, "plate": self.first})
+        return motion_of(beside, program).trajectory
+
+    def carried(self, poses: Poses, shares: np.ndarray, _: np.ndarray) -> Poses:
         """Poses (m, n) on it at shares of the leg, seen from the root."""
         angles = (self.first + self.by * shares).reshape(-1, 1)
         turn = self.turn @ turned(self.axis * angles).reshape(*shares.shape, 3, 3)
         return Poses(turn @ poses.turn, self.origin + (turn @ poses.origin[..., None])[..., 0])
 
 
+class Belt(NamedTuple):
+    """A conveyor that changes its way at once: times (m,) [s], places (m, 3) [m], and the vectors (m - 1, 3) [rad]
+    by which it turns from one time to the next."""
+
+    times: np.ndarray
+    places: np.ndarray
+    vectors: np.ndarray
+
+    @classmethod
+    def drawn(cls, draw: np.random.Generator) -> Belt:
+        """One near an arm."""
+        times = np.array([-0.5, *np.sort(draw.uniform(0.0, 0.8, 4)), 2.0])
+        places = np.cumsum(draw.uniform(-0.03, 0.03, (6, 3)), axis=0)
+        vectors = draw.uniform(-0.1, 0.1, (5, 3))
+        return cls(times.astype(LONG), places.astype(LONG), vectors.astype(LONG))
+
+    def at(self, i: int, times: np.ndarray) -> Poses:
+        """Its poses at times (...) [s] between two of its own."""
+        share = ((times - self.times[i]) / (self.times[i + 1] - self.times[i])).reshape(-1, 1)
+        turn = np.eye(3, dtype=LONG)
+        for vector in self.vectors[:i]:
+            turn = turn @ turned(vector[None])[0]
+        origin = self.places[i] + share * (self.places[i + 1] - self.places[i])
+        turn = turn @ turned(share * self.vectors[i])
+        return Poses(turn.reshape(*times.shape, 3, 3), origin.reshape(*times.shape, 3))
+
+    def seen(self, pose: Pose) -> Pose:
+        """A pose seen from it at 0 s."""
+        (turn,), (origin,) = self.at(0, np.zeros(1, dtype=LONG))
+        return turn.T @ pose[0], turn.T @ (pose[1] - origin)
+
+    def followed(
+        self, robot: Robot, link: str, move: PathMove, joints: dict[str, float]
+    ) -> Trajectory:
+        """What a move on it makes of a robot."""
+        turns = np.array([self.at(i, one).turn for i, one in enumerate(self.times[:-1])])
+        turns = np.concatenate([turns, self.at(len(turns) - 1, self.times[-1]).turn[None]])
+        poses = np.hstack([self.places, quaternions_of(turns.astype(float))]).astype(float)
+        knots = knots_of(self.times.astype(float), poses, n_rotation=4)
+        carriages = {"belt": Carriage("belt", tuple(steps_of_poses(knots)))}
+        move = replace(move, seen_from="belt")
+        return motion_of(
+            robot, Program(link, TOOL, (move,), joints, carriages=carriages)
+        ).trajectory
+
+    def carried(self, poses: Poses, _: np.ndarray, times: np.ndarray) -> Poses:
+        """Poses (m, n) on it at times (m, n) [s], each row between two of its own, seen from the root."""
+        which = np.searchsorted(self.times, times[:, times.shape[1] // 2]) - 1
+        turn, origin = np.empty_like(poses.turn), np.empty_like(poses.origin)
+        for i in np.unique(which):
+            rows = which == i
+            own = self.at(i, times[rows])
+            turn[rows] = own.turn @ poses.turn[rows]
+            origin[rows] = own.origin + (own.turn @ poses.origin[rows][..., None])[..., 0]
+        return Poses(turn, origin)
+
+
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A random motion of an arm, and what its path is by its own definition, on a plate if there is one."""
+    """A random motion of an arm, and what its path is by its own definition, on a carrier if there is one."""
 
     own: OwnArm
     trajectory: Trajectory
     legs: tuple[OwnLeg, ...]
-    plate: Plate | None = None
+    carrier: Plate | Belt | None = None
 
     @property
     def starts(self) -> np.ndarray:
@@ -162,32 +236,31 @@ class Motion:
             shares = leg.shares(times[rows] - self.starts[i])
             poses = leg.poses(shares)
             turn[rows], origin[rows] = (
-                poses if self.plate is None else self.plate.carried(poses, shares)
+                poses if self.carrier is None else self.carrier.carried(poses, shares, times[rows])
             )
         return Poses(turn, origin)
 
 
-def random_motions_on_plates(file: ArmFile, n: int) -> Iterator[Motion]:
-    """Random lines and arcs on plates that turn meanwhile, in turns, that the arm can follow."""
+def random_motions_on(
+    carriers: type[Plate] | type[Belt], file: ArmFile, n: int
+) -> Iterator[Motion]:
+    """Random lines and arcs on plates or belts that move meanwhile, in turns, that the arm can follow."""
     draw, found = np.random.default_rng(1), 0
     robot, own = cl.load_urdf(file.path), OwnArm.read(file.path, file.link, TOOL)
-    links, joints = (*robot.link_names, "plate"), robot.joints
     while found < n:
         start = np.array(file.posture)[: len(own.joints)] + draw.uniform(-0.2, 0.2, len(own.joints))
         turn, origin = own.poses(start[None].astype(LONG))
-        plate = Plate.drawn(draw)
-        legs, (move,) = drawn(KINDS[found % 2], plate.seen((turn[0], origin[0])), draw)
-        move = replace(move, seen_from="plate", hold={"plate": plate.first + plate.by})
+        carrier = carriers.drawn(draw)
+        legs, (move,) = drawn(KINDS[found % 2], carrier.seen((turn[0], origin[0])), draw)
         at = {joint.name: float(at) for joint, at in zip(own.joints, start, strict=True)}
-        beside = replace(robot, link_names=links, joints=(*joints, plate.joint(links[0])))
-        program = Program(file.link, TOOL, (move,), {**at, "plate": plate.first})
         try:
-            made = motion_of(beside, program).trajectory
+            assert isinstance(move, PathMove)
+            made = carrier.followed(robot, file.link, move, at)
         except cl.ClearanceError:
             continue
         found += 1
         columns = [made.joint_names.index(joint.name) for joint in own.joints]
-        yield Motion(own, made.of_columns(columns), legs, plate)
+        yield Motion(own, made.of_columns(columns), legs, carrier)
 
 
 def random_motions(file: ArmFile, n: int, seed: int = 0) -> Iterator[tuple[str, Motion]]:

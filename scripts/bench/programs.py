@@ -4,9 +4,9 @@
         [--only PART ...] [--csv FILE]
 
 Parts: `enclosure` (no joint is farther from its cubic than proven, by inverse kinematics of their own in long
-doubles), `turning` (the same on a plate that turns meanwhile), `peers` (poses at every step), `zones` (random
-admissible paths), `table` (the same motion as samples of 1 ms), `speed` (certified to 0.1 mm among obstacles; CPU
-time, the least of three, case loaded from its files).
+doubles), `turning` (the same on a plate that turns meanwhile), `conveyor` (the same on a belt by a table of its
+own), `peers` (poses at every step), `zones` (random admissible paths), `table` (the same motion as samples of 1
+ms), `speed` (certified to 0.1 mm among obstacles; CPU time, the least of three, case loaded from its files).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import yaml
 from harness import Row, least_time
 from program_arms import LONG, ArmFile, OwnArm, arm_files
 from program_corners import zones
-from program_paths import TOOL, Motion, random_motions, random_motions_on_plates
+from program_paths import TOOL, Belt, Motion, Plate, random_motions, random_motions_on
 
 import clearance as cl
 from clearance.world.cubic import positions_along
@@ -59,7 +59,13 @@ def enclosure(asked) -> Iterator[Row]:
 def turning(asked) -> Iterator[Row]:
     """The same for lines and arcs on a plate that turns meanwhile."""
     for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, random_motions_on_plates(file, asked.motions), asked)
+        yield enclosed(name, random_motions_on(Plate, file, asked.motions), asked)
+
+
+def conveyor(asked) -> Iterator[Row]:
+    """The same for lines and arcs on a belt that moves by a table of its own."""
+    for name, file in arm_files(asked.arms).items():
+        yield enclosed(name, random_motions_on(Belt, file, asked.motions), asked)
 
 
 def enclosed(name: str, motions: Iterator[Motion], asked) -> Row:
@@ -223,6 +229,7 @@ def boxes_about(start: np.ndarray, draw: np.random.Generator) -> Iterator[dict]:
 PARTS = {
     "enclosure": enclosure,
     "turning": turning,
+    "conveyor": conveyor,
     "peers": peers,
     "zones": zones,
     "table": table,
