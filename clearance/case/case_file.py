@@ -26,10 +26,10 @@ from clearance.case.case_list import refuse_folder
 from clearance.case.driven_robots import Surroundings, require_still
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.packed import refuse_zip, require_entry, unpacked
+from clearance.case.places import Rider
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import InMotion, RobotReader, in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
-from clearance.case.standing import Rider
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
 from clearance.formats.files.input_files import InputFiles, resolved

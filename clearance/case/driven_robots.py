@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.case.standing import IN_WORLD, Places, Rider
+from clearance.case.places import IN_WORLD, Places, Rider
 from clearance.errors import BadProgram
 from clearance.formats.schema import program as schema
 from clearance.geometry.pose import inverse

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.case.driven_robots import ProgramCell, ProgrammedMotion, Surroundings
-from clearance.case.standing import IN_WORLD, NOT_PLACED, Place, Places
+from clearance.case.places import IN_WORLD, NOT_PLACED, Place, Places
 from clearance.errors import BadProgram, ClearanceError, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read

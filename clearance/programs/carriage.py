@@ -2,7 +2,7 @@
 
 The way from the robot's root to the frame is a chain of fixed poses, slides and turns. Between two knots of a
 table a joint moves on a cubic; a pose goes straight and turns about one axis at constant speed, as in the engine.
-Not for: where the chain comes from (`case.standing`), how joints follow (`following`).
+Not for: where the chain comes from (`case.places`), how joints follow (`following`).
 """
 
 from __future__ import annotations
