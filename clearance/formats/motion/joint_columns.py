@@ -53,8 +53,11 @@ def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column
     except UnknownJoint as error:
         known = {joint.name for joint in robot.joints}
         moving = [joint.name for joint in robot.moving_joints]
-        meant = quantity(next((name for name in joints if name not in known), ""), moving)
+        unknown = next((name for name in joints if name not in known), "")
+        meant = quantity(unknown, moving)
         said = f"did you mean {meant!r}?" if meant else error.valid
+        if meant == unknown != "":
+            said = "tables have positions and velocities of joints"
         error.valid = f"{said}; {remedy(robot, columns)}"
         raise
 

@@ -163,6 +163,10 @@ def test_an_unknown_column_is_told_by_what_it_looks_like(tmp_path):
     ):
         with pytest.raises(UnknownJoint, match=f"unknown joint '{name}'; did you mean '{meant}'"):
             load_small(tmp_path, urdf=TWO_JOINTS, trajectory=f"time,shoulder,{name}\n0,0,0\n")
+    with pytest.raises(
+        UnknownJoint, match="'lift/acceleration'; tables have positions and velocities"
+    ):
+        load_small(tmp_path, urdf=TWO_JOINTS, trajectory="time,shoulder,lift/acceleration\n0,0,0\n")
 
 
 def test_columns_that_look_like_motion_and_are_left_out_stand_in_the_headline(tmp_path):
