@@ -38,6 +38,9 @@ APART = 5e-3
 GAP = 1e-5
 """[m] Links that come as near are taken to touch."""
 
+AT_ONCE = 4096
+"""Positions whose frames are held together."""
+
 REMEDY = (
     "such pairs are not measured; an SRDF that does not excuse them has them measured, "
     "and an `allow` row says that it is meant"
@@ -67,8 +70,11 @@ class Neighbours:
 
     def gaps(self, positions: np.ndarray) -> np.ndarray:
         """(n,) [m] the distances of the links at positions (n, k) of the joints [rad or m]."""
-        frames = self._chain.frames(positions)
-        return np.asarray(self._query.distances(None, frames[:, -1]).distances)
+        parts = (
+            self._query.distances(None, self._chain.frames(part)[:, -1]).distances
+            for part in np.array_split(positions, 1 + len(positions) // AT_ONCE)
+        )
+        return np.concatenate([*parts])
 
     @cached_property
     def gap_at_home(self) -> float:
@@ -121,9 +127,8 @@ class Neighbours:
 
         It is infinite where nothing limits it, the links included.
         """
-        (joint,), (only,) = self._chain.masters, self._chain.joints
-        turn = 2.0 * np.pi / max(abs(only.factor), 1e-9)
-        farthest = REACH if joint.kind is JointKind.PRISMATIC else turn
+        (joint,) = self._chain.joints
+        farthest = 2.0 * np.pi / max(abs(joint.factor), 1e-9) if joint.turns else REACH
         home, found = float(self.home[0]), []
         for limit, way in zip(self._chain.ranges[0].tolist(), (-1.0, 1.0), strict=True):
             end = limit if abs(limit - home) < farthest else home + way * farthest
