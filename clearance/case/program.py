@@ -76,6 +76,7 @@ def program_motion(
         rides=tuple(carriages),
         frames=tuple(sorted(frames.used | (cell.mounts(driven) if driven else set()))),
         has_way_in=read.starts_anywhere,
+        is_rough=read.is_rough,
         left_out=(*read.left_out, *_speeds_lacking(cell.robot, program)),
         contradicted=tuple(f"{shown}: {one}" for one in read.contradicted),
         assumed=tuple(f"{shown}: {one}" for one in (*read.assumed, *found.doubtful)),

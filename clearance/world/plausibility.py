@@ -33,6 +33,7 @@ from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
+from clearance.world.trajectory import Trajectory
 from clearance.world.unproven_motion import notices_on_unproven
 
 LARGE_LIMIT = 0.5
@@ -242,25 +243,34 @@ def notices_on_clocks(case: Case) -> list[Notice]:
 
 
 def _times_lacking(case: Case) -> Iterator[Notice]:
-    """Notices on programs whose times lack something, beside others that move; with slack, on what that covers."""
+    """Notices on programs whose times lack something, or rest on what nobody says, beside others that move."""
     moving = [table.name for table in _tables(case)]
     for placed in case.robots:
         asked = placed.trajectory
-        if asked is None or not asked.left_out:
+        if asked is None or not (asked.left_out or asked.is_rough):
             continue
         own = [f"robot {name!r}" for name in (placed.robot.name, *asked.drives)]
-        others = [name for name in moving if name not in own]
-        if not others:
-            continue
-        text = f"the times of {own[0]} leave out {listed(asked.left_out)}, and {listed(others)} moves too"
-        if case.clock.slack == 0.0:
-            says = "clock: {slack: seconds} says by how much their times may be off"
-            if asked.rides:
-                says = f"its tool goes with {listed([*asked.rides])}, so waits of their length have to be there"
-            yield Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
-        else:
-            covers = f"all of it has to be within the slack of {case.clock.slack:g} s"
-            yield Notice(Severity.WARNING, "clocks", f"{text}: {covers}")
+        others = listed([name for name in moving if name not in own])
+        if others and asked.left_out:
+            text = (
+                f"the times of {own[0]} leave out {listed(asked.left_out)}, and {others} moves too"
+            )
+            yield _lacking(text, asked, case.clock.slack)
+        elif others and case.clock.slack == 0.0:
+            text = f"the times of {own[0]} rest on accelerations that no file says, and {others} moves too"
+            covers = "clock: {slack: seconds} covers what they may be off"
+            yield Notice(Severity.WARNING, "clocks", f"{text}; {covers}")
+
+
+def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
+    """The notice on what a program's times lack: suspect; with slack a warning of what that has to cover."""
+    if slack > 0.0:
+        covers = f"all of it has to be within the slack of {slack:g} s"
+        return Notice(Severity.WARNING, "clocks", f"{text}: {covers}")
+    says = "clock: {slack: seconds} says by how much their times may be off"
+    if asked.rides:
+        says = f"its tool goes with {listed([*asked.rides])}, so waits of their length have to be there"
+    return Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
 
 
 def _rides_with_tolerance(case: Case) -> Iterator[Notice]:

@@ -108,6 +108,7 @@ class Trajectory:
             start_off: how far a start that the message gives is off that sample, in words, if it is.
         assumed: of a program's controller, where nothing confirms it, one line each. left_out: its instructions
             that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
+        is_rough: its times rest on accelerations that no file of its program says.
         contradicted: the points of a program whose own axes are far from them, one line each.
         unread: columns of its table that look like motion, and are not read.
         moves: of a program, when each is made. frames: the obstacles and links that its work frames are on.
@@ -141,6 +142,7 @@ class Trajectory:
     frames: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    is_rough: bool = False
     odd: tuple[str, ...] = ()
     contradicted: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()

@@ -138,6 +138,20 @@ def test_a_program_that_leaves_out_waits_is_suspect_beside_others_that_move(tmp_
     assert not reported(replace(case, obstacles=tuple(one for one in case.obstacles if one.stands)))
 
 
+def test_a_program_whose_accelerations_nobody_says_is_told_beside_others_that_move(tmp_path):
+    case = cell(tmp_path, 0.0)
+    (left, *others) = case.robots
+    rough = replace(left, trajectory=replace(left.given_trajectory, is_rough=True))
+    case = replace(case, robots=(rough, *others))
+    (told,) = [one for one in notices_of(case) if one.kind == "clocks"]
+    assert told.severity == "warning"
+    assert (
+        "the times of robot 'left' rest on accelerations that no file says, and obst" in told.text
+    )
+    assert not reported(replace(case, clock=Clock(1.0)))
+    assert not reported(replace(case, obstacles=tuple(one for one in case.obstacles if one.stands)))
+
+
 def test_a_robot_that_a_program_moves_too_has_its_clock():
     drives = cl.Trajectory(np.arange(2.0), (), np.zeros((2, 0)), drives=("turn",))
     arm = replace(robot("arm"), trajectory=drives)

@@ -108,6 +108,12 @@ class ControllerMove:
         """True where it matters which tool is on the flange."""
         return self.kind != "ptp" or isinstance(self.to, PoseTarget) or self.zone > 0.0
 
+    @property
+    def is_rough(self) -> bool:
+        """True where nobody says its time, nor its acceleration."""
+        own = self.axis_acceleration if self.kind == "ptp" else self.acceleration
+        return self.time is None and own is None
+
     def slowed(self, share: float) -> ControllerMove:
         """The same move at a share of all its speeds."""
         names = ("speed", "turn_speed", "share", "axis_speed")

@@ -64,6 +64,7 @@ class ConvertedProgram:
             points whose own axes are far from them, where no point confirms axes, one line each.
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
         left_out: what its times lack: instructions that the case leaves out, and what no file says.
+        is_rough: they rest on accelerations that no file says.
         own: the program, if it is written in our form.
     """
 
@@ -75,6 +76,7 @@ class ConvertedProgram:
     assumed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     contradicted: tuple[str, ...] = ()
+    is_rough: bool = False
     own: schema.Program | None = None
 
 
@@ -124,7 +126,8 @@ def converted(
     rests_on = (*unproven, *made.doubts())
     left_out = (*read.left_out, *([UNTIMED] if made.has_untimed_moves else []))
     return ConvertedProgram(
-        *(checked, places, names, notes, starts_anywhere, rests_on, left_out, contradicted)
+        *(checked, places, names, notes, starts_anywhere, rests_on, left_out, contradicted),
+        is_rough=any(one.is_rough for one in read.moves if isinstance(one, ControllerMove)),
     )
 
 

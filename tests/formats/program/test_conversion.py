@@ -190,6 +190,17 @@ def test_a_joint_move_has_the_time_or_the_speed_of_axes_that_it_states():
     assert move.ptp.time == 3.0 and move.ptp.joint_speed is None
 
 
+def test_times_rest_on_accelerations_unless_all_moves_say_them_or_their_time():
+    line = replace(POSE, kind="lin", acceleration=1.2)
+    known = (
+        replace(HOME, axis_speed=0.8, axis_acceleration=0.7),
+        replace(line, acceleration=None, time=2.0),
+        line,
+    )
+    assert not made(*known).is_rough
+    assert made(HOME).is_rough and made(*known, replace(line, acceleration=None)).is_rough
+
+
 def test_an_external_axis_that_moves_needs_a_joint():
     target = PoseTarget(at(0.5, 0.0, 0.3), {"E1": 0.0})
     one = ControllerMove(7, "lin", target, np.eye(4))
