@@ -12,8 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from clearance.errors import is_unpacked
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import coded_line
@@ -21,6 +19,7 @@ from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
 from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.record.record import Record
 from clearance.report.model import ReportModel
+from clearance.report.moment import own_time, sample_at
 from clearance.world.case import PlacedRobot
 
 MOST = 10
@@ -138,7 +137,7 @@ _OF_MOVE = re.compile(r"(?:(?P<file>.+) )?line (?P<line>\d+)")
 
 def _move_at(placed: PlacedRobot, time: float) -> str:
     """Where the move of a program at a time of the run [s] stands: the first that ends then or later."""
-    own = _own_time(placed, time)
+    own = own_time(placed, time)
     moves = placed.given_trajectory.moves
     return next((one.where for one in moves if own <= one.end > one.start), moves[-1].where)
 
@@ -147,21 +146,3 @@ def _is_of(record: Record, placed: PlacedRobot, finding: Finding) -> bool:
     before = record.case.prefix_of(placed)
     links = {before + link for link in placed.robot.link_names}
     return bool(links & {finding.body_a, finding.body_b})
-
-
-def sample_at(placed: PlacedRobot, time: float) -> int:
-    """The last sample of a robot's table at or before a time of the run [s]; the first before all of them."""
-    own = _own_time(placed, time)
-    rounding = 1e-9 * max(1.0, abs(own))
-    times = placed.given_trajectory.times
-    return max(0, int(np.searchsorted(times, own + rounding, side="right")) - 1)
-
-
-def _own_time(placed: PlacedRobot, time: float) -> float:
-    """A time of the run [s] as its trajectory counts it."""
-    times, timing = placed.given_trajectory.times, placed.timing
-    own = (time - timing.start) * timing.rate
-    span = float(times[-1] - times[0])
-    if timing.after == "loop" and span > 0.0 and own > times[-1]:
-        own = float(times[0]) + (own - float(times[0])) % span
-    return own

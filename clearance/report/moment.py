@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from clearance.record.moment import Depth, Moment
 from clearance.record.record import Record
 from clearance.record.wording import depth_text, other_time, seconds
 from clearance.report.blocks import At, Inline
+from clearance.world.case import PlacedRobot
 from clearance.world.rules import DEFAULT
 
 BODIES = {"link": ("Link", "Obstacle"), "body_a": ("Body", "Other body")}
@@ -75,3 +79,36 @@ def time_of(row: dict[str, Any]) -> str:
 def name_shown(rule: str) -> str:
     """A rule's name where it stands beside others."""
     return "default limits" if rule == DEFAULT else rule
+
+
+def point_of_file(record: Record, moment: Moment) -> str:
+    """The point of the robot's own table at a moment, or the last one before it; empty where points are steps."""
+    bodies = {moment.link, moment.obstacle}
+    for placed in record.case.robots:
+        before = record.case.prefix_of(placed)
+        is_of = bodies & {before + link for link in placed.robot.link_names}
+        if is_of and placed.trajectory_path and not placed.given_trajectory.moves:
+            n_points = len(placed.given_trajectory.file_times)
+            if n_points == record.rows.n_rows:
+                return ""
+            point = sample_at(placed, moment.time) + 1
+            return f", point {point:,} of {n_points:,} of {Path(placed.trajectory_path).name}"
+    return ""
+
+
+def sample_at(placed: PlacedRobot, time: float) -> int:
+    """The last sample of a robot's table at or before a time of the run [s]; the first before all of them."""
+    own = own_time(placed, time)
+    rounding = 1e-9 * max(1.0, abs(own))
+    times = placed.given_trajectory.file_times
+    return max(0, int(np.searchsorted(times, own + rounding, side="right")) - 1)
+
+
+def own_time(placed: PlacedRobot, time: float) -> float:
+    """A time of the run [s] as its trajectory counts it."""
+    times, timing = placed.given_trajectory.times, placed.timing
+    own = (time - timing.start) * timing.rate
+    span = float(times[-1] - times[0])
+    if timing.after == "loop" and span > 0.0 and own > times[-1]:
+        own = float(times[0]) + (own - float(times[0])) % span
+    return own

@@ -29,6 +29,7 @@ def started(
     made = replace(
         asked, times=times, positions=np.vstack([positions, own.positions]), velocities=rates,
         path_error=0.0, points=None, has_way_in=False, start_off="",
+        starts_before_file=True,
     )  # fmt: skip
     if not isinstance(own, Points):
         return made

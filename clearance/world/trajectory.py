@@ -106,6 +106,7 @@ class Trajectory:
         given_extents: (2, k) the least and greatest position before whole turns were subtracted, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
             start_off: how far a start that the message gives is off that sample, in words, if it is.
+        starts_before_file: True if its first sample is a start at 0 s that was added to the file's.
         assumed: of a program's controller, where nothing confirms it, one line each. left_out: its instructions
             that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
         is_rough: its times rest on accelerations that no file of its program says.
@@ -137,6 +138,7 @@ class Trajectory:
     given_extents: np.ndarray | None = None
     has_way_in: bool = False
     start_off: str = ""
+    starts_before_file: bool = False
     corners: tuple[CornerZone, ...] = ()
     moves: tuple[MoveSpan, ...] = ()
     frames: tuple[str, ...] = ()
@@ -165,6 +167,12 @@ class Trajectory:
             raise BadInput(f"wrap is {self.wrap!r:.60}", valid=f"one of {', '.join(WRAPS)}")
         if self.velocities is not None:
             self._refuse_bad_velocities(self.velocities)
+
+    @property
+    def file_times(self) -> np.ndarray:
+        """(m,) [s] The times of its file's samples: without those that were added."""
+        times = self.written.times
+        return times[1:] if self.starts_before_file else times
 
     @property
     def n_steps(self) -> int:

@@ -16,16 +16,18 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.formats.motion.trajectory_file import line_of_sample
-from clearance.report.annotations import MOST, annotation_lines, command, sample_at
+from clearance.report.annotations import MOST, annotation_lines, command
 from clearance.report.markdown import MOST_ROWS, markdown, plain
+from clearance.report.moment import sample_at
 from clearance.report.terminal import terminal_table
 from clearance.report.topic import TerminalTable
+from clearance.report.topics import worst
 from clearance.run import Run
 from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver
-from tests.findings.gates import load_gates
+from tests.findings.gates import load_gates, write_gates, write_way
 from tests.report.records import arm
 
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)}
@@ -61,6 +63,27 @@ def test_at_most_ten_and_the_worst_first(tmp_path):
     lines = lines_of(cl.check(load_gates(tmp_path, gates)), tmp_path)
     assert len(lines) == MOST
     assert [f"gate_{i} at" in line for i, line in enumerate(lines)] == [True] * MOST
+
+
+def test_steps_are_told_by_the_points_of_the_file_where_these_are_others(tmp_path):
+    """The way begins at 1 s; the case gives the start, which is a step before it."""
+    path = write_gates(tmp_path, {"gate_a": (0.0, -0.01)})
+    write_way(tmp_path / "way.csv", np.linspace(-1.0, 1.0, 41))
+    rows = [row.split(",") for row in (tmp_path / "way.csv").read_text().splitlines()[1:]]
+    later = [f"{float(time) + 1.0:.6f},{x}" for time, x in rows]
+    (tmp_path / "way.csv").write_text("\n".join(["time,slide_x", *later]) + "\n")
+    asked = "trajectory: {file: way.csv, start_state: {slide_x: -1.0}}"
+    path.write_text(path.read_text().replace("trajectory: way.csv", asked))
+    run = cl.check(path)
+    line = int(re.search(r"line=(\d+),", lines_of(run, tmp_path)[0])[1])
+    time = float((tmp_path / "way.csv").read_text().splitlines()[line - 1].split(",")[0])
+    assert time == pytest.approx(run.findings[0].time, abs=1e-6)
+    told = dict(worst.lines(run.report))["worst"]
+    step, at = run.worst["step"], run.worst["time"]
+    point = round((at - 1.0) / 0.05) + 1  # from 1 s on, every 50 ms
+    assert told.startswith(f"step {step} of 42 steps, {at:.3f} s, point {point} of 41 of way.csv: ")
+    same = dict(worst.lines(cl.check(load_gates(tmp_path / "same", BROKEN)).report))["worst"]
+    assert "point" not in same
 
 
 @pytest.mark.parametrize(

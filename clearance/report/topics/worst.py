@@ -21,6 +21,7 @@ from clearance.report.moment import (
     moment_link,
     moment_row,
     name_shown,
+    point_of_file,
     step_link,
     when_of,
 )
@@ -98,6 +99,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
     where = between if worst.between else f"step {worst.step}"
     of_steps = f"of {count(record.rows.n_rows, 'step')}"
     at = f"{seconds(worst.time, record.moves.at(worst.time))}{other_time(worst.obstacle, worst.time_b)}"
+    at += point_of_file(record, worst)
     yield "worst", f"{where} {of_steps}, {at}: {worst.link} - {worst.obstacle}"
     if moving := _nearest_moving(model):
         yield (
