@@ -46,7 +46,15 @@ from clearance.formats.scene.request import SceneContent
 from clearance.formats.schema import case as schema
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
-from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
+from clearance.world.case import (
+    Case,
+    Clock,
+    PlacedRobot,
+    SignOff,
+    Source,
+    index_of_robot,
+    require_no_program_on,
+)
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
 from clearance.world.motion import kinematic_motion
@@ -125,6 +133,7 @@ def with_trajectory_file(
         BadInput: as `load_case`, or the robot has a trajectory already.
     """
     i_robot = index_of_robot(cell.case.robots, robot)
+    require_no_program_on(cell.case, i_robot)
     entry, files = cell.entries[i_robot], cell.files.of_more()
     with at(cell.path.name):
         if entry.trajectory is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from numbers import Real
@@ -426,9 +426,11 @@ class Case:
             robot: its name; needed only where there are several. wrap: as in `Trajectory`.
 
         Raises:
-            BadInput: no such robot or joint, or numbers that are no trajectory.
+            BadInput: no such robot or joint, numbers that are no trajectory, or a robot that the program of
+                another one counts on.
         """
         i_robot = index_of_robot(self.robots, robot)
+        require_no_program_on(self, i_robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
         trajectory = Trajectory(times, names, positions, velocities, wrap=wrap)
@@ -449,6 +451,39 @@ def _require_bodies(case: Case) -> None:
     elif case.robots[0].self_clearance or case._stand_on_others:
         require_other_names(case.robots[0].robot, case.obstacles)
     require_one_carrier(case.carries)
+
+
+def require_no_program_on(case: Case, i_robot: int) -> None:
+    """Nothing, if no program of another robot was followed as a robot moves, or stands, that is to move otherwise.
+
+    Raises:
+        BadInput: a program moves it, or has frames on it or on what is there.
+    """
+    name = case.robots[i_robot].robot.name
+    for i, placed in enumerate(case.robots):
+        asked = placed.trajectory
+        if i == i_robot or asked is None:
+            continue
+        frames = {
+            one.partition("/")[0]
+            for on in (*asked.frames, *asked.rides)
+            for one in _below(case, on)
+        }
+        if name in frames or name in asked.drives:
+            raise Contradiction(
+                f"the program of robot {placed.robot.name!r} was followed with robot {name!r} as it is",
+                where="trajectory",
+                valid=f"the motion of {name!r} in the case file, or a program that does not count on it",
+            )
+
+
+def _below(case: Case, name: str) -> Iterator[str]:
+    """A body, and what it is on, one after the other."""
+    below = {one.name: one.mount.on for one in case.obstacles if one.mount is not None}
+    below |= {one.robot.name: one.mount.on for one in case.robots if one.mount is not None}
+    while name:
+        yield name
+        name = below.pop(name, "") or below.pop(name.partition("/")[0], "")
 
 
 def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:

@@ -10,6 +10,8 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.case.case_file import load_cell, with_trajectory_file
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.quaternions import quaternions_of
 from tests.programs.arms import turned
 from tests.programs.test_controllers_in_cases import frame_angles
@@ -138,6 +140,34 @@ def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path)
     seen = turned((0.0, 0.0, -turn)) @ at - [0.1, 0.0, 0.3]
     assert np.abs(seen - xyz).max() < 1e-8
     assert table.trajectory.path_error == made.path_error > 0.0
+
+
+@pytest.mark.parametrize(
+    ("hold", "on"), [({"turntable/turn": 0.6}, "base"), ({}, "turntable/plate"), ({}, "part")]
+)
+def test_a_robot_that_a_program_counts_on_is_given_no_other_motion(tmp_path, hold, on):
+    """It moves the table, has a frame on it, or on a part there: the arm would go where the table is no more."""
+    content = driving(tmp_path, [{"lin": {"to": {"xyz": TIP.tolist()}, "hold": hold}}], on)
+    content["robots"][0]["trajectory"]["program"] = program = yaml.safe_load(
+        (tmp_path / "program.yaml").read_text()
+    )
+    program["moves"] += [{"lin": {"to": {"frame": "jig", "xyz": near(on)}}}]
+    path = saved(tmp_path, content)
+    with pytest.raises(cl.BadInput, match="program of robot 'arm' was followed with robot 'turn"):
+        cl.load_case(path).with_trajectory(
+            [0.0, 1.0], [[0.5], [0.7]], joint_names=["turn"], robot="turntable"
+        )
+    (tmp_path / "turn.csv").write_text("time,turn\n0,0.5\n1,0.7\n")
+    asked = TrajectoryFile(file="turn.csv")
+    with pytest.raises(cl.BadInput, match="program of robot 'arm' was followed with robot 'turn"):
+        with_trajectory_file(load_cell(path), asked, "other", "turntable")
+
+
+def near(on: str) -> list[float]:
+    """Where the tool begins, seen from what a frame is on."""
+    if on == "base":
+        return (TIP - BASE).tolist()
+    return (np.array(on_plate()) - ([0.1, 0.0, 0.3] if on == "part" else [0.0] * 3)).tolist()
 
 
 def rapid(turn: np.ndarray, via: list[float], to: list[float]) -> str:
