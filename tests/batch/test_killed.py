@@ -27,7 +27,7 @@ pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
 ]
 
-N_CASES = 160
+N_CASES = 100
 
 
 @pytest.fixture(scope="module")

@@ -8,17 +8,18 @@ from clearance.batch import workers
 from clearance.batch.engine import Queue
 from clearance.batch.manifest import items_of
 from clearance.batch.measuring import measure
-from clearance.batch.workers import DEATHS, local_workers
+from clearance.batch.workers import local_workers
 from clearance.errors import Incomplete
 from tests.batch.batches import write_cell
 
 pytestmark = [pytest.mark.cold, pytest.mark.slow]
 
-N_CASES = 20
+N_CASES, DEATHS = 20, 2
 
 
 @pytest.fixture
-def items(tmp_path):
+def items(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "DEATHS", DEATHS)  # fewer are started
     return items_of([str(write_cell(tmp_path, [0.5] * N_CASES))])
 
 
@@ -61,5 +62,5 @@ def test_a_case_that_takes_its_workers_with_it_is_at_fault_and_costs_no_other(it
 
 def test_workers_that_die_as_they_start_are_told_in_one_line(items, monkeypatch):
     monkeypatch.setattr(workers, "_work", die)
-    with local_workers(2) as engine, pytest.raises(Incomplete, match="--jobs 1 needs none"):
+    with local_workers(1) as engine, pytest.raises(Incomplete, match="--jobs 1 needs none"):
         list(engine.results(Queue(items, "batch")))
