@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.receipt.case_data import case_data
 from clearance.receipt.proof.error_terms import along_of, most_of_balls
 from clearance.receipt.proof.items import Items
@@ -17,7 +18,7 @@ from clearance.receipt.proof.views import links_above
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.forest import forest_of
 from tests.budget.budget_cases import random_case
-from tests.budget.sampled_machine import SampledMachine, distance
+from tests.budget.sampled_machine import SampledMachine
 from tests.receipt.receipts import stage_of, turning_arm
 
 ROUNDING = 1e-12
@@ -145,8 +146,13 @@ def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
     bounds = by_balls(stage, items) + stage.stretch.padding + UNIT
     for i, (a, b) in enumerate(stage.stretch.pairs.tolist()):
         poses = machine.poses(float(stage.stretch.times[items.start[i]]), machine.random(rng))
-        shapes = [machine.shapes[names[body]].at(poses[names[body]]) for body in (a, b)]
-        assert bounds[i] <= distance(*shapes) + ROUNDING
+        shapes = [placed(machine, poses, names[body]) for body in (a, b)]
+        assert bounds[i] <= cl.distance(*shapes).distance + ROUNDING
+
+
+def placed(machine: SampledMachine, poses, name: str) -> cl.Polyhedron:
+    """A body where it is at these poses."""
+    return machine.shapes[name].transformed(poses[name])
 
 
 def taken_by(off: JointTolerance) -> float:

@@ -12,10 +12,10 @@ from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.stage import by_balls, by_directions
 from tests.budget.part_cases import carried, off_by, quarter_turn, slid
-from tests.budget.sampled_machine import HandlingMachine, distance
+from tests.budget.sampled_machine import HandlingMachine
 from tests.budget.test_parts_sampled import handling
 from tests.receipt.receipts import saved, stage_of
-from tests.receipt.test_error_terms import names_in
+from tests.receipt.test_error_terms import names_in, placed
 
 ROUNDING = 1e-12
 FAR = 100.0
@@ -65,10 +65,10 @@ def test_no_error_of_any_moment_brings_parts_nearer_than_is_proven(seed):
             parts = machine.parts_at(start, errors)
             poses = machine.poses(float(rng.uniform(*times)), errors[machine.NOW], parts)
             for k, pair in enumerate(stage.stretch.pairs.tolist()):
-                a, b = (machine.shapes[names[body]].at(poses[names[body]]) for body in pair)
-                assert apart[k] <= distance(a, b) + ROUNDING
+                a, b = (placed(machine, poses, names[body]) for body in pair)
+                assert apart[k] <= cl.distance(a, b).distance + ROUNDING
                 if world[k]:
-                    least = (b[0] @ u[:, k]).min() - (a[0] @ u[:, k]).max()
+                    least = (b.vertices @ u[:, k]).min() - (a.vertices @ u[:, k]).max()
                     assert along[k] <= least + ROUNDING
 
 
