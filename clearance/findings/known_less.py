@@ -27,8 +27,8 @@ _Limits = tuple[tuple[str, float], ...]
 def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
     """What is not known of now as it was before, one line each."""
     old, new = before.measured, now.measured
-    lines = _proven_less(old, new), _measured_less(old, new), _asked_less(old, new)
-    return tuple(itertools.chain(*lines, _listed_less(before, now)))
+    found = (less(old, new) for less in (_proven_less, _measured_less, _counted_less, _asked_less))
+    return tuple(itertools.chain(*found, _listed_less(before, now)))
 
 
 def motion_shorter(before: FindingList, now: FindingList) -> Iterator[str]:
@@ -71,6 +71,17 @@ def _measured_less(old: MeasurementConditions, new: MeasurementConditions) -> It
     pairs = [*lost, *sorted(pair for pair in missing if not left_out & {*pair})]
     if pairs:
         yield f"not measured as before: {listed([f'{a} - {b}' for a, b in pairs])}"
+
+
+def _counted_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
+    """Joints beyond their limits that fail no longer, and bodies with less padding."""
+    if (old.joints, new.joints) == ("fail", "warn"):
+        yield "joints beyond their limits no longer fail"
+    there = {*_bodies(new.pairs)}
+    for name, was in old.paddings.items():
+        is_now = new.paddings.get(name, 0.0)
+        if is_now < was and name in there:
+            yield f"padding of {name}: now {limit_mm(is_now)} mm, and was {limit_mm(was)} mm"
 
 
 def _asked_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:

@@ -10,7 +10,7 @@ import hashlib
 import itertools
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 from weakref import WeakKeyDictionary
 
@@ -66,6 +66,7 @@ class MeasurementConditions:
         clock_slack: [s] how far the actors' clocks may be apart; "not tied" where nothing bounds that.
         pairs: all that were measured at some time. unmeasured: those that were not, or not always; "*" stands for
             all that a link could meet.
+        joints: what a joint beyond its limits is: "warn" or "fail". paddings: [m] of bodies that have one.
         tolerances: sha256 of the errors that were counted with; empty without any.
     """
 
@@ -80,6 +81,8 @@ class MeasurementConditions:
     pairs: tuple[MeasuredPairs, ...]
     unmeasured: tuple[MeasuredPairs, ...]
     tolerances: str = ""
+    joints: str = "warn"
+    paddings: dict[str, float] = field(default_factory=dict, hash=False)
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -110,7 +113,24 @@ def conditions_of(record: Record) -> MeasurementConditions:
         pairs=_measured_blocks(record.case, _measured(record)),
         unmeasured=tuple(_blocks(unmeasured)),
         tolerances=_tolerances(record.case.tolerance),
+        joints=record.case.limits.joints,
+        paddings=paddings_in(record.case),
     )
+
+
+def paddings_in(case: Case) -> dict[str, float]:
+    """[m] By how much clearances of a body are lessened, by its name; bodies without padding are left out."""
+    return {name: padding for name, padding in _paddings(case) if padding}
+
+
+def _paddings(case: Case) -> Iterator[tuple[str, float]]:
+    for placed in case.robots:
+        before = case.prefix_of(placed)
+        for body in placed.robot.bodies:
+            asked = placed.padding.get(body.name, 0.0)
+            yield before + body.name, float(asked + body.shape.shortfall)
+    for obstacle in case.obstacles:
+        yield obstacle.name, float(obstacle.padding + obstacle.body.shape.shortfall)
 
 
 def _tolerances(budget: Budget | None) -> str:

@@ -99,6 +99,10 @@ TABLE = {
     ),
     "less is called near": ({}, {"limits": Limits(0.005, 0.01)}, True, "", ""),
     "limits are stricter": ({}, {"limits": Limits(0.006, 0.03)}, True, "", ""),
+    "joints beyond their limits only warn": (
+        {"limits": Limits(0.005, 0.02, "fail")}, {}, False, "LESS IS KNOWN", "beyond their limits no longer",
+    ),
+    "joints beyond their limits fail": ({}, {"limits": Limits(0.005, 0.02, "fail")}, True, "", ""),
     "a softer rule": (
         {}, {"limits": ruled(fail=0.0)}, False, "LESS IS KNOWN", "fail limit of box - gate_b: now 0 mm",
     ),
@@ -170,6 +174,19 @@ def test_a_shorter_run_and_fewer_moves_are_told_and_fail_nothing(tmp_path):
         "shorter: programs make 4 moves, and made 6",
     ]
     assert listed(tmp_path).duration == 2.0
+
+
+def test_less_padding_is_less_known_and_more_is_not(tmp_path):
+    found = []
+    for i, padding in enumerate((0.01, 0.004)):
+        case = load_gates(tmp_path / str(i), CLEAR)
+        first, *others = case.obstacles
+        obstacles = (dataclasses.replace(first, padding=padding), *others)
+        found.append(answer(Question(dataclasses.replace(case, obstacles=obstacles))).finding_list)
+    assert compared(*found[::-1]).passed and not compared(*found).passed
+    assert doubt_lines(compared(*found)) == [
+        "less is known: padding of gate_a: now 4 mm, and was 10 mm"
+    ]
 
 
 @pytest.mark.parametrize("lost", ["profile", "tolerances"])

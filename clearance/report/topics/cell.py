@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
+from clearance.findings.measurement_conditions import paddings_in
 from clearance.record.record import Record
 from clearance.record.wording import limit_mm, seconds, span_text
 from clearance.report.blocks import Section, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.topic import Line, Topic
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import PlacedRobot
 from clearance.world.mount import Mount
 from clearance.world.notice import listed
 from clearance.world.plausible_recordings import not_measured
@@ -141,21 +142,6 @@ def moves_of(record: Record) -> list[dict[str, Any]]:
 def paddings_of(record: Record) -> dict[str, float]:
     """[m] By how much clearances of a body are lessened; bodies without padding are left out."""
     return paddings_in(record.case)
-
-
-def paddings_in(case: Case) -> dict[str, float]:
-    """The same in a case, as that of a phase."""
-    return {name: padding for name, padding in _paddings(case) if padding}
-
-
-def _paddings(case: Case) -> Iterator[tuple[str, float]]:
-    for placed in case.robots:
-        before = "" if len(case.robots) == 1 else f"{placed.robot.name}/"
-        for body in placed.robot.bodies:
-            asked = placed.padding.get(body.name, 0.0)
-            yield before + body.name, asked + body.shape.shortfall
-    for obstacle in case.obstacles:
-        yield obstacle.name, obstacle.padding + obstacle.body.shape.shortfall
 
 
 def clock_of(record: Record) -> dict[str, Any]:

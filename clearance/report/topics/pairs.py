@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, NamedTuple
 
+from clearance.findings.measurement_conditions import paddings_in
 from clearance.findings.self_clearance import self_clearance_of
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status, status_of
@@ -18,7 +19,7 @@ from clearance.report.blocks import At, Paragraph, Row, Section, Table, capital,
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment, time_of
 from clearance.report.topic import TerminalTable, Topic
-from clearance.report.topics.cell import paddings_in, paddings_of
+from clearance.report.topics.cell import paddings_of
 from clearance.world.case import Limits
 from clearance.world.phase import Phase
 from clearance.world.rules import DEFAULT
