@@ -194,7 +194,7 @@ def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
 def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
     start = tool_at(START)[:3, 3]
     corner, end = start + [0.0, 0.15, 0.0], start + [0.0, 0.15, -0.15]
-    at = start + [0.0, 0.2, 0.0]
+    at = start + [0.0, 0.21, 0.0]
     least = []
     for zone in (0.0, 0.01):
         moves = [{"lin": {"to": place(corner), "zone": zone}}, {"lin": {"to": place(end)}}]
