@@ -98,42 +98,37 @@ class Places:
 
     def carriage(self, name: str, seen_from: np.ndarray) -> Carriage:
         """The motion of what moves by itself, seen from what stands at a pose (4, 4) [m]."""
+        assert name in self._found  # which finds all that moves
         return Carriage(name, (inverse(seen_from), *self._steps(name)))
 
-    def _steps(self, name: str) -> tuple[Step, ...]:
-        """From the world to what moves by itself."""
+    def _steps(self, name: str, within: tuple[str, ...] = ()) -> tuple[Step, ...]:
+        """From the world to what moves by itself; within: the parts that are carried by it at some time."""
         mover = self._movers[name]
-        base = self._steps_to(mover.base)
+        base = self._steps_to(mover.base, within)
         if isinstance(mover.of, PlacedRobot):
             return (*base, *_steps_of_link(mover.of, mover.link))
         found = (*base, *_steps_of_rider(mover.of))
-        return (self._handed(mover.of, found),) if mover.of.carries else found
+        return (self._handed(mover.of, found, within),) if mover.of.carries else found
 
-    def _steps_to(self, place: Place) -> tuple[Step, ...]:
-        return (*(self._steps(place.on) if place.on else ()), place.pose)
+    def _steps_to(self, place: Place, within: tuple[str, ...]) -> tuple[Step, ...]:
+        return (*(self._steps(place.on, within) if place.on else ()), place.pose)
 
-    def _handed(self, part: Rider, first: tuple[Step, ...]) -> Handed:
+    def _handed(self, part: Rider, first: tuple[Step, ...], within: tuple[str, ...]) -> Handed:
         """A part that changes hands, which goes by some steps at first."""
+        within = (*within, part.name)
         starts, ways = list[float](), [first]
         ends = [*(one.window.start for one in part.carries[1:]), np.inf]
         for carry, following in zip(part.carries, ends, strict=True):
             start, end, by = carry.window.start, carry.window.end, self._found.get(carry.by)
-            if not isinstance(by, Place) or by.on in {*self.moved.values(), *self._under_way}:
+            if not isinstance(by, Place) or by.on in {*self.moved.values(), *within}:
                 return Handed(np.array(starts), tuple(ways), start)
-            self._under_way.append(part.name)
-            carrier = self._steps_to(by)
-            self._under_way.pop()
+            carrier = self._steps_to(by, within)
             starts.append(start)
             ways.append((*carrier, inverse(_pose(carrier, start)) @ _pose(ways[-1], start)))
             if end < following:
                 starts.append(end)
                 ways.append((_pose(ways[-1], end),))
         return Handed(np.array(starts), tuple(ways))
-
-    @cached_property
-    def _under_way(self) -> list[str]:
-        """The parts whose carriers are looked for."""
-        return []
 
     @cached_property
     def _movers(self) -> dict[str, _Mover]:
@@ -156,7 +151,7 @@ class Places:
                     left.append(one)
             waiting = left
         for one in waiting:
-            found |= self._on(one, f"is on {_below(one)!r}, which is not there")
+            found |= self._on(one, f"is on {_below(one)!r}, which has a program or is not there")
         return found
 
     def _on(self, one: Rider | PlacedRobot, base: Place | str) -> dict[str, Place | str]:
