@@ -269,7 +269,9 @@ def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
         return Notice(Severity.WARNING, "clocks", f"{text}: {covers}")
     says = "clock: {slack: seconds} says by how much their times may be off"
     if asked.rides:
-        says = f"its tool goes with {listed([*asked.rides])}, so waits of their length have to be there"
+        says = (
+            f"its tool goes with {listed([*asked.rides])}, so the program has to state these times"
+        )
     return Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
 
 
