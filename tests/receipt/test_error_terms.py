@@ -146,13 +146,13 @@ def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
     bounds = by_balls(stage, items) + stage.stretch.padding + UNIT
     for i, (a, b) in enumerate(stage.stretch.pairs.tolist()):
         poses = machine.poses(float(stage.stretch.times[items.start[i]]), machine.random(rng))
-        shapes = [placed(machine, poses, names[body]) for body in (a, b)]
-        assert bounds[i] <= cl.distance(*shapes).distance + ROUNDING
+        assert bounds[i] <= distance(machine, poses, names[a], names[b]) + ROUNDING
 
 
-def placed(machine: SampledMachine, poses, name: str) -> cl.Polyhedron:
-    """A body where it is at these poses."""
-    return machine.shapes[name].transformed(poses[name])
+def distance(machine: SampledMachine, poses, one: str, other: str) -> float:
+    """[m] Of two bodies where they are at these poses."""
+    places = {"pose_a": poses[one], "pose_b": poses[other]}
+    return cl.distance(machine.shapes[one], machine.shapes[other], **places).distance
 
 
 def taken_by(off: JointTolerance) -> float:

@@ -15,7 +15,7 @@ from tests.budget.part_cases import carried, off_by, quarter_turn, slid
 from tests.budget.sampled_machine import HandlingMachine
 from tests.budget.test_parts_sampled import handling
 from tests.receipt.receipts import saved, stage_of
-from tests.receipt.test_error_terms import names_in, placed
+from tests.receipt.test_error_terms import distance, names_in
 
 ROUNDING = 1e-12
 FAR = 100.0
@@ -65,10 +65,15 @@ def test_no_error_of_any_moment_brings_parts_nearer_than_is_proven(seed):
             parts = machine.parts_at(start, errors)
             poses = machine.poses(float(rng.uniform(*times)), errors[machine.NOW], parts)
             for k, pair in enumerate(stage.stretch.pairs.tolist()):
-                a, b = (placed(machine, poses, names[body]) for body in pair)
-                assert apart[k] <= cl.distance(a, b).distance + ROUNDING
+                one, other = (names[body] for body in pair)
+                assert apart[k] <= distance(machine, poses, one, other) + ROUNDING
                 if world[k]:
-                    least = (b.vertices @ u[:, k]).min() - (a.vertices @ u[:, k]).max()
+                    a, b = (
+                        machine.shapes[name].vertices @ (poses[name][:3, :3].T @ u[:, k])
+                        + poses[name][:3, 3] @ u[:, k]
+                        for name in (one, other)
+                    )
+                    least = b.min() - a.max()
                     assert along[k] <= least + ROUNDING
 
 
