@@ -76,7 +76,7 @@ class Finding:
         clearance: [m] the least, less padding; of a profile its gap; None where nothing was measured.
         proven: [m] a lower bound for the motion over the stretch, of the pair if it is proven by itself, else of
             all pairs of the rule; None at the samples only. Of `OF_TOLERANCES` the least with all errors.
-        fail, warn: [m] the limits.
+        fail, warn: [m] the limits; of `WAIVED_TOLERANCES` fail is the level of the waiver.
         time: [s] of the least. time_b: [s] when the second body is there, where its clock is another.
         step: of that moment, or before it if it is `between` two.
         start, end: [s] the stretch, proven from outside; of samples from its first step to its last.

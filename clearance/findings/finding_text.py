@@ -80,7 +80,7 @@ def _unproven(finding: Finding) -> str:
 def _with_tolerances(finding: Finding) -> str:
     limit = f"the fail limit of {limit_mm(finding.fail)} mm{of_rule(finding.rule)}"
     if finding.kind == WAIVED_TOLERANCES:
-        limit = "the level of its waiver"
+        limit = f"the {limit_mm(finding.fail)} mm of its waiver"
     claim = f"not proven to keep {limit} with the tolerances"
     if finding.proven is None:
         return f"{claim}: {finding.text}"

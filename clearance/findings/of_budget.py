@@ -80,7 +80,10 @@ def _of_waiver(record: Record, use: WaiverUse, one: RuleBudget) -> Finding:
     named = _named(record, one.rule, one.limits)
     name = FindingName(record.case.name, WAIVED_TOLERANCES, one.rule, (a, b))
     text = f"{use.waiver} allows {use.waiver.at_least * 1000:g} mm or more"
-    return replace(named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=text)
+    level = use.waiver.at_least
+    return replace(
+        named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=text, fail=level
+    )
 
 
 def _named(record: Record, rule: str, limits: Limits) -> Finding:

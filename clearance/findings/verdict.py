@@ -223,10 +223,8 @@ def _remaining(of_tolerances: Sequence[Finding]) -> str:
     proven = "nothing proven"
     if worst.proven is not None:
         proven = f"{mm(worst.proven)} mm proven" if worst.proven > 0.0 else "contact not ruled out"
-    required = f", {limit_mm(worst.fail)} mm required"
-    if worst.kind == WAIVED_TOLERANCES:
-        required = ", the level of a waiver required"
-    return f"{proven}{required}"
+    by = " by a waiver" if worst.kind == WAIVED_TOLERANCES else ""
+    return f"{proven}, {limit_mm(worst.fail)} mm required{by}"
 
 
 def verdict_of(

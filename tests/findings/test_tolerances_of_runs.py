@@ -43,9 +43,8 @@ def test_what_is_proven_of_a_waiver_is_that_of_its_pairs(tmp_path):
     (finding,) = [one for one in run.findings if one.kind == WAIVED_TOLERANCES]
     assert (finding.body_a, finding.body_b) == ("*", "left")
     assert finding.proven == pytest.approx(0.0015, abs=1e-4)
-    assert "not proven to keep the level of its waiver with the tolerances" in " ".join(
-        run.verdict.reasons
-    )
+    assert "not proven to keep the 2 mm of its waiver with the tolerances" in run.verdict.reasons[0]
+    assert "mm proven, 2 mm required by a waiver)" in run.verdict.headline()
     write_junit(run, tmp_path / "junit.xml")
     assert 'classname="tolerances"' in (tmp_path / "junit.xml").read_text()
 
