@@ -45,12 +45,6 @@ def test_near_passes_and_nothing_is_written(folder, capsys):
     assert files(folder) == before
 
 
-def test_limits_from_the_command_line_decide(folder, capsys):
-    code, out, _ = check(capsys, "--fail-mm", "150")
-    assert code == 1 and out.startswith("VIOLATED")
-    assert check(capsys, "--fail-mm", "1", "--warn-mm", "2", "--quiet") == (0, "", "")
-
-
 def test_a_gap_below_rounding_is_a_warning_below_the_headline(folder, capsys):
     code, out, _ = check(capsys, "--certify-mm", "1e-300", "--need", "minimum")
     told = out.splitlines()[2]

@@ -14,24 +14,9 @@ from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.formats.making_messages import MESSAGE, ROS2, dumped
 
-TABLE = (
-    "time,shoulder,lift,shoulder/velocity,lift/velocity\n"
-    "0.0,0.1,0.0,0.0,-0.001\n"
-    "1.1,0.30000000000000004,0.05,0.5,1e-07\n"
-)
-
 
 def convert(*arguments: object) -> int:
     return run(["convert", *map(str, arguments)])
-
-
-@pytest.mark.parametrize("between", ["path.yaml", "path.yml", "path.json"])
-def test_there_and_back_gives_the_same_bytes(tmp_path, capsys, between):
-    (tmp_path / "a.csv").write_text(TABLE)
-    assert convert(tmp_path / "a.csv", tmp_path / between) == 0
-    assert convert(tmp_path / between, tmp_path / "b.csv") == 0
-    assert (tmp_path / "b.csv").read_text() == TABLE
-    assert "b.csv: 2 samples of 2 joints" in capsys.readouterr().out
 
 
 NUMBERS = st.floats(-1e3, 1e3)

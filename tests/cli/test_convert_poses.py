@@ -40,15 +40,6 @@ def samples_in(content: bytes, name: str) -> PoseSamples:
     return read_samples(PoseRequest(lambda: BytesIO(content), len(content)), name).samples
 
 
-@pytest.mark.parametrize("between", ["door.yaml", "door.yml", "door.json"])
-def test_there_and_back_gives_the_same_bytes(capsys, between):
-    Path("a.csv").write_text(TABLE)
-    assert convert("a.csv", between) == 0
-    assert convert(between, "b.csv") == 0
-    assert Path("b.csv").read_text() == TABLE
-    assert "written b.csv: 3 poses" in capsys.readouterr().out
-
-
 def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):
     Path("a.yaml").write_text(STAMPED)
     assert convert("a.yaml", "b.json") == 0

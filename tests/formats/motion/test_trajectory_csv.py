@@ -88,9 +88,3 @@ def test_each_fault_is_one_line_with_its_place(text, fault, says):
         parse(text)
     assert says in str(caught.value)
     assert str(caught.value).startswith("path.csv: ")
-
-
-def test_a_file_that_is_not_text_is_refused():
-    for data in (b"time,a\n0,\xff\xfe\n", b"\x89PNG\r\n\x1a\n\0\0\0"):
-        with pytest.raises((BadSyntax, MissingKey)):
-            parse_trajectory(data, "path.csv")
