@@ -183,6 +183,10 @@ class BadProgram(BadInput):
     """A robot program that is not understood, or that the arm cannot follow as far as a proof needs."""
 
 
+class UnknownPlace(BadProgram):
+    """A frame of a program is on what is not there, or on a robot whose own program is not read yet."""
+
+
 class BadTolerance(BadInput):
     """Tolerances that do not fit the case, or that no proof covers."""
 

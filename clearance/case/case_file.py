@@ -23,12 +23,12 @@ from clearance.case.allow import (
 )
 from clearance.case.case_document import ScenePlace, read_schema
 from clearance.case.case_list import refuse_folder
-from clearance.case.driven_robots import Surroundings, require_still
+from clearance.case.driven_robots import Surroundings
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.packed import refuse_zip, require_entry, unpacked
-from clearance.case.places import Rider
 from clearance.case.reserved import reserved_spaces
-from clearance.case.robots import InMotion, RobotReader, in_motion
+from clearance.case.robots import RobotReader, in_motion
+from clearance.case.robots_in_motion import rider, robots_in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
@@ -44,8 +44,6 @@ from clearance.formats.robot.compound_joints import require_placed
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneContent
 from clearance.formats.schema import case as schema
-from clearance.world.body import Obstacle
-from clearance.world.carry import Carry
 from clearance.world.case import (
     Case,
     Clock,
@@ -147,7 +145,7 @@ def with_trajectory_file(
         driven = (one.trajectory.drives for one in others if one.trajectory is not None)
         around = Surroundings(
             tuple(others),
-            tuple(_rider(one, cell.case.carries) for one in cell.case.obstacles),
+            tuple(rider(one, cell.case.carries) for one in cell.case.obstacles),
             frozenset(chain.from_iterable(driven)),
         )
         moved = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files, around)
@@ -191,7 +189,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
-        moving = _moving(reader, entries, given, obstacles)
+        moving = robots_in_motion(reader, entries, given, obstacles)
         case = Case(
             name=given.name or _name_of(path),
             robots=tuple(one.placed for one in moving),
@@ -282,54 +280,6 @@ def _notices(given: schema.Case) -> list[Notice]:
         )
     ]
     return [*angle_notices(bases), *obstacle_notices(obstacles), *scale_notices(scales)]
-
-
-def _moving(
-    reader: RobotReader,
-    entries: Sequence[schema.RobotEntry],
-    given: schema.Case,
-    obstacles: Sequence[Obstacle],
-) -> list[InMotion]:
-    """The robots as they move, those with programs last, since their frames may be on the others.
-
-    Raises:
-        BadInput: with the field and the file.
-    """
-    has_program = [
-        one.trajectory is not None and one.trajectory.program is not None for one in entries
-    ]
-    found = {
-        i: reader.moving(one, Surroundings()) for i, one in enumerate(entries) if not has_program[i]
-    }
-    carries = carries_of(given.carry)
-    riders = tuple(_rider(one, carries) for one in obstacles)
-    read: dict[int, InMotion] = {}
-    driven: frozenset[str] = frozenset()
-    for i, entry in enumerate(entries):
-        if not has_program[i]:
-            continue
-        around = Surroundings(tuple(one.placed for one in found.values()), riders, driven)
-        read[i] = reader.moving(entry, around)
-        driven |= read[i].driven.keys()
-        for j, one in found.items():
-            if one.placed.robot.name in read[i].driven:
-                found[j] = one._replace(placed=read[i].driving(one.placed))
-    around = Surroundings(tuple(one.placed for one in found.values()), riders, driven)
-    for i, one in read.items():
-        with at(f"{entries[i].trajectory_field}.program"):
-            require_still(one.placed, around)
-    return [(found | read)[i] for i in range(len(entries))]
-
-
-def _rider(obstacle: Obstacle, carries: Sequence[Carry]) -> Rider:
-    mount = obstacle.mount
-    own = sorted((one for one in carries if one.part == obstacle.name), key=_start)
-    on, pose = (None, obstacle.world_from_body) if mount is None else (mount.on, mount.pose)
-    return Rider(obstacle.name, on, pose, obstacle.moves, tuple(own))
-
-
-def _start(carry: Carry) -> float:
-    return carry.window.start
 
 
 def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:

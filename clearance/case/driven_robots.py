@@ -32,7 +32,7 @@ class ProgrammedMotion(NamedTuple):
 
 @dataclass(frozen=True)
 class Surroundings:
-    """All but the robot of a program: other robots, without those with a program of their own, and obstacles.
+    """All but the robot of a program: other robots, those whose own program is read among them, and obstacles.
 
     Attributes:
         driven: the robots that the programs of others move, by name.
@@ -169,21 +169,23 @@ class ProgramCell:
         return replace(_of(made, "", driven), drives=tuple(driven)), others
 
 
-def require_still(placed: PlacedRobot, around: Surroundings) -> None:
-    """Nothing, if what the frames of a robot's program are on is moved by no other program.
+def require_as_read(placed: PlacedRobot, around: Surroundings) -> None:
+    """Nothing, if what the frames of a robot's program are on moves as was known when the program was read.
 
     Args:
         around: all but the robot, as they move by the programs of all robots.
 
     Raises:
-        BadInput: the program of another robot moves it.
+        BadInput: a program that was read later moves it.
     """
     made = placed.given_trajectory
     places = _places(placed.robot, made.drives, around)
+    known = {"", *places.moved.values(), *made.rides}
     for name in made.frames:
-        if isinstance(places.of(name), str):
+        found = places.of(name)
+        if isinstance(found, str) or found.on not in known:
             fault = f"the program of another robot moves {name!r}, which frames are on"
-            raise BadProgram(fault, valid="frames on what no other program moves")
+            raise BadProgram(fault, valid="that robot before this one, and no corner zone there")
 
 
 def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> Places:
@@ -197,8 +199,7 @@ def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> Places:
             links |= {name: name for name in names}
         else:
             others.append(one)
-    unknown = dict.fromkeys(around.driven, "is moved by the program of another robot")
-    return Places(others, around.obstacles, links, unknown)
+    return Places(others, around.obstacles, links)
 
 
 def _of(made: Trajectory, robot: str, driven: Sequence[str]) -> Trajectory:

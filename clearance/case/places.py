@@ -7,7 +7,7 @@ Obstacles and links, and what rides on those. Not for: the frames (`program`), a
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -64,6 +64,10 @@ NOT_PLACED = (
 )
 
 
+class NotThere(str):
+    """Why something has no place: what it is on is not there, or has a program that is not read yet."""
+
+
 class _Mover(NamedTuple):
     """What moves by itself: an obstacle, or a link of a robot, and what it is on."""
 
@@ -77,15 +81,13 @@ class Places:
     """Where all is, by name.
 
     Args:
-        robots: as the links of several robots are called; those with a program left out, and what it drives.
+        robots: as the links of several robots are called, without that of the program and what it drives.
         obstacles: all. moved: the links that the program may move, by all names that they have.
-        unknown: why no frame may be on the links of some robots, by the robot's name.
     """
 
     robots: Sequence[PlacedRobot]
     obstacles: Sequence[Rider]
     moved: Mapping[str, str]
-    unknown: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -151,7 +153,8 @@ class Places:
                     left.append(one)
             waiting = left
         for one in waiting:
-            found |= self._on(one, f"is on {_below(one)!r}, which has a program or is not there")
+            why = f"is on {_below(one)!r}, which is not there, or has a program with a frame on this robot"
+            found |= self._on(one, NotThere(why))
         return found
 
     def _on(self, one: Rider | PlacedRobot, base: Place | str) -> dict[str, Place | str]:
@@ -206,15 +209,15 @@ class Places:
 
     def _link(self, placed: PlacedRobot, base: Place, link: str) -> Place | str:
         """The place of a link right below a joint that a table moves."""
-        asked, name = placed.given_trajectory, placed.robot.name
-        if name in self.unknown:
-            return self.unknown[name]
-        if asked.moves:
-            return "moves by a program of its own"
+        asked = placed.given_trajectory
+        if asked.corners:
+            return "moves by a program with corner zones, in which it may be elsewhere"
+        if asked.unproven:
+            return "moves by a program, part of which is not proven"
         if asked.not_measured:
             return "is not measured all the time (gaps: not_measured)"
         mover = _Mover(placed, base, link)
-        return self._mover(f"{name}/{link}", mover, placed.timing.after)
+        return self._mover(f"{placed.robot.name}/{link}", mover, placed.timing.after)
 
 
 def _masters(placed: PlacedRobot, parent: str, child: str) -> set[str]:

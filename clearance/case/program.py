@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from clearance.case.driven_robots import ProgramCell, ProgrammedMotion, Surroundings
-from clearance.case.places import IN_WORLD, NOT_PLACED, Place, Places
-from clearance.errors import BadProgram, ClearanceError, at, nearest_name
+from clearance.case.places import IN_WORLD, NOT_PLACED, NotThere, Place, Places
+from clearance.errors import BadProgram, ClearanceError, UnknownPlace, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
 from clearance.formats.plausibility import odd_in_program
@@ -226,11 +226,12 @@ class _Frames:
             robots = {one.robot.name for one in (self._cell.own, *self._cell.around.robots)}
             fault = f"{name!r} is not there"
             if "/" in name and name.partition("/")[0] not in robots:
-                fault += ", or on a robot with a program of its own"
-            raise BadProgram(fault, valid=nearest_name(name, known))
+                fault += ", or on a robot whose program has a frame on this one"
+            raise UnknownPlace(fault, valid=nearest_name(name, known))
         found = self._places.of(name)
         if isinstance(found, str):
-            raise BadProgram(f"no frame can be on {name!r}: it {found}", valid=NOT_PLACED)
+            kind = UnknownPlace if isinstance(found, NotThere) else BadProgram
+            raise kind(f"no frame can be on {name!r}: it {found}", valid=NOT_PLACED)
         own = name.removeprefix(f"{self._cell.own.robot.name}/")
         if found.on != own or found.on not in self._links:
             self.used.add(name)

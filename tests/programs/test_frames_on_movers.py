@@ -392,6 +392,35 @@ def test_a_tool_goes_with_a_part_on_a_turntable_on_a_conveyor(tmp_path, carried)
     assert note.endswith(f"LIN 1, WAIT 2: seen from {on!r}, which moves by itself")
 
 
+@pytest.mark.parametrize("first", ["arm", "table"])
+def test_a_tool_goes_with_a_part_on_a_turntable_that_has_a_program_of_its_own(tmp_path, first):
+    """The file may name either robot first; the tool keeps 80 mm from a cube that rides beside it."""
+    moves = [{"lin": {"to": {"frame": "jig", "xyz": ON_PART}}}, {"wait": 2.5}]
+    path = beside_a_turntable(tmp_path, moves, frames={"jig": {"on": "part"}})
+    content = yaml.safe_load(path.read_text())
+    arm_of, table = content["robots"]
+    turns = [{"ptp": {"joints": {"turn": at}, "speed": 0.5}} for at in (0.7, 0.6)]
+    program = {"tool": {"link": "plate"}, "start": table.pop("joints"), "moves": turns}
+    table["trajectory"] = {"program": program}
+    content["robots"] = [arm_of, table] if first == "arm" else [table, arm_of]
+    beside = np.linalg.inv(WORLD_FROM_PART) @ np.array(at_base()) @ tool_at(JOINTS)
+    beside[:3, 3] += beside[:3, :3] @ [0.0, 0.1, 0.0]
+    content["scene"]["obstacles"] += [
+        {"name": name, "box": {"size": [0.02] * 3}, "on": on, "pose": as_yaml(pose)}
+        for name, on, pose in (("torch", "arm/tool_tip", np.eye(4)), ("rides", "part", beside))
+    ]
+    content["allow"] = [[name, "*"] for name in ("arm/*", "turntable/*", "part", "far")]
+    run = cl.check(written(tmp_path, content))
+    clearances = run.steps["clearance"].to_numpy() + run.record.timeline.path_error
+    assert np.abs(clearances - 0.08).max() < 5e-7
+    assert run.record.certificate.lower_bound.min() > 0.08 - run.record.timeline.path_error - 1.2e-4
+    made = next(one.trajectory for one in run.record.case.robots if one.robot.name == "arm")
+    assert made.rides == ("turntable/plate",) and not made.unproven
+    turns[0]["ptp"]["zone"] = 0.01
+    with pytest.raises(cl.ClearanceError, match="moves by a program with corner zones"):
+        cl.load_case(written(tmp_path, content))
+
+
 WORLD_FROM_PART = np.eye(4)
 WORLD_FROM_PART[:3, :3] = turned((0.0, 0.0, 0.5))
 WORLD_FROM_PART[:3, 3] = WORLD_FROM_PART[:3, :3] @ [0.1, 0.0, 0.0] + [2.0, 0.0, PLATE + 0.3]
