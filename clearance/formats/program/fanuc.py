@@ -39,7 +39,7 @@ from clearance.formats.program.fanuc_words import (
     WAITING,
 )
 from clearance.formats.program.given import not_in_files
-from clearance.formats.program.remarks import UNSAID
+from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
 from clearance.formats.program.statements import For, Routine, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
@@ -172,6 +172,9 @@ class _Fanuc:
                 "programs that motions call on their way (TB, TA, DB): not followed",
                 str(call.line),
             )
+        for word in motion.options:
+            if re.fullmatch(r"ACC(?!100$)\d+", word):
+                run.note(NOT_FOLLOWED, f"{word} ({call.line})")
         unread = [word for word in motion.options if not _IDLE.fullmatch(word)]
         if unread:
             fault = f"{unread[0]} is not read, and may move the target or the way"

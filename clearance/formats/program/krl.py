@@ -82,9 +82,10 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                     one.target.name, f"{one.target.name} ({one.line})", run.variables
                 )
         run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
-        notes = (*run.notes, *language.notes())
         bodies = [routine.body for routine in files.routines.values()]
-        doubts = (*run.doubts, *language.root.doubts(asked.asked), *not_followed(bodies))
+        unread = [*not_followed(bodies, run)]
+        notes = (*run.notes, *language.notes())
+        doubts = (*run.doubts, *language.root.doubts(asked.asked), *unread)
         return ControllerProgram(
             tuple(run.moves), notes, doubts=doubts, maker="kuka", left_out=run.left_out
         )

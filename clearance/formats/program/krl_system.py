@@ -16,6 +16,7 @@ import numpy as np
 from clearance.errors import BadProgram, MissingKey
 from clearance.formats.program.krl_settings import FIRST, SAVED, Settings
 from clearance.formats.program.krl_values import MM, frame_of, matrix_of, why
+from clearance.formats.program.remarks import NOT_FOLLOWED, Remarks
 from clearance.formats.program.statements import Assign, Statement, assigned, within
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
@@ -101,15 +102,31 @@ class RobotRoot:
         yield f"{text}; base in the program is taken for $WORLD"
 
 
-def not_followed(bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
-    """A line on system variables that procedures set and that are not read, if there are any."""
+LIMITS = frozenset(
+    "$RED_VEL $RED_ACC $OV_APPL $OV_ROB $VEL_EXTAX $ACC_EXTAX $JERK $GEAR_JERK $CP_VEL_TYPE".split()
+)
+"""Those that limit speeds and accelerations, and so change how long moves take."""
+
+
+def not_followed(bodies: Iterable[tuple[Statement, ...]], remarks: Remarks) -> Iterator[str]:
+    """A line on system variables that procedures set and that are not read, if there are any.
+
+    Args:
+        remarks: takes those that change how long moves take.
+    """
     found: dict[str, Any] = {}
     for body in bodies:
         for one in within(body):
             name = assigned(one.target) if isinstance(one, Assign) else None
             if name is not None and name.name.startswith("$"):
                 found.setdefault(name.name, one.line)
-    unread = [f"{name} ({line})" for name, line in found.items() if name not in KNOWN]
+    for name in sorted(found.keys() & LIMITS):
+        remarks.note(NOT_FOLLOWED, f"{name} ({found[name]})")
+    unread = [
+        f"{name} ({line})"
+        for name, line in found.items()
+        if name not in KNOWN and name not in LIMITS
+    ]
     if unread:
         yield f"system variables that are set, and not followed: {listed(unread, 6)}"
 

@@ -31,6 +31,7 @@ from clearance.formats.program.expressions import (
     known,
     number,
 )
+from clearance.formats.program.rapid_arguments import speed_of, zone_of
 from clearance.formats.program.rapid_data import (
     NO_AXIS,
     RECORDS,
@@ -42,12 +43,12 @@ from clearance.formats.program.rapid_data import (
     external_of,
     flange_from_tool,
     pose_of,
-    record,
     rel_tool,
     work_of,
 )
 from clearance.formats.program.rapid_text import Declaration, Modules
 from clearance.formats.program.rapid_words import (
+    LIMITS,
     MOVES,
     OTHER_MOVES,
     PAUSES,
@@ -58,7 +59,8 @@ from clearance.formats.program.rapid_words import (
     WRITES_ONE,
     MoveRule,
 )
-from clearance.formats.program.remarks import UNSAID
+from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
+from clearance.formats.program.remarks import WAITS as TAKES_TIME
 from clearance.formats.program.statements import assigned
 
 
@@ -202,6 +204,8 @@ class Rapid:
     def _set(self, call: Call, run: Execution) -> None:
         """What an instruction that moves nothing changes."""
         run.pass_over(call)
+        if call.name in LIMITS and call.args:
+            run.note(NOT_FOLLOWED, f"{call.name} ({call.line})")
         if call.name == "ConfJ":
             self.checks = "off" not in call.named
         elif call.name == "VelSet" and len(call.args) == 2:
@@ -284,12 +288,12 @@ class Rapid:
         }
         with _expecting_data(call):
             work = work_of(given["work object"], self.units)
-            speed, turn_speed, time = _speed(given["speed"], call, run)
+            speed, turn_speed, time = speed_of(given["speed"], call, run)
             via = None
             if rule.to == 1:
                 via = self._target(call, given["point on the arc"], call.args[0], work, run)
             to = self._target(call, given["target"], call.args[rule.to], work, run)
-            point, turn = _zone(given["zone"], call, run)
+            point, turn = zone_of(given["zone"], call, run)
             if not speed > 0.0:
                 raise BadProgram(f"the speed is {speed:g} m/s", valid="more than 0")
             move = ControllerMove(
@@ -301,6 +305,9 @@ class Rapid:
             move = replace(move, speed=speed, turn_speed=turn_speed, orientation="path")
         if call.name.startswith("Arc"):
             run.note(UNSAID, f"{call.name} ({line})")
+        if "conc" in call.named or call.name.endswith("Sync"):  # something goes on beside the move
+            word = "\\Conc" if "conc" in call.named else call.name
+            run.note(TAKES_TIME, f"{word} ({line})")
         if max(point, turn) > 0.0:
             self.zones[len(run.moves)] = (point, turn)
         run.add(move.slowed(self.share))
@@ -372,28 +379,3 @@ def _number(one: Expression, run: Execution) -> str:
     """A number in words; what a function says, which may change something, is left out."""
     value = "…" if any(True for _ in calls_in(one)) else run.evaluated(one)
     return f"{value:g}" if isinstance(value, int | float) else "…"
-
-
-def _speed(value: list[float], call: Call, run: Execution) -> tuple[float, float, float | None]:
-    """[m/s] and [rad/s] of the tool, and the time that the move asks for in their place [s]."""
-    tcp, turn, *_ = record(value, 4, is_flagged=False)
-    if "v" in call.named:
-        tcp = number(run.evaluated(call.named["v"]), call.line, "V")
-    time = None
-    if "t" in call.named:
-        time = number(run.evaluated(call.named["t"]), call.line, "T")
-        if not time > 0.0:
-            raise BadProgram(f"T is {time:g} s", valid="more than 0")
-    return 1e-3 * tcp, math.radians(turn), time
-
-
-def _zone(value: list[Any], call: Call, run: Execution) -> tuple[float, float]:
-    """[m] The radii of a zone for the tool's point and for its orientation; 0 where the tool stops."""
-    stops, point, turn, *_ = record(value, 7, is_flagged=True)
-    if stops:
-        return 0.0, 0.0
-    if "z" in call.named:
-        point = number(run.evaluated(call.named["z"]), call.line, "Z")
-    if point < 0.0 or turn < 0.0:
-        raise BadProgram(f"a zone of {point:g} mm", valid="0 or more")
-    return 1e-3 * point, 1e-3 * turn

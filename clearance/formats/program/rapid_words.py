@@ -70,6 +70,9 @@ PAUSES = frozenset(
 )
 """Instructions and functions that take time, beside `WAITS`: until a person or another machine has answered."""
 
+LIMITS = frozenset("AccSet PathAccLim WorldAccLim SpeedLimAxis SpeedLimCheckPoint".split())
+"""Instructions that limit accelerations and speeds."""
+
 WRITES = frozenset(
     "TPReadNum TPReadFK TPReadDnum SocketReceive ReadAnyBin ReadRawBytes UnpackRawBytes GetDataVal GetSysData "
     "GetJointData GetTrapData BitSet BitClear ReadErrData SetDataVal TryInt".split()

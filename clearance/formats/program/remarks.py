@@ -13,6 +13,7 @@ LEFT_OUT = "left out as asked"
 WAITS = "instructions that take a time which no file says are taken to take none"
 STILL = "instructions that move nothing"
 UNSAID = "speeds that no file says are assumed"
+NOT_FOLLOWED = "limits of speeds and accelerations that the program sets are not followed"
 
 
 @dataclass(eq=False)
@@ -30,12 +31,13 @@ class Remarks:
     def left_out(self) -> tuple[str, ...]:
         """What the times of the moves lack, and where: what the case leaves out, and what no file says."""
         speeds = (f"the speed of {where}" for where in self._passed.get(UNSAID, ()))
-        return (*self._passed.get(LEFT_OUT, ()), *self._passed.get(WAITS, ()), *speeds)
+        limits = (f"what {where} sets" for where in self._passed.get(NOT_FOLLOWED, ()))
+        return (*self._passed.get(LEFT_OUT, ()), *self._passed.get(WAITS, ()), *speeds, *limits)
 
     @property
     def notes(self) -> list[str]:
         """A line each on what was passed over, and where: what times lack first, and what moves nothing last."""
-        order = {LEFT_OUT: 0, WAITS: 0, UNSAID: 0, STILL: 2}
+        order = {LEFT_OUT: 0, WAITS: 0, UNSAID: 0, NOT_FOLLOWED: 0, STILL: 2}
         passed = sorted(self._passed.items(), key=lambda one: order.get(one[0], 1))
         return [f"{what}: {listed([*where], 6)}" for what, where in passed]
 

@@ -27,7 +27,7 @@ STILL = frozenset(
     "integer_to_binary_list random make_list size struct".split()
 )
 BLOCKING = frozenset(
-    "sleep join enter_critical socket_open socket_get_var powerdown protective_stop halt".split()
+    "sleep sync join enter_critical socket_open socket_get_var powerdown protective_stop halt".split()
 )
 BLOCKING_BEFORE = ("request_", "socket_read_")
 """Functions that take time: until a person, a thread or another machine has answered."""
