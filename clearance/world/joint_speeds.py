@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,7 +12,7 @@ from clearance.world.cubic import cubics_of
 from clearance.world.joint_positions import JointCourse, joint_courses, turns
 from clearance.world.motion_limits import NO_LIMIT, MotionLimit
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.robot import Joint
+from clearance.world.robot import Joint, JointKind
 from clearance.world.trajectory import Trajectory
 
 ROUNDING = 1e-6
@@ -51,12 +52,27 @@ def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[N
         asks = "does the table jump or lack rows, or are its times in another unit?"
         text = f"CHECK LIMITS: {listed(jumps, 4)}; {asks}"
         notices.append(Notice(Severity.SUSPECT, "limits", text))
+    if jumps := [*_jumps_of_loop(placed, before)]:
+        text = f"CHECK LIMITS: a table that begins again (after: loop) ends elsewhere: {listed(jumps, 4)}"
+        says = "that way is not measured; end the table where it begins, or give after: hold"
+        notices.append(Notice(Severity.SUSPECT, "limits", f"{text}; {says}"))
     texts = [text for is_jump, text in found if rule == "fail" or not is_jump]
     if texts and rule == "fail":
         notices.append(Notice(Severity.VIOLATED, "joint limits", listed(texts, 4)))
     elif texts:
         notices.append(Notice(Severity.WARNING, "limits", listed(texts, 4)))
     return notices
+
+
+def _jumps_of_loop(placed: PlacedRobot, before: str) -> Iterator[str]:
+    """Joints that are elsewhere at the end of a table that begins again, and how far, in words."""
+    for course in joint_courses(placed) if placed.timing.after == "loop" else ():
+        way = abs(float(course.at_samples[-1] - course.at_samples[0]))
+        unit, least = ("rad", STEP_TURN) if turns(course.joint) else ("m", STEP_SLIDE)
+        if course.joint.kind == JointKind.CONTINUOUS:
+            way = abs(math.remainder(way, math.tau))
+        if way > least:
+            yield f"joint {before + course.joint.name!r} by {way:.3g} {unit}"
 
 
 def _excesses(

@@ -33,7 +33,7 @@ from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
-from clearance.world.trajectory import Trajectory
+from clearance.world.trajectory import FURTHER_PASSES, Trajectory
 from clearance.world.unproven_motion import notices_on_unproven
 
 LARGE_LIMIT = 0.5
@@ -264,6 +264,9 @@ def _times_lacking(case: Case) -> Iterator[Notice]:
 
 def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
     """The notice on what a program's times lack: suspect; with slack a warning of what that has to cover."""
+    if any(one.startswith(FURTHER_PASSES) for one in asked.left_out):
+        says = "clock: unsynchronised measures them at all times of the others"
+        return Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
     if slack > 0.0:
         covers = f"all of it has to be within the slack of {slack:g} s"
         return Notice(Severity.WARNING, "clocks", f"{text}: {covers}")

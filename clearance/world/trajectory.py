@@ -15,6 +15,9 @@ from clearance.world.field_types import require_types
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing
 
+FURTHER_PASSES = "further passes of an endless loop"
+"""What the motion of a program leaves out that never ends: how long they take is not the question."""
+
 
 @dataclass(frozen=True)
 class Hole:

@@ -113,8 +113,11 @@ def test_a_wrap_that_is_none_is_refused():
         case_of([0.0, 1.0], "short")
 
 
-def test_a_table_that_loops_jumps_from_its_last_sample_to_its_first_and_is_not_suspect_for_it():
-    assert suspects(case_of([0.0, 3.0, 6.0], timing=Timing(after="loop"))) == []
+def test_a_table_that_begins_again_elsewhere_is_suspect_and_one_that_closes_is_not():
+    (notice,) = suspects(case_of([0.0, 3.0, 6.0], timing=Timing(after="loop")))
+    assert "ends elsewhere: joint 'spin' by 0.283 rad, joint 'half' by 3 rad;" in notice.text
+    closed = [0.0, 3.0, 6.0, 9.0, 12.0, 4.0 * np.pi]
+    assert suspects(case_of(closed, timing=Timing(after="loop"))) == []
     assert suspects(case_of([0.0, 3.0, -0.28], timing=Timing(after="loop")))
 
 

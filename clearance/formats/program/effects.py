@@ -124,6 +124,12 @@ class Effects:
             fault = f"{what} {name!r} moves the robot, or may: {culprit}"
             raise BadProgram(fault, where=str(line), valid="call one that moves nothing")
 
+    def calls_of(self, name: str) -> Iterator[Call]:
+        """The calls in a routine, and in those that it calls."""
+        body = self.routines[name].body if name in self.routines else ()
+        for one in self._run_in(body, (name,)):
+            yield from _calls_of(one)
+
     def read_by(self, parts: Iterable[Expression], entered: tuple[str, ...] = ()) -> Iterator[str]:
         """The variables that expressions may read, in routines that they call too."""
         for part in parts:

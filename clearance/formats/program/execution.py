@@ -37,7 +37,7 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.language import Language
 from clearance.formats.program.persistent import PersistentValues
-from clearance.formats.program.remarks import LEFT_OUT, STILL, WAITS, Remarks
+from clearance.formats.program.remarks import ENDLESS, LEFT_OUT, STILL, UNSAID, WAITS, Remarks
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -113,6 +113,10 @@ class Execution(Remarks):
         """Keeps that a routine runs beside the program: it moves nothing, and what it changes is not known."""
         self.effects.require_still(what, name, line)
         self.concurrent |= self.effects.changed_concurrently(what, name)
+        for call in self.effects.calls_of(name):
+            if call.name in self.language.retiming:
+                kind = WAITS if self.language.waits(call) else UNSAID
+                self.note(kind, f"{call.name} ({call.line}) in {what} {name}")
 
     def add(self, move: ControllerMove | ControllerWait) -> None:
         """A move that the robot makes.
@@ -336,8 +340,7 @@ class Execution(Remarks):
         while (one.at_end and not n_passes) or self._goes_on(one):
             if endless and n_passes:
                 if (state := self._state()) in before:
-                    text = f"an endless loop: {n_passes} passes are measured, each further one repeats one"
-                    self.note(text, f"{one.word} ({one.line})")
+                    self.note(ENDLESS, f"{one.word} ({one.line}), of which {n_passes} are measured")
                     return Leave(one.line, one.word, STOP)
                 before.append(state)
                 require_repeating(one, before)

@@ -103,6 +103,7 @@ class _Fanuc:
     asked: ProgramFile
     share: float = 1.0
     suffix = ".LS"
+    retiming = frozenset[str]()
 
     @property
     def state(self) -> Any:

@@ -118,6 +118,7 @@ class _Krl:
     root: RobotRoot = field(default_factory=RobotRoot)
     is_automatic: bool = False
     suffix = ".src"
+    retiming = frozenset((WAIT,))
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""

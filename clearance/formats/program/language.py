@@ -13,9 +13,11 @@ class Language(Protocol):
 
     Attributes:
         suffix: of the file that has a called program by its name; empty where its name says nothing of the file.
+        retiming: words that change how long moves take also from a thread, a trap or an interrupt.
     """
 
     suffix: str
+    retiming: frozenset[str]
 
     def moves(self, name: str) -> bool | None:
         """Whether an instruction or a function can move the robot; None where it is not known."""

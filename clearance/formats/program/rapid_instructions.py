@@ -83,6 +83,7 @@ class Rapid:
     fastest: float = math.inf
     zones: dict[int, tuple[float, float]] = field(default_factory=dict)
     suffix = ""
+    retiming = LIMITS | WAITS | PAUSES | {"VelSet"}
 
     @property
     def state(self) -> Any:

@@ -8,11 +8,13 @@ from typing import Any
 from clearance.errors import BadProgram
 from clearance.formats.program.expressions import Call, Unknown, number
 from clearance.world.notice import listed
+from clearance.world.trajectory import FURTHER_PASSES
 
 LEFT_OUT = "left out as asked"
 WAITS = "instructions that take a time which no file says are taken to take none"
 STILL = "instructions that move nothing"
 UNSAID = "speeds that no file says are assumed"
+ENDLESS = "endless loops: each pass that is not measured repeats one that is"
 NOT_FOLLOWED = "limits of speeds and accelerations that the program sets are not followed"
 
 
@@ -32,7 +34,9 @@ class Remarks:
         """What the times of the moves lack, and where: what the case leaves out, and what no file says."""
         speeds = (f"the speed of {where}" for where in self._passed.get(UNSAID, ()))
         limits = (f"what {where} sets" for where in self._passed.get(NOT_FOLLOWED, ()))
-        return (*self._passed.get(LEFT_OUT, ()), *self._passed.get(WAITS, ()), *speeds, *limits)
+        passes = (f"{FURTHER_PASSES} {where}" for where in self._passed.get(ENDLESS, ()))
+        known = (*self._passed.get(LEFT_OUT, ()), *self._passed.get(WAITS, ()))
+        return (*known, *speeds, *limits, *passes)
 
     @property
     def notes(self) -> list[str]:

@@ -129,6 +129,7 @@ class _UrScript:
     last: Any = None
     share: float = 1.0
     suffix = ""
+    retiming = frozenset(("set_speed",))
 
     @property
     def state(self) -> Any:

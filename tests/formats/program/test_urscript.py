@@ -61,7 +61,12 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert np.allclose(on.to.pose[:3, :3], np.diag([-1.0, 1.0, -1.0]), atol=1e-15)
     assert wait.seconds == 0.5 and over.tool[2, 3] == 0.1
     told = "\n".join(found.notes)
-    for what in ("set_payload (line 4)", "without moves: line 21", "endless loop", "2 passes"):
+    for what in (
+        "set_payload (line 4)",
+        "without moves: line 21",
+        "endless loop",
+        "2 are measured",
+    ):
         assert what in told
 
 
