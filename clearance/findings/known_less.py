@@ -32,7 +32,10 @@ def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
 
 
 def motion_shorter(before: FindingList, now: FindingList) -> Iterator[str]:
-    """How the motion is shorter than before, one line each: it may be another motion, and yet nothing is lost."""
+    """How the motion is less than before, one line each: it may be another motion, and yet nothing is lost."""
+    still = [name for name in before.measured.moving if name not in now.measured.moving]
+    if still:
+        yield f"what moved before has no motion any more: {listed(still)}"
     if now.duration < before.duration:
         yield f"the run takes {seconds(now.duration)}, and took {seconds(before.duration)}"
     if now.n_moves < before.n_moves:

@@ -67,6 +67,7 @@ class MeasurementConditions:
         pairs: all that were measured at some time. unmeasured: those that were not, or not always; "*" stands for
             all that a link could meet.
         joints: what a joint beyond its limits is: "warn" or "fail". paddings: [m] of bodies that have one.
+        moving: robots and obstacles with a motion of their own.
         tolerances: sha256 of the errors that were counted with; empty without any.
     """
 
@@ -83,6 +84,7 @@ class MeasurementConditions:
     tolerances: str = ""
     joints: str = "warn"
     paddings: dict[str, float] = field(default_factory=dict, hash=False)
+    moving: tuple[str, ...] = ()
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -115,7 +117,15 @@ def conditions_of(record: Record) -> MeasurementConditions:
         tolerances=_tolerances(record.case.tolerance),
         joints=record.case.limits.joints,
         paddings=paddings_in(record.case),
+        moving=tuple(_moving(record.case)),
     )
+
+
+def _moving(case: Case) -> Iterator[str]:
+    for placed in case.robots:
+        if placed.trajectory is not None and placed.trajectory.n_steps > 1:
+            yield placed.robot.name
+    yield from (obstacle.name for obstacle in case.obstacles if obstacle.moves is not None)
 
 
 def paddings_in(case: Case) -> dict[str, float]:

@@ -166,14 +166,17 @@ def test_a_dispute_and_a_part_that_is_not_checked_are_new_once(tmp_path):
 
 
 def test_a_shorter_run_and_fewer_moves_are_told_and_fail_nothing(tmp_path):
-    before = dataclasses.replace(listed(tmp_path), duration=20.6, n_moves=6)
-    now = dataclasses.replace(before, duration=12.25, n_moves=4)
+    moved = dataclasses.replace(listed(tmp_path).measured, moving=("rod", "cart"))
+    before = dataclasses.replace(listed(tmp_path), duration=20.6, n_moves=6, measured=moved)
+    still = dataclasses.replace(moved, moving=("rod",))
+    now = dataclasses.replace(before, duration=12.25, n_moves=4, measured=still)
     assert compared(before, now).passed and doubt_lines(compared(now, before)) == []
     assert doubt_lines(compared(before, now)) == [
+        "shorter: what moved before has no motion any more: cart",
         "shorter: the run takes 12.250 s, and took 20.600 s",
         "shorter: programs make 4 moves, and made 6",
     ]
-    assert listed(tmp_path).duration == 2.0
+    assert listed(tmp_path).duration == 2.0 and len(listed(tmp_path).measured.moving) == 1
 
 
 def test_less_padding_is_less_known_and_more_is_not(tmp_path):
