@@ -48,7 +48,8 @@ GIVEN = {
     "CL620": "disputed", "CL621": "cross-check", "CL630": "NoReceipt",
     "CL631": "TooManyProofs", "CL701": "Unwritable", "CL702": "Unavailable", "CL703": "Incomplete",
     "CL704": "BadReport", "CL705": "BadPack", "CL710": "ClickException", "CL711": "UnknownOption",
-    "CL712": "OSError", "CL713": "Exception", "CL801": "BadProgram", "CL810": "BadChange", "CL901": "BadBatch",
+    "CL712": "OSError", "CL713": "Exception", "CL801": "BadProgram", "CL802": "UnknownPlace",
+    "CL810": "BadChange", "CL901": "BadBatch",
 }  # fmt: skip
 """Codes that were given, for good: none of them is changed, taken away, or given to something else."""
 

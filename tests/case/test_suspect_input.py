@@ -228,8 +228,9 @@ def test_a_turn_by_half_a_turn_in_one_step_can_go_either_way(tmp_path, turn):
 @pytest.mark.slow
 def test_a_table_in_milliseconds_unless_its_rate_says_so(tmp_path):
     slow = "path.csv", "{file: path.csv, after: loop}"
-    (text,) = told(tmp_path, *slow, door=table(0.3, 1000.0))
+    text, loops = told(tmp_path, *slow, door=table(0.3, 1000.0))
     assert text.startswith("CHECK UNITS: obstacle 'door' moves no faster than 0.4 mm/s")
+    assert "(after: loop) ends elsewhere" in loops
     assert told(tmp_path, "door.csv", "{file: door.csv, rate: 1000}", door=table(1.0, 1000.0)) == []
 
 

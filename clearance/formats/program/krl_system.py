@@ -120,8 +120,8 @@ def not_followed(bodies: Iterable[tuple[Statement, ...]], remarks: Remarks) -> I
             name = assigned(one.target) if isinstance(one, Assign) else None
             if name is not None and name.name.startswith("$"):
                 found.setdefault(name.name, one.line)
-    for name in sorted(found.keys() & LIMITS):
-        remarks.note(NOT_FOLLOWED, f"{name} ({found[name]})")
+    for limit in sorted(found.keys() & LIMITS):
+        remarks.note(NOT_FOLLOWED, f"{limit} ({found[limit]})")
     unread = [
         f"{name} ({line})"
         for name, line in found.items()
