@@ -40,8 +40,9 @@ from .simulate.measure.checker import Checker
 from .sketch import Sketch, SketchResult
 from .world.body import Body, Obstacle
 from .world.carry import Carry
-from .world.case import Case, Clock, Limits, PlacedRobot, SelfClearance
+from .world.case import Case, Clock, Limits
 from .world.mount import Mount
+from .world.placed_robot import PlacedRobot, SelfClearance
 from .world.pose_table import PoseTable
 from .world.robot import Robot
 from .world.rules import Allowance, Rule

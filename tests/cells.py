@@ -12,7 +12,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial.transform import Rotation, Slerp
 
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory

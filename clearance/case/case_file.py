@@ -44,21 +44,14 @@ from clearance.formats.robot.compound_joints import require_placed
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneContent
 from clearance.formats.schema import case as schema
-from clearance.world.case import (
-    Case,
-    Clock,
-    PlacedRobot,
-    SignOff,
-    Source,
-    index_of_robot,
-    require_no_program_on,
-)
+from clearance.world.case import Case, Clock, SignOff, Source, index_of_robot, require_no_program_on
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
 from clearance.world.motion import kinematic_motion
 from clearance.world.names import checked_name
 from clearance.world.notice import Notice
 from clearance.world.pairs import nothing_to_measure, selected_pairs
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_rest import notices_on_rest
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used

@@ -17,7 +17,7 @@ from clearance.case.places import IN_WORLD, Places, Rider
 from clearance.errors import BadProgram
 from clearance.formats.schema import program as schema
 from clearance.geometry.pose import inverse
-from clearance.world.case import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 

@@ -23,11 +23,11 @@ from clearance.programs.carriage import (
     steps_of_poses,
 )
 from clearance.world.carry import Carry
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.knots import knots_of_motion, knots_of_poses
 from clearance.world.motion import kinematic_motion
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 
 

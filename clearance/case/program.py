@@ -30,8 +30,8 @@ from clearance.programs.joint_way import unknown_speeds
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolChange, Wait
 from clearance.programs.time_law import Limits
-from clearance.world.case import PlacedRobot
 from clearance.world.notice import listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Robot
 from clearance.world.timing import Timing
 

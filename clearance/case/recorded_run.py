@@ -19,10 +19,11 @@ from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.schema.tolerance import MOST_ANGLE, MOST_OFFSET
 from clearance.formats.timed_files import trajectory_of
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance
-from clearance.world.case import Case, PlacedRobot, index_of_robot
+from clearance.world.case import Case, index_of_robot
 from clearance.world.cubic import positions_along
 from clearance.world.joint_positions import turns
 from clearance.world.notice import GAPS, Notice, Severity
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.recording import Recording, motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN
 from clearance.world.trajectory import Trajectory

@@ -23,9 +23,9 @@ from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import states_of
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.timed_files import trajectory_of
-from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.names import checked_links
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.robot import Robot
 from clearance.world.rules import matches
 from clearance.world.trajectory import Trajectory

@@ -14,9 +14,10 @@ from clearance.case.allow import PatternNames, body_names
 from clearance.errors import UnknownLink, nearest_name
 from clearance.formats.scene.request import SceneContent
 from clearance.world.carry import Carry
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 from clearance.world.rules import Allowance, matches
 from clearance.world.timeline import timeline_of

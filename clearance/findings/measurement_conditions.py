@@ -18,9 +18,10 @@ from clearance.record.fingerprint import robot_digest
 from clearance.record.names import pair_names
 from clearance.record.record import Record
 from clearance.world.budget import Budget, RobotTolerance
-from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.case import Case, Limits
 from clearance.world.cell import once_a_cell
 from clearance.world.pairs import Pair
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT
 

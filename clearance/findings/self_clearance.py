@@ -12,9 +12,9 @@ from typing import Any
 from clearance.record.names import pair_names
 from clearance.record.record import CUT, Record
 from clearance.record.wording import count
-from clearance.world.case import PlacedRobot
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.notice import listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
 
 NEIGHBOURS = "neighbours"

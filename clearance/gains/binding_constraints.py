@@ -14,7 +14,7 @@ from clearance.gains.obstruction import Obstruction
 from clearance.gains.programme import Box
 from clearance.gains.shortfalls import State
 from clearance.gains.tool_poses import ToolMove
-from clearance.world.case import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot
 
 CLOSE = 1e-5
 """[m], [rad] or that a second: a pair or a joint that is no farther from what it must keep is up against it."""

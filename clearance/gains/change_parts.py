@@ -9,7 +9,8 @@ import numpy as np
 
 from clearance.gains.answer import Gain
 from clearance.run import Run
-from clearance.world.case import PlacedRobot, index_of_robot
+from clearance.world.case import index_of_robot
+from clearance.world.placed_robot import PlacedRobot
 
 STILL = 1e-9
 """[rad], [m] or [s]: what moves no farther is not told as moved."""

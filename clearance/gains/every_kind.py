@@ -15,7 +15,8 @@ from clearance.gains.answer import Gain, gain
 from clearance.gains.request import kinds_of
 from clearance.gains.sentences import bound_text, size_text
 from clearance.run import Question, answer
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 
 SUB_FOLDERS = ("waypoints", "base", "timing", "obstacle")
 """Where each kind goes; in this order they are tried."""

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadChange
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointCourse
 from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS
 from clearance.world.joint_speeds import greatest_rates
 from clearance.world.motion_limits import NO_LIMIT
 from clearance.world.notice import listed
+from clearance.world.placed_robot import PlacedRobot
 
 ROUNDING = 1e-9
 """[rad], [m], or that a second: what is less beyond a limit is at it."""

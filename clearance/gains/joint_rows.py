@@ -15,9 +15,9 @@ import numpy as np
 
 from clearance.gains.basis import Basis
 from clearance.gains.programme import Inequalities
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import joint_courses
 from clearance.world.joint_speeds import motion_limit
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.trajectory import Trajectory
 
 

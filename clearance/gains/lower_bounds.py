@@ -19,11 +19,12 @@ from clearance.gains.shortfalls import State
 from clearance.gains.tool_path import ToolPathKept
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 from clearance.simulate.answers.approaches import Approach
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.forest import WORLD, carried_by, forest_of
 from clearance.world.joint_positions import JointCourse, extremes_of, joint_courses
 from clearance.world.mimics import followers
 from clearance.world.pairs import BodyIndex
+from clearance.world.placed_robot import PlacedRobot
 
 INWARD = 1.0 - 2.0**-16
 """Covers the rounding of what is summed here."""

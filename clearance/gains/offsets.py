@@ -24,10 +24,11 @@ from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.point_motion import has_joint_between, motion_of_frame
 from clearance.simulate.answers.transfers import Transfers
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 from clearance.world.phase import Phase
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timeline import Timeline
 from clearance.world.tool import tool_of
 

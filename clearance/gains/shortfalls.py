@@ -20,7 +20,8 @@ from clearance.record.status import STATUSES, Status
 from clearance.run import Question, Run, answer
 from clearance.simulate.answers.approaches import Approach, OfPair, approaches
 from clearance.tolerance import CERTIFY_GAP
-from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.case import Case, Limits
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.rules import Rule
 from clearance.world.timeline import Timeline
 

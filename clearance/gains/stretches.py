@@ -12,7 +12,8 @@ import numpy as np
 from clearance.errors import BadChange
 from clearance.gains.request import Request
 from clearance.gains.tool_poses import ToolKeep
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 
 
 def require_in_run(windows: Sequence[tuple[float, float]], times: np.ndarray) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from clearance.gains.joint_ranges import ACCELERATION, OWN_SPEED, SPEED, joint_ranges
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import extremes_of, joint_courses, turns
+from clearance.world.placed_robot import PlacedRobot
 
 NEAR = 0.2
 """[rad], [m] or that a second: limits that are farther off are no rows."""

@@ -24,9 +24,10 @@ from clearance.geometry.pose import inverse
 from clearance.programs.inverse import MOST_FROM_AFAR, joints_at, least_motion
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.transfers import Transfers
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex, Pair
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timeline import Timeline
 from clearance.world.tool import Tool, tool_of
 from clearance.world.trajectory import Trajectory

@@ -15,9 +15,9 @@ import numpy as np
 
 from clearance.gains.between_samples import values_between
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import extremes_of, joint_courses
 from clearance.world.joint_speeds import greatest_rates
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.tool import Tool
 
 PARTS = 16

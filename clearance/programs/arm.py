@@ -13,9 +13,9 @@ import numpy as np
 
 from clearance.errors import UnknownJoint, nearest_name
 from clearance.programs.series import ORDER, matrix_product, product, turns_about
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.mimics import range_of
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, Robot
 from clearance.world.tool import Tool
 

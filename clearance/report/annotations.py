@@ -20,7 +20,7 @@ from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.record.record import Record
 from clearance.report.model import ReportModel
 from clearance.report.moment import own_time, sample_at
-from clearance.world.case import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot
 
 MOST = 10
 """Annotations of a step that GitHub shows."""

@@ -11,7 +11,7 @@ from clearance.record.moment import Depth, Moment
 from clearance.record.record import Record
 from clearance.record.wording import depth_text, other_time, seconds
 from clearance.report.blocks import At, Inline
-from clearance.world.case import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.rules import DEFAULT
 
 BODIES = {"link": ("Link", "Obstacle"), "body_a": ("Body", "Other body")}

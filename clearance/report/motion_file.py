@@ -10,9 +10,9 @@ from pathlib import PurePath
 from clearance.errors import BadInput, at
 from clearance.formats.known_formats import Kind, written_as
 from clearance.formats.motion.trajectory_writer import WrittenTrajectory, written
-from clearance.world.case import PlacedRobot
 from clearance.world.motion import Motion
 from clearance.world.notice import NOT_MEASURED
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.trajectory import Trajectory
 
 

@@ -27,8 +27,9 @@ from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.replay.bodies import notes_on_drawing
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.notice import WRAP, Notice
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_wrap import shortest_reading
 
 if TYPE_CHECKING:

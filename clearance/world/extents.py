@@ -9,8 +9,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from clearance.world.body import Body
-from clearance.world.case import PlacedRobot
 from clearance.world.mimics import followers
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import WORLD_LINK, JointKind, Robot
 
 

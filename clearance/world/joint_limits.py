@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import (
     JointCourse,
     JointExtent,
@@ -17,6 +16,7 @@ from clearance.world.joint_positions import (
     turns,
 )
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import extremes_between
 from clearance.world.mimics import followers
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind
 from clearance.world.trajectory import Trajectory
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import cubics_of
 from clearance.world.joint_positions import JointCourse, joint_courses, turns
 from clearance.world.motion_limits import NO_LIMIT, MotionLimit
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind
 from clearance.world.trajectory import Trajectory
 

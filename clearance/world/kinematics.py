@@ -20,8 +20,8 @@ from clearance.kernels.motion.kinematics import (
     place_each,
 )
 from clearance.ordered import parents_first
-from clearance.world.case import PlacedRobot
 from clearance.world.mimics import followers
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind, Robot
 
 _KERNEL_KIND = {

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.trajectory import MoveSpan
 
 

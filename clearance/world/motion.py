@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import cubics_of, position_on, velocity_on
 from clearance.world.kinematics import link_poses, moving_positions, moving_velocities
+from clearance.world.placed_robot import PlacedRobot
 
 
 @dataclass(frozen=True, eq=False)

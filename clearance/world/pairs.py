@@ -14,11 +14,12 @@ from clearance.errors import NothingToMeasure
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.carry import Carry
-from clearance.world.case import Case, Omission, SelfClearance
+from clearance.world.case import Case, Omission
 from clearance.world.cell import once_a_cell
 from clearance.world.extents import own_floor
 from clearance.world.forest import WORLD, Forest, forest_of
 from clearance.world.phase import Phase
+from clearance.world.placed_robot import SelfClearance
 from clearance.world.rules import matches
 from clearance.world.self_pairs import RIGID, self_pairs
 

@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.case import Case, Limits
 from clearance.world.extents import metres
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_positions import joint_extents
 from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN, notices_on_speed
 from clearance.world.notice import WRAP, Notice, Severity, listed, worst_first
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_motion import (
     CREEP_SLIDE,
     CREEP_TURN,

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointExtent, joint_extents, turns
 from clearance.world.notice import START, Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
 

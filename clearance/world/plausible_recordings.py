@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.notice import GAPS, HOLD, LINEAR, NOT_MEASURED, Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Hole
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from clearance.world.case import PlacedRobot
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, Robot
 
 

@@ -11,7 +11,7 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.shapes import SHAPES
 from clearance.query.distance import distance
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.extents import (
     chain_of,
@@ -26,6 +26,7 @@ from clearance.world.extents import (
 from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 
 RATIO = 200.0

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.notice import WRAP, Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.trajectory import SHORTEST
 from clearance.world.wrap import LongStep, long_steps
 

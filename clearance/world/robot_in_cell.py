@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.forest import forest_of, link_poses_at
 from clearance.world.holders import robots_below
 from clearance.world.motion import kinematic_motion
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timeline import Timeline, timeline_of
 
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING, Links
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import links_of_robot, moving_positions, poses_by_link
+from clearance.world.placed_robot import PlacedRobot
 
 
 @dataclass(frozen=True, eq=False)

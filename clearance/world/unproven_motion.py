@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
 
 
 def notices_on_unproven(placed: PlacedRobot, before: str = "") -> list[Notice]:

@@ -24,10 +24,11 @@ from clearance.world.budget import (
     PlacementTolerance,
     RobotTolerance,
 )
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.forest import joined_positions, positions_between
 from clearance.world.motion import Motion
 from clearance.world.pairs import BodyIndex, Pair
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind
 
 Key = tuple[str, str, str]

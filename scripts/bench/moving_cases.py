@@ -20,10 +20,11 @@ from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot, SelfClearance
+from clearance.world.case import Case
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import Pair, measured_pairs
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.robot import Robot
 from clearance.world.rules import Allowance
 from clearance.world.trajectory import Trajectory

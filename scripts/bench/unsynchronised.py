@@ -28,10 +28,10 @@ from clearance.simulate.measure.clocks.unsynchronised import (
     least_unsynchronised,
 )
 from clearance.simulate.measure.resources import Resources
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import BodyIndex, Pair, measured_pairs
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.trajectory import Trajectory
 
 ARMS = {

@@ -12,7 +12,8 @@ import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from scripts.makers.polygon_pairs import rotations

@@ -19,8 +19,9 @@ from clearance.world.budget import (
     PlacementTolerance,
     RobotTolerance,
 )
-from clearance.world.case import Case, PlacedRobot, SelfClearance
+from clearance.world.case import Case
 from clearance.world.mount import Mount
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory

@@ -17,7 +17,8 @@ from clearance.world.budget import (
     PlacementTolerance,
     RobotTolerance,
 )
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.budget.budget_cases import X, Z, bar, proven_sections

@@ -8,8 +8,9 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.record import Samples
 from clearance.record.table import Table
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, Omission, PlacedRobot
+from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.report.step_rows import rows_of

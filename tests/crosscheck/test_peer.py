@@ -22,7 +22,8 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
 from clearance.tolerance import CROSS_CHECK
-from clearance.world.case import Omission, PlacedRobot
+from clearance.world.case import Omission
+from clearance.world.placed_robot import PlacedRobot
 from tests.crosscheck.sliding import box, rail_record
 from tests.made_cases import at, ball, faces_of, flying
 

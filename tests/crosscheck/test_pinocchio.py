@@ -23,11 +23,11 @@ from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
-from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.collision_matrix import NEVER
 from clearance.world.forest import link_poses_at
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import BodyIndex, measured_pairs
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.self_pairs import self_pairs
 from clearance.world.trajectory import Trajectory
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timing import Timing
 from tests.oracle.kinematics import Pose, link_poses, on, rotation_of, seen_from
 

@@ -5,7 +5,8 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box
 from clearance.world.body import Body
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 

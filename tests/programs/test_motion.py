@@ -14,9 +14,9 @@ from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program
 from clearance.programs.time_law import Limits
 from clearance.report.motion_file import motion_content
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
+from clearance.world.placed_robot import PlacedRobot
 from tests.programs.arms import arm, posture, turned
 
 START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)

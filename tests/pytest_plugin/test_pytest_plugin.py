@@ -19,8 +19,8 @@ from clearance.case.case_list import cases_in
 from clearance.errors import BadInput
 from clearance.pytest_plugin import assert_clear
 from clearance.simulate.measure import refine
-from clearance.world.case import SelfClearance
 from clearance.world.notice import Notice, Severity
+from clearance.world.placed_robot import SelfClearance
 from tests.findings.gates import load_gates, write_gates
 from tests.made_cases import arm, at
 

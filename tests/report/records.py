@@ -18,9 +18,10 @@ from clearance.record.table import Table
 from clearance.simulate.answers.rule_pairs import SampleMoments, measured_rule
 from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
+from clearance.world.case import Case, Limits, Omission, Source
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import DEFAULT
 from clearance.world.timeline import timeline_of

@@ -23,7 +23,7 @@ from clearance.report.terminal import terminal_table
 from clearance.report.topic import TerminalTable
 from clearance.report.topics import worst
 from clearance.run import Run
-from clearance.world.case import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver

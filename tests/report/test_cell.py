@@ -16,7 +16,8 @@ import clearance as cl
 from clearance.cli.verdict import print_verdict
 from clearance.report.summary import json_text
 from clearance.report.topics.pairs import PairJudge
-from clearance.world.case import Clock, SelfClearance
+from clearance.world.case import Clock
+from clearance.world.placed_robot import SelfClearance
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at

@@ -16,7 +16,8 @@ from clearance.report.comparison import write_comparison
 from clearance.report.still import overview, still_of
 from clearance.run import Question, answer
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, Limits, PlacedRobot, SignOff
+from clearance.world.case import Case, Limits, SignOff
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver

@@ -12,7 +12,6 @@ from scipy.interpolate import CubicHermiteSpline
 
 from clearance.errors import BadDimension, BadShape, BadTime, NotFinite
 from clearance.tolerance import PATH_ERROR
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import extremes_between, positions_along
 from clearance.world.kinematics import (
     links_of_robot,
@@ -21,6 +20,7 @@ from clearance.world.kinematics import (
     values_by_link,
 )
 from clearance.world.knots import knots_of, looped
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.quintic import with_accelerations
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.slerp import aligned, arcs_between, slerp

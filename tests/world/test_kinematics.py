@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clearance.world.case import PlacedRobot
 from clearance.world.joint_limits import ROUNDING, notices_on_joints
 from clearance.world.joint_positions import joint_courses, joint_extents
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.kinematics import link_poses
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples

@@ -12,10 +12,11 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.report.topics.worst import lines
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.case import Case, Limits
 from clearance.world.mimics import followers
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausibility import notices_of, notices_on_tables
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot

@@ -19,8 +19,8 @@ from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.text.notes import counted
-from clearance.world.case import PlacedRobot
 from clearance.world.notice import listed
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
 

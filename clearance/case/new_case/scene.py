@@ -22,7 +22,8 @@ from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.notes import counted
 from clearance.world.carry import Carry
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 
 SCENE = "scene.yaml"
 

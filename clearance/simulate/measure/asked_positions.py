@@ -11,11 +11,12 @@ import numpy as np
 from clearance.errors import SuspectInput, at
 from clearance.simulate.measure.asked_neighbours import AskedNeighbours
 from clearance.tolerance import REACH
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.joint_limits import far_beyond, notices_on_joints
 from clearance.world.joint_positions import joint_extents
 from clearance.world.mimics import followers
 from clearance.world.notice import Notice, Severity, accepted_kind
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_motion import largest_usual, notices_on_positions
 from clearance.world.trajectory import Trajectory
 

@@ -22,12 +22,13 @@ from clearance.simulate.measure.asked_pairs import AskedPairs, nearest_of_many
 from clearance.simulate.measure.asked_positions import AskedPositions
 from clearance.simulate.measure.inside import DoubtfulPairs
 from clearance.tolerance import REACH
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.kinematics import moving_positions
 from clearance.world.motion import Motion
 from clearance.world.notice import worst_first
 from clearance.world.one_time import phase_at, time_dependent_parts
 from clearance.world.pairs import Selection, measured_selection, nothing_to_measure, selected_pairs
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausibility import notices_of
 from clearance.world.reach import require_within_reach
 

@@ -24,11 +24,11 @@ from clearance.errors import NotFinite, NotSimulated
 from clearance.extras import importing
 from clearance.simulate.physics.model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import positions_along
 from clearance.world.kinematics import moving_positions
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
+from clearance.world.placed_robot import PlacedRobot
 
 STEPS_PER_SECOND = 240
 SUBSTEPS = 16

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from clearance.errors import BadSyntax, MissingFile, NotSimulated
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.world.case import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot
 
 _FRAME_MASS = (
     1e-3  # [kg] of a link that the URDF gives no mass: a mere frame, light but not singular

@@ -126,7 +126,7 @@ def controller(data: bytes, folder: Path, name: str) -> object:
 def programmed():
     """The arm that programs move."""
     from clearance.formats.robot.urdf.robot import load_urdf
-    from clearance.world.case import PlacedRobot
+    from clearance.world.placed_robot import PlacedRobot
 
     root = Path(__file__).parents[3]
     return PlacedRobot(load_urdf(root / "robots" / "heron6" / "heron6.urdf"))

@@ -9,9 +9,9 @@ from clearance import check, load_case
 from clearance.errors import MissingKey
 from clearance.formats.motion.trajectory_file import parse_trajectory
 from clearance.formats.motion.trajectory_writer import written
-from clearance.world.case import PlacedRobot
 from clearance.world.cubic import positions_along
 from clearance.world.joint_limits import notices_on_joints
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory

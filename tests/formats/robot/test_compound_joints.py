@@ -5,8 +5,8 @@ import pytest
 
 from clearance.errors import BadInput, DuplicateName
 from clearance.geometry.pose import pose_from_rpy
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
+from clearance.world.placed_robot import PlacedRobot
 from tests.formats.making_case import load_small
 from tests.formats.making_urdf import BOX, joint, link, load_urdf, robot
 

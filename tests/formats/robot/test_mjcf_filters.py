@@ -11,9 +11,9 @@ from clearance import check, load_case
 from clearance.cli import run
 from clearance.errors import BadSyntax, MissingKey, NotFinite, UnknownState
 from clearance.formats.robot.mjcf.robot import BITS, EXCLUDE, PARENT
-from clearance.world.case import PlacedRobot
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.kinematics import link_poses
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.self_pairs import RIGID, self_pairs
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_mjcf import BALL, JOINTED, load_mjcf, mjcf, write_mjcf

@@ -6,8 +6,8 @@ import pytest
 
 from clearance.geometry.pose import pose_from_rpy
 from clearance.query.distance import distance
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
+from clearance.world.placed_robot import PlacedRobot
 from tests.formats.making_mjcf import JOINTED, load_mjcf, mjcf, write_mjcf
 
 pytestmark = pytest.mark.peer

@@ -7,9 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadSyntax, NothingToMeasure
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.notice import Severity
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests.formats.making import ARM, cube_stl, signed_volume

@@ -13,7 +13,8 @@ from clearance.query.contact import BodyPair
 from clearance.simulate.answers.contact import contacts as contact_work
 from clearance.simulate.answers.contact.events import events_of
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory

@@ -9,7 +9,8 @@ import pytest
 
 import clearance as cl
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.report.records import moved

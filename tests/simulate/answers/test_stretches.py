@@ -13,7 +13,8 @@ from clearance.record.levels import LEVELS
 from clearance.simulate.answers.stretches import joined_spans
 from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory

@@ -13,9 +13,9 @@ from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body
-from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.robot import JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests import oracle

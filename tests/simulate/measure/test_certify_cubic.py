@@ -10,7 +10,8 @@ from scipy.interpolate import CubicHermiteSpline
 import clearance as cl
 from clearance.errors import BadDimension
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 from tests.simulate.measure.certified import assert_as_tight_as_asked, assert_never_above_samples

@@ -14,8 +14,8 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box,
     motion_bound_of_box_along,
 )
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, links_of_robot, values_by_link
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples

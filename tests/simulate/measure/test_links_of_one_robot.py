@@ -8,8 +8,8 @@ import pytest
 import clearance as cl
 from clearance.geometry.shapes import box
 from clearance.world.body import Body
-from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.pairs import measured_pairs
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.robot import Joint, JointKind
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, random_robot

@@ -11,7 +11,8 @@ import clearance as cl
 from clearance.report.junit_cases import results_of
 from clearance.simulate.measure import refine
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at

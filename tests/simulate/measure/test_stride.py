@@ -12,8 +12,9 @@ import clearance as cl
 from clearance.geometry.shapes import box, cylinder
 from clearance.geometry.tree import surface_of
 from clearance.kernels.motion.world import World
-from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.case import Case, Limits
 from clearance.world.kinematics import link_poses
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples

@@ -19,10 +19,10 @@ from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import BodyIndex, Pair, measured_pairs
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests import oracle

@@ -10,9 +10,9 @@ import numpy as np
 import clearance as cl
 from clearance.geometry.shapes import box
 from clearance.world.body import Body
-from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.forest import link_poses_at
 from clearance.world.motion import kinematic_motion
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, random_robot

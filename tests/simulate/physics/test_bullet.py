@@ -17,8 +17,8 @@ from clearance.formats.robot.request import RobotRequest
 from clearance.geometry.point_cloud import PointCloud
 from clearance.simulate.physics.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.trajectory import Trajectory
 
 ENGINE_PRECISION = (
