@@ -6,7 +6,8 @@ from .formats.cloud.formats import read_points
 from .formats.mesh.mesh_file import read_mesh
 from .formats.robot.formats import load_robot
 from .formats.robot.urdf.robot import load_urdf
-from .gains.answer import Gain, gain
+from .gains.answer import gain
+from .gains.result import Gain
 from .gains.turn import Turn
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron

@@ -17,7 +17,7 @@ from clearance.gains.request import KINDS, Request
 from clearance.options import made, require_needs
 
 if TYPE_CHECKING:
-    from clearance.gains.answer import Gain
+    from clearance.gains.result import Gain
     from clearance.world.case import Case
 
 

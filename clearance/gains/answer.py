@@ -6,14 +6,14 @@ Not for: how it is written down (`changed_files`), told (`sentences`) or shown (
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadChange, UnknownRobot, nearest_name, refuse_truth
+from clearance.errors import BadChange, UnknownRobot, nearest_name
 from clearance.gains.binding_constraints import (
     bound_by,
     ends_reached,
@@ -43,13 +43,13 @@ from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.paths_together import PathsTogether
 from clearance.gains.programme import Box
 from clearance.gains.request import Request
+from clearance.gains.result import Gain
 from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
 from clearance.gains.stretches import fixed_spans, require_in_path, require_in_run, windows_of
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
-from clearance.gains.tool_path_error import ToolPathError, tool_path_error
-from clearance.gains.tool_poses import ToolMove
+from clearance.gains.tool_path_error import tool_path_error
 from clearance.options import made
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
@@ -66,59 +66,6 @@ INSIDE = 0.8
 
 FARTHER = (0.05, 0.1)
 """[m] From how far, where the first search found none."""
-
-
-@dataclass(frozen=True, eq=False)
-class Gain:
-    """The result of a search for the least change.
-
-    Attributes:
-        request: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
-        case: the changed case; the best that was reached where it is not kept.
-        change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
-            samples of a path, one such array for each of several robots; (1,) [s] of a delay, or the share
-            by which a path takes longer.
-        size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
-            kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
-        before, after: certified runs of both cases, by their own limits.
-        blocked: what stays too near, where it is not kept. binding: what the best that was reached is up against,
-            a line each.
-        n_measured: how many cases were measured.
-        tool_moves: how far the tool is moved where it is to stay about where it is.
-        tool_path: how far it is off where its path is kept; else None.
-        joint_names: of the columns of a path's change. case_file: what the case was read from, if it was.
-    """
-
-    request: Request
-    kept: bool
-    case: Case
-    change: np.ndarray | tuple[np.ndarray, ...]
-    size: float
-    lower_bound: float
-    who: str
-    before: Run
-    after: Run
-    blocked: Obstruction | None
-    n_measured: int
-    joint_names: tuple[str, ...] = field(default=())
-    binding: tuple[str, ...] = field(default=())
-    case_file: Path | None = None
-    tool_moves: tuple[ToolMove, ...] = ()
-    tool_path: ToolPathError | None = None
-
-    def __bool__(self) -> NoReturn:
-        refuse_truth(self, "kept")
-
-    def __repr__(self) -> str:
-        kept = "kept" if self.kept else "not kept"
-        return f"<Gain of {self.case!r}: {self.request.kind} of {self.who}, {kept}, {self.size:.4g} {self.unit}>"
-
-    @property
-    def unit(self) -> str:
-        """Of `size` and `lower_bound`."""
-        if self.request.slow_down:
-            return "share"
-        return {"waypoints": "rad", "timing": "s"}.get(self.request.kind, "m")
 
 
 def gain(case: Case | str | PathLike[str], kind: str = "waypoints", **options: Any) -> Gain:

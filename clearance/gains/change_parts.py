@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.gains.answer import Gain
+from clearance.gains.result import Gain
 from clearance.run import Run
 from clearance.world.case import index_of_robot
 from clearance.world.placed_robot import PlacedRobot

@@ -25,7 +25,7 @@ from clearance.formats.scene.request import SceneRequest
 from clearance.formats.scene.writer import rows_of, written_scene
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.obstacle import Obstacle as ObstacleRow
-from clearance.gains.answer import Gain
+from clearance.gains.result import Gain
 from clearance.gains.shift import first_pose
 from clearance.gains.turn import ARM, Pivot
 from clearance.run import Question, Run, answer

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
-from clearance.gains.answer import Gain, gain
+from clearance.gains.answer import gain
 from clearance.gains.request import kinds_of
+from clearance.gains.result import Gain
 from clearance.gains.sentences import bound_text, size_text
 from clearance.run import Question, answer
 from clearance.world.case import Case

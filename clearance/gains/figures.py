@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from clearance.gains.answer import Gain
 from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
+from clearance.gains.result import Gain
 from clearance.gains.tool_path_error import ToolPathError
 from clearance.gains.turn import Turn
 from clearance.record.moment import Moment

@@ -11,11 +11,11 @@ from pathlib import Path
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.files import fill_folder, refuse_inputs
-from clearance.gains.answer import Gain
 from clearance.gains.changed_files import OWN as OF_CASE
 from clearance.gains.changed_files import case_files
 from clearance.gains.figures import figures_of
 from clearance.gains.page import page_of
+from clearance.gains.result import Gain
 from clearance.report.output import OWN as OF_REPORT
 from clearance.report.summary import json_text
 

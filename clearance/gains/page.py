@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from clearance.gains.answer import Gain
 from clearance.gains.change_parts import (
     ChangePart,
     change_parts,
@@ -18,6 +17,7 @@ from clearance.gains.change_parts import (
     proven_after,
     proven_bound,
 )
+from clearance.gains.result import Gain
 from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
 from clearance.record.wording import count, limit_mm, mm, moment_text, seconds
 from clearance.report.blocks import (

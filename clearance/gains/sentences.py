@@ -9,7 +9,6 @@ import math
 from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
-from clearance.gains.answer import Gain
 from clearance.gains.change_parts import (
     ChangePart,
     change_parts,
@@ -24,6 +23,7 @@ from clearance.gains.moved_windows import windows_that_stay
 from clearance.gains.obstacles_met import obstacles_met
 from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
+from clearance.gains.result import Gain
 from clearance.gains.turn import ARM
 from clearance.record.wording import depth_mm, limit_mm, mm, moment_text
 from clearance.run import Run
