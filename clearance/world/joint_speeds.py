@@ -53,9 +53,9 @@ def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[N
         text = f"CHECK LIMITS: {listed(jumps, 4)}; {asks}"
         notices.append(Notice(Severity.SUSPECT, "limits", text))
     if jumps := [*_jumps_of_loop(placed, before)]:
-        text = f"CHECK LIMITS: a table that begins again (after: loop) ends elsewhere: {listed(jumps, 4)}"
+        text = f"CHECK START: a table that begins again (after: loop) ends elsewhere: {listed(jumps, 4)}"
         says = "that way is not measured; end the table where it begins, or give after: hold"
-        notices.append(Notice(Severity.SUSPECT, "limits", f"{text}; {says}"))
+        notices.append(Notice(Severity.SUSPECT, "start", f"{text}; {says}"))
     texts = [text for is_jump, text in found if rule == "fail" or not is_jump]
     if texts and rule == "fail":
         notices.append(Notice(Severity.VIOLATED, "joint limits", listed(texts, 4)))
