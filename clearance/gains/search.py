@@ -204,7 +204,8 @@ class Search:
         for _ in range(HALVINGS if found.kept and found.state.x.any() else 0):
             state = self.state_at(share * found.state.x)
             record = proven(state.case, self.margin)
-            if keeps(record):
+            others = state.other_rows
+            if keeps(record) and (others is None or others.missing.max(initial=0.0) <= FINE):
                 least, high = SearchResult(state, record, self.n_measured), share
             elif share == NEARLY:
                 break
