@@ -80,6 +80,21 @@ def test_what_a_robot_holds_is_carried_all_the_time(tmp_path):
     assert apart == {("base", "tool"), ("post", "tool"), ("upper", "post")}
 
 
+def test_a_held_object_has_the_padding_of_its_link(tmp_path):
+    padded = MESSAGE.replace("link_name: ghost, padding: 1.0", "link_name: tip, padding: 0.02")
+    assert {name: one.padding for name, one in obstacles_of(tmp_path, padded).items()} == {
+        "post": 0.0,
+        "tool": 0.02,
+    }
+
+
+@pytest.mark.parametrize("is_diff", [True, False])
+def test_a_difference_to_an_unknown_scene_is_warned_of(tmp_path, is_diff):
+    message = MESSAGE.replace("is_diff: false", f"is_diff: {is_diff}".lower())
+    told = [(one.severity, one.kind) for one in content_of(tmp_path, message).notices]
+    assert told == [(Severity.WARNING, "scene")] * is_diff
+
+
 def test_what_the_case_carries_is_left_to_it(tmp_path):
     text = NAMED + "carry: [{part: tool, by: tip, from: 0.5, touch: ['*']}]\n"
     (carry,) = load_small(tmp_path, text, cell__yaml=MESSAGE).carries

@@ -28,6 +28,7 @@ from clearance.formats.message.values import (
 from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
 from clearance.formats.scene.request import AttachedPart, SceneContent, SceneRequest, pose_row
 from clearance.world.names import require_own_names
+from clearance.world.notice import Notice, Severity
 from clearance.world.rules import pattern_of
 
 OCTOMAP = "<octomap>"
@@ -64,7 +65,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
     with at(asked.shown):
         require_fields(raw, *_FIELDS)
         meshes, poses = SceneMeshes(asked), Poses()
-        frames = _Frames(raw, poses)
+        frames, padding = _Frames(raw, poses), _padding(raw)
         world = message(raw, "world")
         with at("world"):
             require_fields(world, "collision_objects", "octomap")
@@ -73,9 +74,8 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         state = message(raw, "robot_state")
         with at("robot_state"):
             require_fields(state, *_STATE)
-            attached, carried = _attached(state, meshes, poses)
+            attached, carried = _attached(state, padding, meshes, poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
-        padding = _padding(raw)
     rows = [*obstacles, *attached]
     notes = [*frames.notes(), *_lost(raw, state), *poses.notes()]
     if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
@@ -83,7 +83,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
     return SceneContent(
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *meshes.found.notes()),
-        tuple(meshes.found.notices()),
+        (*_unknown_scene(raw, asked.shown), *meshes.found.notices()),
         allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
         link_padding=padding,
         attached=tuple(carried),
@@ -119,7 +119,8 @@ class _Frames:
         if len(named) > 1:
             raise BadScene(
                 f"frames {named[0]!r} and {named[1]!r} are used, and nothing says where one is in the other",
-                valid="one frame, or fixed_frame_transforms",
+                valid="one frame, or fixed_frame_transforms with it as header.frame_id and the planning frame as "
+                "child_frame_id",
             )
         return np.eye(4)
 
@@ -145,9 +146,12 @@ def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -
 
 
 def _attached(
-    state: Message, meshes: SceneMeshes, poses: Poses
+    state: Message, padding: dict[str, float], meshes: SceneMeshes, poses: Poses
 ) -> tuple[list[Row], list[AttachedPart]]:
-    """The obstacles that ride on links, and what each may touch."""
+    """The obstacles that ride on links, and what each may touch.
+
+    Each has the padding of its link. Source: MoveIt, CollisionEnvFCL::getAttachedBodyObjects.
+    """
     rows: list[Row] = []
     carried: list[AttachedPart] = []
     for where, given in messages(state, "attached_collision_objects"):
@@ -156,7 +160,7 @@ def _attached(
             link = text(given, "link_name")
             touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
             for row in _attached_rows(message(given, "object"), link, meshes, poses):
-                rows.append(row | {"on": link})
+                rows.append(row | {"on": link, "padding": padding.get(link, 0.0)})
                 carried.append(AttachedPart(row["name"], link, touch))
     return rows, carried
 
@@ -247,8 +251,6 @@ def _lost(raw: Message, state: Message) -> Iterator[str]:
     joints = [message(state, key) for key in ("joint_state", "multi_dof_joint_state")]
     if any(items(one, name) for one in joints for name in ("name", "joint_names")):
         yield "the robot's state is not taken: joints are as the case says"
-    if raw.get("is_diff") is True:
-        yield "it is a difference to another scene, of which nothing is known"
     world = message(raw, "world")
     n_named = sum(
         len(items(one, "subframe_names"))
@@ -256,6 +258,13 @@ def _lost(raw: Message, state: Message) -> Iterator[str]:
     )
     if n_named:
         yield f"{n_named} subframes of objects are passed over: nothing here is given in them"
+
+
+def _unknown_scene(raw: Message, shown: str) -> Iterator[Notice]:
+    """A warning on a message that only changes another scene."""
+    if raw.get("is_diff") is True:
+        text = f"{shown} changes another scene (is_diff: true): objects that only that scene has are not measured"
+        yield Notice(Severity.WARNING, "scene", text)
 
 
 def _attached_objects(state: Message) -> Iterator[tuple[str, Message]]:
