@@ -236,14 +236,14 @@ def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:
 
 
 def _padding(given: Mapping[str, float], links: Sequence[str]) -> dict[str, float]:
-    """[m] by link; of several patterns for a link the last counts."""
+    """[m] by link: its own row, else the greatest of the patterns that match it."""
     found: dict[str, float] = {}
     for pattern, padding in given.items():
         meant = [link for link in links if matches(link, pattern)]
         if not meant:
             raise UnknownLink(f"no link matches {pattern!r}", valid=nearest_name(pattern, links))
-        found |= dict.fromkeys(meant, padding)
-    return found
+        found |= {link: max(padding, found.get(link, 0.0)) for link in meant}
+    return found | {link: given[link] for link in links if link in given}
 
 
 def _refuse_missing_folders(given: Sequence[str], package_dirs: Sequence[Path]) -> None:

@@ -112,7 +112,8 @@ def padded_mm(moment: Moment, levels: Sequence[float] = ()) -> str:
     """The clearance of a moment in millimetres; with padding, that and the distance of the shapes beside it."""
     text, shapes = f"{mm(moment.clearance, levels)} mm", moment.clearance + moment.padding
     if not moment.touches and moment.padding >= SEEN_PADDING:
-        return f"{text} ({mm(shapes)} mm less {mm(moment.padding)} mm of padding)"
+        padding = depth_mm(moment.padding)  # rounded up, as the clearance is rounded down
+        return f"{text} ({mm(shapes)} mm less {padding} mm of padding)"
     decides = any(moment.clearance < level <= shapes + EQUAL for level in levels)
     if moment.touches or not decides:
         return text

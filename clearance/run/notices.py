@@ -39,7 +39,8 @@ def notices_of(
     """All notices, those of the case and of how it was measured; the gravest first."""
     measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
-    empty = [*map(_nothing_measured, plan.empty), *_far_off(question.case, found)]
+    empty = [*map(_nothing_measured, plan.empty), *_idle_rules(question.case, plan)]
+    empty += _far_off(question.case, found)
     empty += far_grasps(phases) if question.case.carries else []
     empty += neighbours_that_meet(phases)
     empty += [_BY_PAPER] if question.method == "paper" else []
@@ -52,6 +53,18 @@ def _nothing_measured(phase: Phase) -> Notice:
     start, end = phase.span
     text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
     return Notice(Severity.WARNING, "pairs", text)
+
+
+def _idle_rules(case: Case, plan: SectionPlan) -> Iterator[Notice]:
+    """A warning on each rule of the case whose limits hold for no measured pair at any time."""
+    names = case.limits.rule_names
+    for i, rule in enumerate(case.limits.rules, start=1):
+        if i not in plan.rules:
+            text = (
+                f"rule {names[i]!r} ({' - '.join(rule.between)}) applies to no measured pair: "
+                "later rules or `allow` take all of its pairs"
+            )
+            yield Notice(Severity.WARNING, "rules", text)
 
 
 def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:

@@ -33,7 +33,7 @@ WRAP, START = "wrap", "start"
 
 WARNINGS = (
     "geometry", "equality", "scene", "padding", "reach", "scan", "program", "carry", "rest", "neighbours",
-    "columns", "recorded run", "pairs", "paper", "certificate", "contact", "cross-check",
+    "columns", "recorded run", "pairs", "rules", "paper", "certificate", "contact", "cross-check",
 )  # fmt: skip
 """Kinds of warnings alone, which a case can accept too: where warnings fail, these do not then."""
 

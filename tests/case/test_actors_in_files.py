@@ -75,11 +75,14 @@ def test_a_trajectory_stands_at_the_top_or_in_its_robot(tmp_path, case):
     assert placed.timing == Timing(0.5, 2, "loop") and placed.given_trajectory.n_steps == 3
 
 
-def test_one_robot_may_be_named_and_padded(tmp_path):
-    keys = 'name: robo, padding: {"*": 0.001, up*: 0.003}'
+@pytest.mark.parametrize(
+    "rows", ['"*": 0.001, up*: 0.003, base: 0', 'base: 0, up*: 0.003, "*": 0.001']
+)
+def test_a_link_has_its_own_padding_or_the_greatest_of_its_patterns(tmp_path, rows):
+    keys = f"name: robo, padding: {{{rows}}}"
     placed = load_small(tmp_path, changed("urdf: arm.urdf", f"urdf: arm.urdf, {keys}")).robots[0]
     assert placed.robot.name == "robo"
-    assert placed.padding == {"base": 0.001, "upper": 0.003, "tip": 0.001}
+    assert placed.padding == {"base": 0.0, "upper": 0.003, "tip": 0.001}
 
 
 @pytest.mark.slow
