@@ -24,7 +24,8 @@ DEEPEST = 100
 _MERGED = object()
 """The key `<<`, under which a mapping takes what others have."""
 
-_PLAIN = ("tag:yaml.org,2002:map", "tag:yaml.org,2002:seq")
+_CORE = "tag:yaml.org,2002:"
+_PLAIN = (f"{_CORE}map", f"{_CORE}seq")
 
 
 def plain_data(data: bytes) -> object:
@@ -114,6 +115,8 @@ class PlainValues:
 
     def _new(self, event: Any) -> Any:
         tag = event.tag
+        if tag is not None and tag != "!" and not str(tag).startswith(_CORE):
+            raise not_plain(event)
         if tag is None or tag == "!":
             tag = self.reader.resolver.resolve(self._node, event.value, event.implicit)
         node = self._node(tag, event.value, event.start_mark, event.end_mark, style=event.style)

@@ -51,7 +51,7 @@ def test_an_alias_of_what_it_stands_in_is_refused(text):
     [
         b"a: !!bool maybe", b"a: !!int ''", b"a: !!float ''", b"a: !!timestamp x", b"%YAML 1.1\n---\na: -_",
         b"a: " + b"1" * 5000, b"? {a: [1]}\n: 2", b"a: *b", b"a\0", b"\xff", b"[" * 500, b"a: [",
-        b"--- 1\n--- 2", b"!!python/object:os.system x",
+        b"--- 1\n--- 2", b"!!python/object:os.system x", b"a: !degrees -10",
     ],
 )  # fmt: skip
 def test_what_no_plain_data_is_made_of_is_refused_in_one_line(text):

@@ -13,6 +13,7 @@ import numpy as np
 from clearance.case.allow import PatternNames, body_names
 from clearance.errors import UnknownLink, nearest_name
 from clearance.formats.scene.request import SceneContent
+from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
@@ -26,6 +27,9 @@ from clearance.world.timing import Window
 ORIGIN = 1e-9
 """[m] and [-] How far a link's pose may be off the world's and count as the same."""
 
+NEAR_BASE = 1e-4
+"""[m] and [-] How far a robot's base may be from where a scene's file has it, whose numbers may be rounded."""
+
 WORLD_FRAMES = ("world", "map", "odom", "earth")
 """Names of frames that stand, beside those of links. Source: ROS, REP 105."""
 
@@ -38,7 +42,12 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
     Raises:
         UnknownLink: the frame of the file is neither a link nor the world.
     """
-    case = replace(case, notices=(*case.notices, *_on_frame(case, content.frame)))
+    on_frames = (
+        *_on_frame(case, content.frame),
+        *_on_bases(case, content),
+        *_on_frames_of_poses(case),
+    )
+    case = replace(case, notices=(*case.notices, *on_frames))
     if not content.allow and not content.link_padding:
         return case, []
     names = body_names(case)
@@ -87,6 +96,43 @@ def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
                 f"CHECK FRAME: the scene's file is in the frame of link {frame!r}, but is read as the world's. "
                 "This link moves or is not at the origin: obstacles may be misplaced; place the robot to agree",
             )
+
+
+def _on_bases(case: Case, content: SceneContent) -> Iterator[Notice]:
+    """A notice for each place where the scene's file says that a robot stands, and no robot of the case does."""
+    for joint, pose in content.bases.items():
+        standing = [placed.world_from_base for placed in case.robots if placed.mount is None]
+        if not any(np.allclose(pose, one, rtol=0.0, atol=NEAR_BASE) for one in standing):
+            place = ", ".join(f"{one:g}" for one in pose[:3, 3])
+            yield Notice(
+                Severity.SUSPECT,
+                "frame",
+                f"CHECK FRAME: the scene's file has its robot at ({place}) m by joint {joint!r}, and "
+                "the case does not; give it as the robot's base",
+            )
+
+
+def _on_frames_of_poses(case: Case) -> Iterator[Notice]:
+    """A notice for each obstacle whose file of poses names another frame than the case does with `on`."""
+    for obstacle in case.obstacles:
+        frame = "" if obstacle.moves is None else obstacle.moves.frame
+        if frame and frame not in _frames_of(case, obstacle):
+            read_as = "the world's" if obstacle.mount is None else f"those of {obstacle.mount.on!r}"
+            yield Notice(
+                Severity.SUSPECT,
+                "frame",
+                f"CHECK FRAME: poses of obstacle {obstacle.body.name!r} are in frame {frame!r}, but are read as "
+                f"{read_as}; give `on: {frame}` if that is a link, or poses in the world",
+            )
+
+
+def _frames_of(case: Case, obstacle: Obstacle) -> Collection[str]:
+    """Names of the frame in which the poses of an obstacle are read."""
+    if obstacle.mount is not None:
+        return obstacle.mount.on, obstacle.mount.on.rpartition("/")[2]
+    links = [(placed, link) for placed in case.robots for link in placed.robot.link_names]
+    elsewhere = {link for placed, link in links if not _is_world(placed, link)}
+    return {*WORLD_FRAMES, *(link for _, link in links)} - elsewhere
 
 
 def _is_world(placed: PlacedRobot, link: str) -> bool:

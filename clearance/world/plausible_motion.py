@@ -98,9 +98,12 @@ def _assumed(placed: PlacedRobot) -> list[Notice]:
 
 
 def _unread(placed: PlacedRobot) -> list[Notice]:
-    """A warning on columns that the case leaves out, though they look like motion."""
+    """A warning on what is not read of its file, though it looks like motion, or like parts that it holds."""
     unread, about = placed.given_trajectory.unread, placed.robot.name
-    text = f"columns that look like motion of robot {about!r} are not read: {listed(unread, 6)}"
+    text = (
+        f"columns or fields that look like motion of robot {about!r}, or parts that it holds, are not read: "
+        f"{listed(unread, 6)}"
+    )
     return [Notice(Severity.WARNING, "columns", text, about)] if unread else []
 
 

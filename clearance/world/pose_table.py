@@ -21,7 +21,7 @@ class PoseTable:
         times: (n,) [s], strictly increasing. positions: (n, 3) [m] of the body's origin, in the world or in what
             it stands on.
         quaternions: (n, 4) xyzw of length one; signs are chosen so that neighbours are nearest.
-        timing: when the table is followed.
+        timing: when the table is followed. frame: the frame of the poses, where their file names one.
 
     Raises:
         BadShape, NotFinite: not one finite number each. BadTime: times that do not increase, or one sample where
@@ -34,6 +34,7 @@ class PoseTable:
     positions: np.ndarray
     quaternions: np.ndarray
     timing: Timing = AS_GIVEN
+    frame: str = ""
 
     def __post_init__(self) -> None:
         for name, width in (("times", 0), ("positions", 3), ("quaternions", 4)):

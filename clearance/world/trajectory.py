@@ -114,7 +114,7 @@ class Trajectory:
             that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
         is_rough: its times rest on accelerations that no file of its program says.
         contradicted: the points of a program whose own axes are far from them, one line each.
-        unread: columns of its table that look like motion, and are not read.
+        unread: columns or fields of its file that look like motion or parts, and are not read.
         moves: of a program, when each is made. frames: the obstacles and links that its work frames are on.
         corners: stretches on which a controller may leave the path, and how far links may then be off.
         unproven: stretches of a program that are not proven.

@@ -215,7 +215,7 @@ def _text(
 
 def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path) -> dict[str, Any]:
     """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes, or
-    that it comes to its first sample from elsewhere. A program stays the file that it is.
+    that it comes to its first sample from elsewhere, or what is not read. A program stays the file that it is.
     """
     if "program" in (given.trajectory or {}):
         keys = dict(given.trajectory or {})
@@ -223,7 +223,8 @@ def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path
         program |= {"beside": [path_from(folder, one) for one in program.get("beside", ())]}
         program = {key: value for key, value in program.items() if value != []}
         return {**keys, "program": program if len(program) > 1 else program["file"]}
-    if (trajectory.holes or trajectory.has_way_in) and given.trajectory is not None:
+    warned = trajectory.holes or trajectory.has_way_in or trajectory.unread
+    if warned and given.trajectory is not None:
         keys = dict(given.trajectory)
         return {**keys, "file": path_from(folder, keys["file"])}
     return {"file": TRAJECTORY if trajectory.points is None else MESSAGE}

@@ -9,6 +9,7 @@ their quaternions.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from difflib import get_close_matches
 
@@ -133,7 +134,23 @@ def left_out(robot: Robot, header: Sequence[str], columns: Sequence[Column]) -> 
     others = [name for name in header if name not in {one.header for one in columns}]
     alike = _by_quantity(others, joints) | _renamed(joints, read, others)
     missed = {name: given for name, given in alike.items() if name not in read}
-    return [f"{given!r} ({name})" for name, given in missed.items()]
+    found = [f"{given!r} ({name})" for name, given in missed.items()]
+    return found + [f"{name!r} (a base)" for name in _of_bases(others)]
+
+
+_PLACES = ({"x", "y", "theta"}, {"x", "y", "yaw"}, {"trans_x", "trans_y", "trans_z"})
+"""Variables of a planar or floating joint, by MoveIt's names and by those of this package."""
+
+
+def _of_bases(headers: Sequence[str]) -> list[str]:
+    """Columns of planar or floating joints, such as `world_joint/theta`."""
+    own = defaultdict[str, set[str]](set)
+    for joint, _, variable in (header.rpartition("/") for header in headers):
+        own[joint].add(variable)
+    bases = [
+        joint for joint, found in own.items() if joint and any(one <= found for one in _PLACES)
+    ]
+    return [header for header in headers if header.rpartition("/")[0] in bases]
 
 
 ACCELERATION = "/acceleration"

@@ -117,8 +117,14 @@ def trajectory_of_message(
     with at(where):
         trajectory = _assembled(names, points)
     trajectory, on_start = with_start(trajectory, start)
-    notes = (*_notes(points, trajectory), *on_start, *notes_on_unread(message, start))
-    return ReadTrajectory(trajectory, notes)
+    unread = _all_unread(message, start)
+    grave = tuple(path for path in unread if _GRAVE & {*path.split(".")})
+    notes = (*_notes(points, trajectory), *on_start, *_notes_on_unread(unread))
+    return ReadTrajectory(replace(trajectory, unread=grave), notes)
+
+
+_GRAVE = {"attached_collision_objects", "multi_dof_joint_state"}
+"""Fields that move a base, or that tell of parts which a link holds."""
 
 
 def _place(nearest: Any, *keys: str) -> str:
@@ -355,8 +361,8 @@ def _with_way_in(trajectory: Trajectory) -> Trajectory:
     )
 
 
-def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str]:
-    """A line that names the fields beside the points that have no effect here."""
+def _all_unread(message: JointMessage, start: StartState | None) -> list[str]:
+    """The fields beside the points that have no effect here."""
     found = [*_unread(message.trajectory, message.place, ("joint_names", "points"))]
     for place, holder in message.around:
         for path in _unread(holder, place, READ):
@@ -365,7 +371,11 @@ def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str
             else:
                 key = path.rpartition(".")[2]
                 found += _unread(holder[key], path, ("joint_state", "is_diff"))
-    return [f"fields beside the points, not read: {listed(found, 8)}"] if found else []
+    return found
+
+
+def _notes_on_unread(unread: Sequence[str]) -> list[str]:
+    return [f"fields beside the points, not read: {listed(unread, 8)}"] if unread else []
 
 
 def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:

@@ -63,7 +63,7 @@ class PoseSamples:
         Raises:
             BadTime, BadPose, NotFinite: samples that nothing can follow.
         """
-        return PoseTable(self.times, self.positions, self.quaternions)
+        return PoseTable(self.times, self.positions, self.quaternions, frame=self.frame)
 
 
 class ReadSamples(NamedTuple):

@@ -28,6 +28,9 @@ in bursts. A recording of 10 Hz has such intervals throughout."""
 LATE = 2.0
 """Usual intervals by which a joint may begin after the others, or end before them: one is by chance."""
 
+MOVED = 0.01
+"""[rad] or [m] A joint that moves farther before all are known, or after, does not do so by chance."""
+
 FEW = 10
 """A joint of so few messages has no usual interval of its own; that of more frequent joints is used."""
 
@@ -55,6 +58,12 @@ class Track(NamedTuple):
     def at_most(self, n_usual: float) -> float:
         """So many usual intervals, or a brief one if that is longer."""
         return max(n_usual * self.usual, self.brief)
+
+    def moves_beyond(self, time: float, way: int) -> bool:
+        """True if it is farther than `MOVED` from where it is at a time, before it (`way` -1) or after it (1)."""
+        beyond = self.positions[way * self.times > way * time]
+        at_time = np.interp(time, self.times, self.positions)
+        return bool((np.abs(beyond - at_time) > MOVED).any())
 
     def held(self) -> Track:
         """The track that holds its position in each hole until one usual interval before its next sample."""
@@ -94,15 +103,24 @@ def _median(lengths: np.ndarray) -> float:
 
 
 def unknown_ends(tracks: Mapping[str, Track], span: tuple[float, float], unit: float) -> list[Hole]:
-    """Where messages name some joints, and others not yet or no more, longer than by chance: nothing is measured.
+    """Where messages name some joints, and others not yet or no more: nothing is measured there.
+
+    A few intervals in which no joint moves far are by chance, and no hole.
 
     Args:
         span: in which all are. unit: as in `holes_of`.
     """
     first = min(track.times[0] for track in tracks.values())
     last = max(track.times[-1] for track in tracks.values())
-    late = {n: t.usual for n, t in tracks.items() if t.times[0] - first > t.at_most(LATE)}
-    early = {n: t.usual for n, t in tracks.items() if last - t.times[-1] > t.at_most(LATE)}
+    moves = [
+        any(track.moves_beyond(time, way) for track in tracks.values())
+        for time, way in zip(span, (-1, 1), strict=True)
+    ]
+    most = {
+        n: [0.0 if moved else track.at_most(LATE) for moved in moves] for n, track in tracks.items()
+    }
+    late = {n: t.usual for n, t in tracks.items() if t.times[0] - first > most[n][0]}
+    early = {n: t.usual for n, t in tracks.items() if last - t.times[-1] > most[n][1]}
     found = []
     for unknown, start, end in ((late, first, span[0]), (early, span[1], last)):
         if unknown and start < end:

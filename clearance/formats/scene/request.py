@@ -67,6 +67,7 @@ class SceneContent:
         allow: names of bodies that may touch, in any order, of which some may not be there.
         link_padding: [m] by link. attached: obstacles that links carry.
         frame: what its poses are given in, if its file says so; it is taken for the world.
+        bases: (4, 4) [m] where its file says that a robot stands, by the joint that moves it.
     """
 
     scene: object
@@ -76,6 +77,7 @@ class SceneContent:
     link_padding: dict[str, float] = field(default_factory=dict)
     attached: tuple[AttachedPart, ...] = ()
     frame: str = ""
+    bases: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def pose_row(pose: np.ndarray) -> dict[str, list[float]]:

@@ -184,7 +184,19 @@ def test_columns_that_look_like_motion_and_are_left_out_stand_in_the_headline(tm
         case = changed("path.csv", f"path.csv, columns: {columns}")
         made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=table)
         told = [one.text for one in notices_on_motion(made.robots[0])]
-        assert told == [f"columns that look like motion of robot 'arm' are not read: {left_out}"]
+        assert told == [
+            "columns or fields that look like motion of robot 'arm', or parts that it holds, are not read: "
+            + left_out
+        ]
+
+
+def test_columns_of_a_base_that_moves_stand_in_the_headline_if_left_out(tmp_path):
+    table = (
+        "time,world/x,world/y,world/theta,tool/x,tool/y,shoulder\n0,0,0,0,0,0,0\n1,1,0,0,0,0,0\n"
+    )
+    case = changed("path.csv", "path.csv, columns: [time, shoulder]")
+    unread = load_small(tmp_path, case, trajectory=table).robots[0].given_trajectory.unread
+    assert unread == tuple(f"'world/{one}' (a base)" for one in ("x", "y", "theta"))
 
 
 def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():

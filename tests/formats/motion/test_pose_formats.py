@@ -102,6 +102,26 @@ def test_stamped_poses_count_from_the_first():
     assert "2 stamped poses in frame 'map', taken for what the poses are seen from" in notes[0]
 
 
+@pytest.mark.parametrize(
+    ("frame", "on", "is_told"),
+    [
+        ("map", "", False),
+        ("tip", "", True),
+        ("camera", "", True),
+        ("tip", ", on: left/tip", False),
+        ("map", ", on: left/tip", True),
+    ],
+)
+def test_poses_in_another_frame_than_the_case_reads_them_in_are_suspect(
+    tmp_path, frame, on, is_told
+):
+    stamped = STAMPED.replace("frame_id: map", f"frame_id: {frame}")
+    case = load_cell(tmp_path, "moves: door.csv", f"moves: door.yaml{on}", door__yaml=stamped)
+    told = [one.text for one in case.notices if one.kind == "frame"]
+    assert len(told) == is_told
+    assert all(f"poses of obstacle 'door' are in frame {frame!r}" in text for text in told)
+
+
 def test_paths_transforms_and_covariances_are_poses_too():
     stamped = [pose(1.0, 1), pose(2.0, 3)]
     path = {"header": {"frame_id": "map"}, "poses": stamped}

@@ -100,8 +100,14 @@ def test_ends_at_which_some_joints_are_unknown_are_said_not_to_be_measured():
     (start, end) = read(sorted(arm + finger)).trajectory.holes
     assert (start.joints, start.means, end.means) == (("finger",), "not_measured", "not_measured")
     assert (start.start, start.end, end.start, end.end) == pytest.approx((-0.4, 0.0, 9.1, 9.6))
-    skew = states(0.1 + STEP * np.arange(496), "finger", ("finger",))
-    assert not read(sorted(arm + skew)).trajectory.holes
+
+
+@pytest.mark.parametrize(("way", "n_holes"), [(0.009, 0), (0.02, 1)])
+def test_a_few_messages_at_an_end_are_a_hole_if_a_joint_moves_in_them(way, n_holes):
+    arm = states(STEP * np.arange(501), "shoulder", swing=lambda t: way * (t > 9.95))
+    finger = states(STEP * np.arange(496), "finger", ("finger",), swing=lambda t: 0.0)
+    holes = read(sorted(arm + finger)).trajectory.holes
+    assert [(one.joints, one.means) for one in holes] == [(("finger",), "not_measured")] * n_holes
 
 
 @pytest.mark.parametrize(

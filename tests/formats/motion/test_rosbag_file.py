@@ -207,7 +207,8 @@ def test_positions_that_are_no_numbers_are_left_out_by_message_and_joint(tmp_pat
     assert trajectory.positions[9] == pytest.approx([1.0, 0.1], abs=1e-15)
     told = "positions that are NaN or infinite are left out: 'shoulder' in message 11, 'lift' in message 1"
     assert any(note.endswith(told) for note in notes)
-    (hole,) = trajectory.holes
+    hole, before = trajectory.holes
+    assert (before.joints, before.means) == (("lift",), "not_measured")
     assert (hole.joints, hole.start, hole.end) == (("shoulder",), 8.0, 10.0)
 
 

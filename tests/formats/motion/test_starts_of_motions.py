@@ -229,6 +229,17 @@ def test_a_start_under_a_name_that_is_misspelt_is_refused():
         read(message)
 
 
+def test_parts_and_bases_of_a_start_that_are_not_read_stand_in_the_headline(tmp_path):
+    joints = {"name": ["shoulder"], "position": [0.1]}
+    base = {"joint_names": ["world_joint"], "transforms": [{"translation": {"x": 0.5}}]}
+    start = {"joint_state": joints, "multi_dof_joint_state": base}
+    start["attached_collision_objects"] = [{"link_name": "tool", "object": {"id": "part"}}]
+    case = load(tmp_path, displayed(plan(point(1.0, 0.1)), start))
+    (told,) = (one for one in notices_of(case) if one.kind == "columns")
+    left_out = ("multi_dof_joint_state", "attached_collision_objects")
+    assert told.text.endswith(": " + ", ".join(f"trajectory_start.{one}" for one in left_out))
+
+
 UNREAD = [
     ("header", {"frame_id": "base", "stamp": {"sec": 3, "nanosec": 0}}, "header.frame_id 'base'"),
     ("path_tolerance", [{"name": "shoulder", "position": 0.1}], "path_tolerance"),

@@ -301,3 +301,23 @@ def test_a_robot_of_the_other_kind_of_shapes_is_told_what_to_give(tmp_path, shap
         f"arm.urdf: no link has a {asked} shape, 2 links have a {other} shape; "
         f"give robot: {{geometry: {other}}}"
     )
+
+
+def test_couplings_and_limits_of_a_controller_are_told(tmp_path):
+    coupled = (
+        '<ros2_control><joint name="{}"><param name="mimic">first</param></joint></ros2_control>'
+    )
+    soft = '<safety_controller soft_lower_limit="-1" k_velocity="2"/>'
+    slides = (
+        joint("first", "a", "b", "prismatic", SLIDE + soft),
+        joint("free", "b", "c", "prismatic", SLIDE),
+        joint("bound", "c", "d", "prismatic", SLIDE + '<mimic joint="first"/>'),
+    )
+    links = [link(BOX, "a"), *(link("", name) for name in "bcd")]
+    made = load_urdf(
+        tmp_path, robot(*links, *slides, coupled.format("free"), coupled.format("bound"))
+    )
+    (notice,) = made.notices
+    assert (notice.severity, notice.kind) == (Severity.WARNING, "equality")
+    assert "are free here: 'free';" in notice.text
+    assert any(note.endswith("soft limits are not used: joint 'first'") for note in made.notes)

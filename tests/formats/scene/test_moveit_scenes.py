@@ -95,6 +95,18 @@ def test_a_difference_to_an_unknown_scene_is_warned_of(tmp_path, is_diff):
     assert told == [(Severity.WARNING, "scene")] * is_diff
 
 
+@pytest.mark.parametrize(("x", "base", "is_told"), [(0.5, 0.0, 1), (0.5, 0.5, 0), (0.0, 0.0, 0)])
+def test_a_robot_that_stands_elsewhere_in_the_scene_than_in_the_case_is_suspect(
+    tmp_path, x, base, is_told
+):
+    state = f"multi_dof_joint_state: {{joint_names: [vj], transforms: [{{translation: {{x: {x}, y: 0, z: 0}}}}]}}"
+    given = NAMED.replace("arm.urdf", f"arm.urdf, base: {{xyz: [{base}, 0, 0]}}")
+    message = f"robot_state: {{{state}}}\nworld: {{collision_objects: [{BALL % 'odom'}]}}\n"
+    case = load_small(tmp_path, given, cell__yaml=message)
+    told = [one.severity for one in case.notices if one.kind == "frame" and "'vj'" in one.text]
+    assert told == [Severity.SUSPECT] * is_told
+
+
 def test_what_the_case_carries_is_left_to_it(tmp_path):
     text = NAMED + "carry: [{part: tool, by: tip, from: 0.5, touch: ['*']}]\n"
     (carry,) = load_small(tmp_path, text, cell__yaml=MESSAGE).carries

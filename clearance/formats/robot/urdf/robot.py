@@ -31,12 +31,12 @@ from clearance.formats.robot.urdf.elements import (
 )
 from clearance.formats.robot.urdf.joints import joints_of
 from clearance.formats.robot.urdf.shapes import ShapeReader
-from clearance.formats.text.unread import notes_on, notices_on
+from clearance.formats.text.unread import Unread, notes_on, notices_on
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.names import require_own_names
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.robot import Robot
+from clearance.world.robot import Joint, Robot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -92,9 +92,10 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
             *axis_notices(links, bodies, ordered, reader),
             *unseen(kinds, request.geometry),
             *_on_empty(empty),
+            *_on_coupled(others, ordered),
             *notices_on(others),
         ]
-    said = *notes, *notes_on_bare(kinds), *notes_on(others)
+    said = *notes, *notes_on_bare(kinds), *notes_on(others), *_on_soft_limits(others)
     notes = [f"{request.path.name}: {note}" for note in said]
     return Robot(
         root.get("name") or "robot",
@@ -112,6 +113,30 @@ def _on_empty(empty: list[str]) -> list[Notice]:
         return []
     text = f"shapes without a size, not measured: {listed(empty, 6)}"
     return [Notice(Severity.WARNING, "geometry", text)]
+
+
+def _on_coupled(others: Sequence[Unread], joints: Sequence[Joint]) -> list[Notice]:
+    """A warning on joints that follow others by ros2_control alone."""
+    free = {joint.name for joint in joints if joint.mimic is None}
+    coupled = [
+        repr(joint.get("name"))
+        for one in others
+        for joint in one.element.iter("joint")
+        if joint.get("name") in free and joint.find("param[@name='mimic']") is not None
+    ]
+    if not coupled:
+        return []
+    names = listed(coupled, 6)
+    text = f"joints that ros2_control couples to others are free here: {names}; <mimic> would couple them"
+    return [Notice(Severity.WARNING, "equality", text)]
+
+
+def _on_soft_limits(others: Sequence[Unread]) -> list[str]:
+    """A note on narrower limits that a controller may keep to."""
+    soft = {"soft_lower_limit", "soft_upper_limit"}
+    limited = [one for one in others if one.name == "<safety_controller>"]
+    owners = [one.where for one in limited if not soft.isdisjoint(one.element.attrib)]
+    return [f"soft limits are not used: {listed(owners, 6)}"] if owners else []
 
 
 def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:

@@ -75,6 +75,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         with at("robot_state"):
             require_fields(state, *_STATE)
             attached, carried = _attached(state, padding, meshes, poses)
+            bases = _bases(message(state, "multi_dof_joint_state"), poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
     rows = [*obstacles, *attached]
     notes = [*frames.notes(), *_lost(raw, state), *poses.notes()]
@@ -88,6 +89,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         link_padding=padding,
         attached=tuple(carried),
         frame=frames.assumed_frame,
+        bases=bases,
     )
 
 
@@ -258,6 +260,17 @@ def _lost(raw: Message, state: Message) -> Iterator[str]:
     )
     if n_named:
         yield f"{n_named} subframes of objects are passed over: nothing here is given in them"
+
+
+def _bases(given: Message, poses: Poses) -> dict[str, np.ndarray]:
+    """(4, 4) [m] by joint: where the robot's state puts it, if that is not the frame's origin."""
+    with at("multi_dof_joint_state"):
+        names = _names(given, "joint_names")
+        found = {}
+        for name, (where, row) in zip(names, messages(given, "transforms"), strict=False):
+            with at(where):
+                found[name] = poses.read(row, "translation", "rotation")
+    return {name: pose for name, pose in found.items() if not np.array_equal(pose, np.eye(4))}
 
 
 def _unknown_scene(raw: Message, shown: str) -> Iterator[Notice]:

@@ -129,7 +129,6 @@ _LEFT_OUT = (
     "light",
     "sensor",
     "plugin",
-    "actor",
     "road",
     "gripper",
     "projector",
@@ -168,18 +167,23 @@ _PLANE = [PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH]
 
 
 def unseen(documents: Sequence[Element]) -> list[Notice]:
-    """A warning on links that have a visual but no collision shape and are not measured."""
+    """Warnings on what is seen and not measured: links with a visual but no collision shape, and actors."""
     links = [link for document in documents for link in document.iter("link")]
     names = [
         repr(_path(link))
         for link in links
         if link.find("visual") is not None and link.find("collision") is None
     ]
-    if not names:
-        return []
-    have, are = ("1 link has", "is") if len(names) == 1 else (f"{len(names)} links have", "are")
-    text = f"{have} a visual but no collision shape and {are} not measured: {listed(names, 6)}"
-    return [Notice(Severity.WARNING, "geometry", text)]
+    texts = []
+    if names:
+        have, are = ("1 link has", "is") if len(names) == 1 else (f"{len(names)} links have", "are")
+        texts += [
+            f"{have} a visual but no collision shape and {are} not measured: {listed(names, 6)}"
+        ]
+    actors = [repr(one.get("name")) for document in documents for one in document.iter("actor")]
+    if actors:
+        texts += [f"actors move and are not measured: {listed(actors, 6)}"]
+    return [Notice(Severity.WARNING, "geometry", text) for text in texts]
 
 
 def empty(documents: Sequence[Element]) -> list[Notice]:
