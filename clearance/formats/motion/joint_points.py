@@ -205,7 +205,7 @@ def _refuse_standing(before: float, time: float) -> None:
         raise BadTime(
             f"time {time} follows {before}",
             where="time_from_start",
-            valid="times must increase from point to point",
+            valid="times must increase from point to point; a path of a planner needs them first",
         )
 
 

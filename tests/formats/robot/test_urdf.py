@@ -62,6 +62,17 @@ def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, s
     assert volume <= signed_volume(body.shape) * (1 + 1e-15) <= volume * 1.002
 
 
+@pytest.mark.parametrize("version", ["1.1", "1.2"])
+def test_a_quaternion_turns_as_the_angles_do(tmp_path, version):
+    """Source: urdfdom, README, "URDF Versioning"."""
+    half = 0.5**0.5
+    for turn in ('rpy="0 0 1.5707963267948966"', f'quat_xyzw="0 0 {half} {half}"'):
+        shape = collision('<box size="1 2 3"/>', f'<origin xyz="1 0 0" {turn}/>')
+        text = robot(link(shape)).replace("<robot", f'<robot version="{version}"')
+        bounds = load_urdf(tmp_path, text).bodies[0].shape.bounds
+        assert bounds == pytest.approx(np.array([[0, -0.5, -1.5], [2, 0.5, 1.5]]), abs=1e-15)
+
+
 SLIDE = '<axis xyz="1 0 0"/><limit lower="0" upper="9"/>'
 
 

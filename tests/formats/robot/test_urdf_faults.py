@@ -5,6 +5,7 @@ import pytest
 from clearance.errors import (
     BadDimension,
     BadInput,
+    BadPose,
     BadShape,
     BadSyntax,
     DuplicateName,
@@ -17,6 +18,11 @@ from clearance.errors import (
 from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, robot
 
 A_B = link("", "a") + link("", "b")
+
+
+def turned(attributes: str, version: str) -> str:
+    shape = collision('<box size="1 1 1"/>', f"<origin {attributes}/>")
+    return robot(link(shape)).replace("<robot", f'<robot version="{version}"')
 
 
 def in_joint(inner: str) -> str:
@@ -49,10 +55,9 @@ def in_joint(inner: str) -> str:
         (in_joint("<Axis/>"), BadInput, "did you mean <axis>?"),
         (robot(link(collision('<sphere radius="1" diameter="2"/>'))), BadInput, "='2' is not read; radius="),
         (in_joint('<origin xzy="1 0 0"/>'), BadInput, "xzy='1 0 0' is not read"),
-        (in_joint('<origin pos="1 0 0"/>'), BadInput, "is not read; rpy=, xyz="),
+        (in_joint('<origin pos="1 0 0"/>'), BadInput, "is not read; quat_xyzw=, rpy=, xyz="),
         (robot("<jont/>", A_B), BadInput, "robot 'r': <jont> is not read; did you mean <joint>?"),
         (in_joint('<origin RPY="0 0 1"/>'), BadInput, "RPY='0 0 1' is not read"),
-        (in_joint('<origin quat_xyzw="0 0 0 1"/>'), BadInput, "is not read; rpy=, xyz=, and no other"),
         (in_joint('<axis xyz="0 0 1"/><axis xyz="0 1 0"/>'), BadInput, "two <axis>"),
         (in_joint("<origin>1 0 0</origin>"), BadInput, "origin: the text '1 0 0' is not"),
         (in_joint('<origin parent="x"/>'), BadInput, "parent='x' is not read"),
@@ -68,7 +73,10 @@ def in_joint(inner: str) -> str:
         ('<robot name="r" units="mm"/>', BadInput, "robot 'r': units='mm' is not read"),
         (robot(A_B, '<include filename="gripper.urdf"/>'), BadInput, "robot 'r': <include> is not read"),
         (robot(A_B, "<group>" + link(BOX, "c") + "</group>"), BadInput, "robot 'r': <group> is not read"),
-        ('<robot name="r" version="9.9"/>', BadInput, "robot: version='9.9'; 1.0 or 1.1"),
+        ('<robot name="r" version="9.9"/>', BadInput, "robot: version='9.9'; 1.0 or 1.1 or 1.2"),
+        (turned('quat_xyzw="0 0 0 1"', "1.0"), BadInput, "origin: quat_xyzw= is given; <robot version"),
+        (turned('quat_xyzw="0 0 0 1" rpy="0 0 0"', "1.1"), BadInput, "origin: rpy= and quat_xyzw= are given"),
+        (turned('quat_xyzw="0 0 0 2"', "1.2"), BadPose, "origin: quat_xyzw: the quaternion"),
         (robot(link(BOX + collision("<cone/>"))), BadInput, "collision[1] geometry: <cone>"),
         (robot(link(collision("<box size='1 1 1'/><sphere radius='1'/>"))), BadInput, "<box>, <sphere>"),
         (robot(link(collision("<box/>"))), MissingKey, "<box> has no size"),

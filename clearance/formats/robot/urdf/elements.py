@@ -18,7 +18,8 @@ from clearance.formats.robot.robot_element import robot_element
 from clearance.formats.robot.shape_kinds import chosen_kind
 from clearance.formats.text.numbers import is_zero
 from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
-from clearance.geometry.pose import pose_from_rpy
+from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.geometry.quaternions import of_unit_length
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.world.names import checked_name, require_own_names
 
@@ -35,7 +36,7 @@ _NUMBERS: dict[str, dict[str, tuple[int, ...]]] = {
         }
         for name, shape in _PRIMITIVES.items()
     },
-    "origin": {"xyz": (3,), "rpy": (3,)},
+    "origin": {"xyz": (3,), "rpy": (3,), "quat_xyzw": (4,)},
     "axis": {"xyz": (3,)},
     "mesh": {"scale": (1, 3)},
     "limit": {"lower": (1,), "upper": (1,)},
@@ -104,8 +105,9 @@ _URDF = Format(
 """Names that are passed over: those of the specification, and of URDF for Gazebo, ros2_control, Bullet, Drake,
 MuJoCo and pinocchio."""
 
-VERSIONS = ("1", "1.0", "1.1")
-"""Source: urdfdom, README, "URDF Versioning"."""
+QUATERNION_VERSIONS = ("1.1", "1.2")
+VERSIONS = ("1", "1.0", *QUATERNION_VERSIONS)
+"""Source: urdfdom, README, "URDF Versioning": 1.1 adds quaternions and capsules, 1.2 limits that are not read."""
 
 
 def parse_document(data: bytes) -> Element:
@@ -204,7 +206,14 @@ def odd_angles_of(root: Element) -> list[str]:
 def pose_of(element: Element) -> np.ndarray:
     """The (4, 4) pose [m] of an element in what it belongs to, by its `<origin>`; the identity without one."""
     origin = element.find("origin")
-    return np.eye(4) if origin is None else pose_from_rpy(*_origin(origin))
+    if origin is None:
+        return np.eye(4)
+    xyz = numbers(origin, "xyz", (0.0, 0.0, 0.0))
+    quaternion = numbers(origin, "quat_xyzw")
+    if not quaternion:
+        return pose_from_rpy(xyz, numbers(origin, "rpy", (0.0, 0.0, 0.0)))
+    unit, _ = of_unit_length(np.array([quaternion]))
+    return pose_from_quaternion(xyz, unit[0])
 
 
 def number(element: Element, attribute: str, default: float) -> float:
@@ -223,12 +232,6 @@ def dimensions_of(primitive: Element) -> dict[str, float | tuple[float, ...]]:
     """The dimensions of a shape of the table, by name, in a checked document."""
     given = {key: numbers(primitive, key) for key in SHAPES[primitive.tag].dimensions}
     return {key: values[0] if len(values) == 1 else values for key, values in given.items()}
-
-
-def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Place [m], and roll, pitch, yaw [rad]."""
-    zeros = (0.0, 0.0, 0.0)
-    return numbers(origin, "xyz", zeros), numbers(origin, "rpy", zeros)
 
 
 def _check_names(root: Element, kind: str) -> None:
@@ -254,6 +257,8 @@ def _check(element: Element, where: str) -> None:
         raise MissingKey(f"<{element.tag}> has no <geometry>", where=where)
     if element.tag == "joint":
         _check_ends(element, where)
+    if element.tag == "origin" and element.get("quat_xyzw") is not None:
+        _check_quaternion(element, where)
     counted: dict[str, int] = {}
     for child in element:
         i = counted.get(child.tag, 0)
@@ -288,6 +293,17 @@ def _check_numbers(element: Element, attribute: str, counts: tuple[int, ...], wh
             f"{attribute}={text!r:.60} is given", where=where, valid="finite numbers are needed"
         )
     element.set(attribute, " ".join(words))
+
+
+def _check_quaternion(origin: Element, where: str) -> None:
+    """Source: urdfdom 5.1, README, "URDF Versioning"."""
+    if origin.get("rpy") is not None:
+        raise BadRobot("rpy= and quat_xyzw= are given", where=where, valid="one of them")
+    if origin.getroottree().getroot().get("version") not in QUATERNION_VERSIONS:
+        valid = '<robot version="1.1">, as parsers ignore it in 1.0'
+        raise BadRobot("quat_xyzw= is given", where=where, valid=valid)
+    with at(where):
+        pose_of(origin.getparent())
 
 
 def _check_geometry(element: Element, where: str) -> None:
