@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 
 
@@ -74,7 +75,7 @@ class ControllerMove:
     """One move of a controller.
 
     Attributes:
-        line: where it stands, from 1. kind: of the way. to: its end. tool: (4, 4) `flange_from_tool` [m].
+        line: where it stands. kind: of the way. to: its end. tool: (4, 4) `flange_from_tool` [m].
         via: a point of the arc, for `circ`.
         orientation: as in `schema.program.ArcMove`, or from the start to the end, seen from the path; on a line it
             stays where it is constant.
@@ -82,11 +83,10 @@ class ControllerMove:
         time: from standstill to standstill, whatever the speeds [s]; None if no time is asked for.
         share: for `ptp`, of the joints' greatest speeds. axis_speed, axis_acceleration: for `ptp`, of the axis
             that goes farthest [rad/s] and [rad/s^2].
-        zone: radius of the corner at the end [m]; 0 stops there. file: where it stands, if beside the program's.
-        own: the number of its line that the controller shows, if that is another.
+        zone: radius of the corner at the end [m]; 0 stops there.
     """
 
-    line: int
+    line: Line
     kind: Literal["ptp", "lin", "circ"]
     to: Target
     tool: np.ndarray
@@ -100,8 +100,6 @@ class ControllerMove:
     axis_acceleration: float | None = None
     time: float | None = None
     zone: float = 0.0
-    file: str = ""
-    own: int = 0
 
     @property
     def uses_tool(self) -> bool:
@@ -127,16 +125,9 @@ class ControllerMove:
 class ControllerWait:
     """Nothing moves for some time [s]; a controller that `reads_on` may begin to wait while the robot moves."""
 
-    line: int
+    line: Line
     seconds: float
-    file: str = ""
-    own: int = 0
     reads_on: bool = False
-
-
-def place_of(one: ControllerMove | ControllerWait) -> str:
-    """Where a move stands."""
-    return f"{one.file} line {one.line}".lstrip()
 
 
 def end_of(moves: Sequence[ControllerMove | ControllerWait]) -> list[Any]:

@@ -24,7 +24,6 @@ from clearance.formats.program.controller_program import (
     ControllerWait,
     PoseTarget,
     Target,
-    place_of,
 )
 from clearance.formats.program.stops import Stops
 from clearance.formats.schema import program as schema
@@ -170,7 +169,7 @@ class _Conversion:
         """
         tool, names = self.first_tool, _names(self.read)
         for one, name in zip(self._stops.applied(self.read.moves), names, strict=True):
-            place = place_of(one)
+            place = str(one.line)
             if isinstance(one, ControllerMove) and one.uses_tool:
                 if not np.array_equal(one.tool, tool):
                     change = {"tool": pose_written(one.tool)}
@@ -187,7 +186,7 @@ class _Conversion:
         if given:
             return dict(given), False
         first = self._moves[0]
-        with at(place_of(first)):
+        with at(str(first.line)):
             if first.kind == "ptp" and isinstance(first.to, AxisTarget):
                 return self.arm.axes.joints_of(first.to), True
             raise MissingKey(
@@ -201,7 +200,7 @@ class _Conversion:
         Raises:
             BadInput: with the line.
         """
-        place = place_of(one)
+        place = str(one.line)
         with at(place):
             self._require_still(one)
             if isinstance(one, ControllerWait):
@@ -235,7 +234,7 @@ class _Conversion:
         made["within"] = self.arm.ranges_of(one.to, one.tool)
         if one.to.near is not None:
             made["near"] = self.arm.axes.joints_of(AxisTarget(one.to.near, one.to.external))
-            self._compare(place_of(one), one.to, made["near"], one.tool)
+            self._compare(str(one.line), one.to, made["near"], one.tool)
         return {**made, "to": self._target(one, one.to)}
 
     def _compare(
@@ -361,7 +360,7 @@ class _Conversion:
                 away = np.abs(pose[:3, 3]).max()
                 if not away <= FARTHEST:
                     text = f"a point {away:.3g} m away"
-                    raise BadProgram(text, where=place_of(one), valid=f"{FARTHEST:g} m or less")
+                    raise BadProgram(text, where=str(one.line), valid=f"{FARTHEST:g} m or less")
         return found
 
 
@@ -380,7 +379,7 @@ def _names(read: ControllerProgram) -> Iterator[str]:
     times = Counter[str]()
     for one in read.moves:
         kind = one.kind.upper() if isinstance(one, ControllerMove) else "WAIT"
-        name = f"{kind} {one.file} {one.own or one.line}".replace("  ", " ")
+        name = f"{kind} {one.line.file} {one.line.own or one.line.number}".replace("  ", " ")
         times[name] += 1
         again = f" ({times[name]})" if times[name] > 1 else ""
         to = one.to.name if isinstance(one, ControllerMove) else ""

@@ -110,7 +110,7 @@ class Effects:
             found |= {f"{call.line}: {text}": None for call in islice(self.moving(body), 1)}
         return found
 
-    def require_still(self, what: str, name: str, line: Line) -> None:
+    def require_still(self, what: str, name: str) -> None:
         """Nothing, if nothing in a routine that runs beside the program moves the robot.
 
         Raises:
@@ -122,7 +122,7 @@ class Effects:
             culprit = None if name in self.skip else "it is in no file that is given"
         if culprit is not None:
             fault = f"{what} {name!r} moves the robot, or may: {culprit}"
-            raise BadProgram(fault, where=str(line), valid="call one that moves nothing")
+            raise BadProgram(fault, valid="call one that moves nothing")
 
     def calls_of(self, name: str) -> Iterator[Call]:
         """The calls in a routine, and in those that it calls."""
@@ -180,7 +180,7 @@ def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:
     """
     if len(call.args) > len(routine.parameters):
         fault = f"{call.name} is given {counted(len(call.args), 'argument')}"
-        raise BadProgram(fault, where=str(call.line), valid=f"{len(routine.parameters)} at most")
+        raise BadProgram(fault, valid=f"{len(routine.parameters)} at most")
     in_order = zip(routine.parameters, call.args, strict=False)
     return {**routine.defaults, **dict(in_order), **call.named}
 
@@ -199,35 +199,27 @@ def _calls_of(one: Statement) -> Iterator[Call]:
         yield from calls_in(part)
 
 
-def unknown_word(call: Call, suffix: str, moves: bool | None = None) -> BadProgram:
+def unknown_word(name: str, suffix: str, moves: bool | None = None) -> BadProgram:
     """The error for an instruction or a function that may do anything, or that moves and has no value.
 
     Args:
         suffix: of the file that may have it.
     """
     if moves:
-        fault = f"{call.name} moves the robot, and has no value"
-        return BadProgram(
-            fault, where=str(call.line), valid="write the move as a statement of its own"
-        )
-    file = f"program: {{beside: [{call.name}{suffix}]}}" if suffix else "a file beside that has it"
-    return BadProgram(
-        f"{call.name!r} is no known instruction, and may move the robot",
-        where=str(call.line),
-        valid=f"{file}, or skip: [{call.name}] if it neither moves nor sets tool or frame",
-    )
+        fault = f"{name} moves the robot, and has no value"
+        return BadProgram(fault, valid="write the move as a statement of its own")
+    file = f"program: {{beside: [{name}{suffix}]}}" if suffix else "a file beside that has it"
+    valid = f"{file}, or skip: [{name}] if it neither moves nor sets tool or frame"
+    return BadProgram(f"{name!r} is no known instruction, and may move the robot", valid=valid)
 
 
 def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
     """The error for a statement that may do anything."""
-    if one.jumps:
-        fault = f"{one.word!r} is not understood, and decides which lines run"
-        return BadProgram(fault, where=str(one.line), valid="take it out of the program")
+    does = "decides which lines run" if one.jumps else "may decide where the robot goes"
     valid = "take it out of the program"
-    if may_be_left_out:
+    if may_be_left_out and not one.jumps:
         valid = f"{valid}, or write skip: [{one.word}] if it does not"
-    fault = f"{one.word!r} is not understood, and may decide where the robot goes"
-    return BadProgram(fault, where=str(one.line), valid=valid)
+    return BadProgram(f"{one.word!r} is not understood, and {does}", valid=valid)
 
 
 def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
@@ -235,11 +227,10 @@ def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
     fault, valid = f"{one.word} decides on {culprit}, and", "let the file decide it"
     if culprit is None:
         fault, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
-    fault = f"{fault} is not known: {value.why}"
-    return BadProgram(fault, where=str(one.line), valid=valid)
+    return BadProgram(f"{fault} is not known: {value.why}", valid=valid)
 
 
-def require_repeating(one: While, states: Sequence[Any]) -> None:
+def require_repeating(states: Sequence[Any]) -> None:
     """Nothing, if an endless loop may still repeat a pass.
 
     Args:
@@ -253,4 +244,4 @@ def require_repeating(one: While, states: Sequence[Any]) -> None:
         changed = [repr(name) for name in now if now[name] != before.get(name)]
         fault = f"an endless loop that repeats none of its first {MOST_PASSES} passes"
         valid = f"write a loop that ends, or set {listed(changed) or 'its variables'} back in it"
-        raise BadProgram(fault, where=str(one.line), valid=valid)
+        raise BadProgram(fault, valid=valid)

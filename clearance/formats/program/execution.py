@@ -54,7 +54,7 @@ from clearance.formats.program.statements import (
     While,
     assigned,
 )
-from clearance.formats.program.tokens import Line
+from clearance.formats.program.tokens import Line, on
 
 MOST_STATEMENTS = 500_000
 """Statements that a program runs; more are a loop that does not end."""
@@ -109,9 +109,9 @@ class Execution(Remarks):
             if any(one.name in self.routines for one in calls_in(part)):
                 self.evaluated(part)
 
-    def run_concurrently(self, what: str, name: str, line: Line) -> None:
+    def run_concurrently(self, what: str, name: str) -> None:
         """Keeps that a routine runs beside the program: it moves nothing, and what it changes is not known."""
-        self.effects.require_still(what, name, line)
+        self.effects.require_still(what, name)
         self.concurrent |= self.effects.changed_concurrently(what, name)
         for call in self.effects.calls_of(name):
             if call.name in self.language.retiming:
@@ -131,16 +131,18 @@ class Execution(Remarks):
     def run(self, body: Iterable[Statement]) -> Leave | None:
         """Runs statements, and what they were left by."""
         for one in body:
-            self._count(one.line)
-            if (left := self._step(one)) is not None:
+            with on(one.line):
+                self._count()
+                left = self._step(one)
+            if left is not None:
                 return left
         return None
 
-    def _count(self, line: Line) -> None:
+    def _count(self) -> None:
         self._n_run += 1
         if self._n_run > MOST_STATEMENTS:
             fault = f"more than {MOST_STATEMENTS:,} statements are run"
-            raise BadProgram(fault, where=str(line), valid="make the loop end")
+            raise BadProgram(fault, valid="make the loop end")
 
     def _step(self, one: Statement) -> Leave | None:
         match one:
@@ -195,7 +197,7 @@ class Execution(Remarks):
         if call.name in self.routines:
             return self._called(self.routines[call.name], call)[0]
         if (moves := self.language.moves(call.name)) is not False:
-            raise unknown_word(call, self.language.suffix, moves)
+            raise unknown_word(call.name, self.language.suffix, moves)
         if self.language.waits(call):
             self.note(WAITS, f"{call.name} ({call.line})")
         return self.language.result_of(call, self)
@@ -211,7 +213,7 @@ class Execution(Remarks):
     def _assign(self, one: Assign) -> None:
         name = assigned(one.target)
         if name is None:
-            raise BadProgram("no variable is given", where=str(one.line), valid="a variable")
+            raise BadProgram("no variable is given", valid="a variable")
         value, origin = self.evaluated(one.value), self.persistent.origin_of([one.value])
         is_name = isinstance(one.target, Name)
         place = self.variables if one.is_of_all else self._place(name.name, one.is_own)
@@ -228,7 +230,7 @@ class Execution(Remarks):
         try:
             self.language.with_part(whole, by, value)
         except (LookupError, TypeError, ValueError):
-            raise BadProgram(f"there is no part {by!r:.40}", where=str(one.line)) from None
+            raise BadProgram(f"there is no part {by!r:.40}") from None
 
     def _place(self, name: str, is_own: bool = False) -> dict[str, Any]:
         """Where a variable is, or begins to be."""
@@ -261,7 +263,7 @@ class Execution(Remarks):
         elif call.name in self.routines:
             return self._called(self.routines[call.name], call)[1]
         elif self.language.moves(call.name) is None:
-            raise unknown_word(call, self.language.suffix)
+            raise unknown_word(call.name, self.language.suffix)
         else:
             self.language.instruct(call, self)
         return None
@@ -273,8 +275,9 @@ class Execution(Remarks):
             BadInput: other arguments than it has; too many routines in one another.
         """
         if len(self.frames) > MOST_CALLS:
-            fault = f"more than {MOST_CALLS} routines call one another"
-            raise BadProgram(fault, where=str(call.line), valid="end the calls")
+            raise BadProgram(
+                f"more than {MOST_CALLS} routines call one another", valid="end the calls"
+            )
         given = arguments_of(routine, call)
         self.doubts |= self.effects.doubts_on_handlers(routine)
         frame = {name: self.evaluated(value) for name, value in given.items()}
@@ -328,7 +331,7 @@ class Execution(Remarks):
         culprit = next((found for body in bodies for found in self.effects.deciding(body)), None)
         if culprit is not None:
             fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
-            raise BadProgram(fault, where=str(one.line), valid="let the file decide it")
+            raise BadProgram(fault, valid="let the file decide it")
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         for waiting in self.effects.waiting(bodies):
             self.note(WAITS, waiting)
@@ -343,8 +346,8 @@ class Execution(Remarks):
                     self.note(ENDLESS, f"{one.word} ({one.line}), of which {n_passes} are measured")
                     return Leave(one.line, one.word, STOP)
                 before.append(state)
-                require_repeating(one, before)
-            self._count(one.line)
+                require_repeating(before)
+            self._count()
             left = self.run(one.body)
             n_passes += 1
             if left is not None and left.what in (RETURN, STOP):
@@ -371,22 +374,22 @@ class Execution(Remarks):
         return False
 
     def _for(self, one: For) -> Leave | None:
+        name = one.name.name
         first, last = (
-            number(self.evaluated(part), one.line, f"the range of {one.name.name!r}")
-            for part in (one.first, one.last)
+            number(self.evaluated(part), f"the range of {name!r}") for part in (one.first, one.last)
         )
         step = -1.0 if one.turns_back and last < first else 1.0
         if one.step is not None:
-            step = number(self.evaluated(one.step), one.line, f"the step of {one.name.name!r}")
+            step = number(self.evaluated(one.step), f"the step of {name!r}")
         if step == 0.0:
-            raise BadProgram("a step of 0", where=str(one.line), valid="another")
-        name, at = one.name.name, first
+            raise BadProgram("a step of 0", valid="another")
+        at = first
         origin = self.persistent.origin_of(filter(None, (one.first, one.last, one.step)))
         place = self.frames[-1] if one.is_own else self._place(name)
         before = {key: place[key] for key in (name,) if key in place}
         left = None
         while left is None and (at <= last if step > 0.0 else at >= last):
-            self._count(one.line)
+            self._count()
             place[name] = at
             left = self.run(one.body)
             left = None if left is not None and left.what == CONTINUE else left

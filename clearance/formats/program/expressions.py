@@ -11,9 +11,9 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
-from clearance.errors import BadProgram, BadSyntax, at
+from clearance.errors import BadProgram, BadSyntax, ClearanceError
 from clearance.formats.program.grammar import Grammar
-from clearance.formats.program.tokens import Cursor, Line, Token
+from clearance.formats.program.tokens import Cursor, Line, Token, on
 
 MOST_PARTS = 200
 """Operators in a row, and parts of parts."""
@@ -132,46 +132,52 @@ def value_of(one: Expression, scope: Scope) -> Any:
             return scope.items([value_of(item, scope) for item in one.items], one.kind)
         case Part():
             by = one.by if isinstance(one.by, str) else value_of(one.by, scope)
-            return _applied(scope.part_of, (value_of(one.of, scope), by), one.line)
+            return applied(scope.part_of, (value_of(one.of, scope), by), one.line)
         case Operation():
-            return _applied(one.act, [value_of(item, scope) for item in one.on], one.line)
+            return applied(one.act, [value_of(item, scope) for item in one.on], one.line)
 
 
-def _applied(act: Callable[..., Any], values: Sequence[Any], line: Line) -> Any:
+def applied(act: Callable[..., Any], values: Sequence[Any], line: Line, name: str = "this") -> Any:
+    """What an operator or a function of a name makes of values; `Unknown` where one of them is.
+
+    Raises:
+        BadInput: with the line: values that it does not take.
+    """
     for value in values:
         if isinstance(value, Unknown):
             return value
-    try:
-        return act(*values)
-    except (ArithmeticError, LookupError, TypeError, ValueError):
-        given = " and ".join(f"{value!r:.40}" for value in values)
-        raise BadProgram(f"this has no value for {given}", where=str(line)) from None
+    with on(line):
+        try:
+            return act(*values)
+        except ClearanceError:
+            raise
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+            given = " and ".join(f"{value!r:.40}" for value in values)
+            raise BadProgram(f"{name} has no value for {given}") from None
 
 
-def known(value: Any, line: Line, what: str) -> Any:
+def known(value: Any, what: str) -> Any:
     """The value, if it is known to its last part.
 
     Raises:
-        BadInput: with the line, and what only the controller knows.
+        BadProgram: what only the controller knows.
     """
     for part in value if isinstance(value, list) else [value]:
         if isinstance(part, list):
-            known(part, line, what)
+            known(part, what)
         if isinstance(part, Unknown):
-            raise BadProgram(
-                f"{what} is not known: {part.why}", where=str(line), valid="a constant"
-            )
+            raise BadProgram(f"{what} is not known: {part.why}", valid="a constant")
     return value
 
 
-def number(value: Any, line: Line, what: str) -> float:
+def number(value: Any, what: str) -> float:
     """A value that has to be a known number.
 
     Raises:
-        BadInput: with the line.
+        BadProgram: it is none.
     """
-    if isinstance(known(value, line, what), bool | str | list):
-        raise BadProgram(f"{what} is {value!r:.60}", where=str(line), valid="a number")
+    if isinstance(known(value, what), bool | str | list):
+        raise BadProgram(f"{what} is {value!r:.60}", valid="a number")
     return float(value)
 
 
@@ -225,7 +231,7 @@ class ExpressionReader:
     """Reads expressions where a cursor is."""
 
     def __init__(self, cursor: Cursor, grammar: Grammar) -> None:
-        self.cursor, self._grammar, self._depth = cursor, grammar, 0
+        self.cursor, self.grammar, self._depth = cursor, grammar, 0
 
     def expression(self, power: int = 0) -> Expression:
         """The expression that follows, whose operators bind more firmly than a power.
@@ -238,7 +244,7 @@ class ExpressionReader:
             self.cursor.refuse(f"an expression of at most {MOST_DEPTH} brackets")
         found = self._prefixed()
         n_parts = 0
-        while (rule := self._grammar.binary.get(self._word)) and rule[0] > power:
+        while (rule := self.grammar.binary.get(self._word)) and rule[0] > power:
             line = self.cursor.take().line
             found = Operation(rule[1], (found, self.expression(rule[0])), line)
             n_parts = self._counted(n_parts)
@@ -257,15 +263,15 @@ class ExpressionReader:
             BadSyntax: the text ends before.
         """
         args, named = list[Expression](), dict[str, Expression]()
-        cursor, mark = self.cursor, self._grammar.optional
+        cursor, mark = self.cursor, self.grammar.optional
         while not cursor.is_at(*ends):
             if mark and cursor.accept(mark):
-                name = self._grammar.folded(
+                name = self.grammar.folded(
                     cursor.expect_kind("name", "the name of an argument").text
                 )
                 if cursor.accept("?"):
                     word = cursor.expect_kind("name", "an argument of the routine")
-                    named[name] = Passed(self._grammar.folded(word.text), word.line)
+                    named[name] = Passed(self.grammar.folded(word.text), word.line)
                 else:
                     named[name] = self.expression() if cursor.accept(":=") else Constant(True)
             elif not mark and cursor.next.kind == "name" and cursor.after(1).text == "=":
@@ -281,10 +287,10 @@ class ExpressionReader:
     @property
     def _word(self) -> str:
         word = self.cursor.next
-        return word.text.upper() if self._grammar.folds and word.kind == "name" else word.text
+        return word.text.upper() if self.grammar.fold and word.kind == "name" else word.text
 
     def _prefixed(self) -> Expression:
-        rule = self._grammar.unary.get(self._word) if self.cursor.next.kind != "string" else None
+        rule = self.grammar.unary.get(self._word) if self.cursor.next.kind != "string" else None
         if rule is None:
             return self._with_parts(self._atom())
         line = self.cursor.take().line
@@ -303,14 +309,14 @@ class ExpressionReader:
         if cursor.next.kind == "string":
             return Constant(cursor.take().text[1:-1])
         word = cursor.expect_kind("name", "a value")
-        if word.text in self._grammar.before_items and cursor.accept("["):
+        if word.text in self.grammar.before_items and cursor.accept("["):
             return self._items(word.text)
-        if self._grammar.folded(word.text) in self._grammar.constants:
-            return Constant(self._grammar.constants[self._grammar.folded(word.text)])
+        if self.grammar.folded(word.text) in self.grammar.constants:
+            return Constant(self.grammar.constants[self.grammar.folded(word.text)])
         return (
             self.called(word)
             if cursor.is_at("(")
-            else Name(self._grammar.folded(word.text), word.line)
+            else Name(self.grammar.folded(word.text), word.line)
         )
 
     def called(self, word: Token) -> Call:
@@ -318,7 +324,7 @@ class ExpressionReader:
         self.cursor.expect("(")
         args, named = self.arguments(")")
         self.cursor.expect(")")
-        return Call(self._grammar.folded(word.text), args, named, word.line)
+        return Call(self.grammar.folded(word.text), args, named, word.line)
 
     def _items(self, kind: str) -> Items:
         args, _ = self.arguments("]")
@@ -326,7 +332,7 @@ class ExpressionReader:
         return Items(args, kind)
 
     def _with_parts(self, found: Expression) -> Expression:
-        opens, closes = self._grammar.index[0], self._grammar.index[1]
+        opens, closes = self.grammar.index[0], self.grammar.index[1]
         n_parts = 0
         while True:
             line, n_parts = self.cursor.next.line, self._counted(n_parts)
@@ -336,7 +342,7 @@ class ExpressionReader:
                 if self.cursor.is_at("(") and isinstance(found, Name):
                     found = self.called(word._replace(text=f"{found.name}.{by}"))
                     continue
-                found = Part(found, self._grammar.folded(by), line)
+                found = Part(found, self.grammar.folded(by), line)
             elif self.cursor.accept(opens):
                 found = Part(found, self.expression(), line)
                 while self.cursor.accept(","):
@@ -352,7 +358,7 @@ def _number(word: Token) -> float:
     bases = {"0x": 16, "0b": 2, "0o": 8}
     if text[:2] in bases:
         return float(int(text[2:], bases[text[:2]]))
-    with at(str(word.line)):
+    with on(word.line):
         if not (value := float(text)) < 1e300:
             raise BadSyntax(f"{text!r:.60} is given", valid="a number of this earth")
     return value

@@ -15,18 +15,17 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, at, nearest_name
+from clearance.errors import BadProgram, at
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
     ControllerProgram,
-    ControllerWait,
     PoseTarget,
     ProgramRequest,
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
+from clearance.formats.program.expressions import Call, Constant, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
 from clearance.formats.program.fanuc_text import Motion, listing_of
 from clearance.formats.program.fanuc_words import (
@@ -39,6 +38,7 @@ from clearance.formats.program.fanuc_words import (
     WAITING,
 )
 from clearance.formats.program.given import not_in_files
+from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
 from clearance.formats.program.statements import For, Routine, within
 from clearance.formats.program.tokens import Line
@@ -78,22 +78,19 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         routines = {
             one.name: Routine(one.name, Line(1), _ARGUMENTS, one.body) for one in (*others, main)
         }
-        if (asked.asked.entry or main.name).upper() != main.name.upper():
-            fault = f"there is no program {asked.asked.entry!r}"
-            raise BadProgram(fault, where="entry", valid=nearest_name("", [main.name]))
+        entry = asked.asked.entry
+        entry_of("program", [main.name], entry, (entry or "").upper(), main.name)
         language = _Fanuc(asked.asked)
         run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
         statements = (one for listing in (*others, main) for one in within(listing.body))
         counters = {one.name.name for one in statements if isinstance(one, For)}
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
         run.run(main.body)
-        return ControllerProgram(
-            tuple(run.moves), tuple(run.notes), base=BASE, maker="fanuc", left_out=run.left_out
-        )
+        return language.program_of(run)
 
 
 @dataclass(eq=False)
-class _Fanuc:
+class _Fanuc(Language):
     """The instructions of a listing.
 
     Attributes:
@@ -102,46 +99,24 @@ class _Fanuc:
 
     asked: ProgramFile
     share: float = 1.0
-    suffix = ".LS"
-    retiming = frozenset[str]()
+    maker, base, suffix = "fanuc", BASE, ".LS"
+    moving = (*MOVES, *DECIDING)
+    still = (*QUIET, WAIT)
+    timed = (WAIT, *WAITING)
 
     @property
     def state(self) -> Any:
+        """The share of all speeds."""
         return self.share
 
     def moves(self, name: str) -> bool | None:
-        """Whether an instruction moves the robot, or changes points, frames or registers; None for one that is not
-        known."""
-        if name in MOVES or name in DECIDING or name.startswith("$MNU"):
-            return True
-        return False if name in QUIET or name == WAIT else None
-
-    def waits(self, call: Call) -> bool:
-        return call.name in (WAIT, *WAITING)
-
-    def writes(self, call: Call) -> tuple[Expression, ...]:
-        """None: instructions that are passed over change no variables that are read."""
-        return ()
+        """Whether an instruction moves the robot, or changes points, frames or registers."""
+        return True if name.startswith("$MNU") else super().moves(name)
 
     def value_of(self, name: str, run: Execution) -> Any:
         """None, or what is known of an input, which only the controller has."""
-        return (
-            None
-            if name.startswith(("R[", "U", "AR["))
-            else Unknown(f"only the controller knows {name}")
-        )
-
-    def result_of(self, call: Call, run: Execution) -> Any:
-        return Unknown(f"{call.name}() at {call.line}")
-
-    def items(self, values: list[Any], kind: str) -> Any:
-        return values
-
-    def part_of(self, value: Any, by: Any) -> Any:
-        raise TypeError
-
-    def with_part(self, value: Any, by: Any, new: Any) -> None:
-        raise TypeError
+        is_own = name.startswith(("R[", "U", "AR["))
+        return None if is_own else Unknown(f"only the controller knows {name}")
 
     def instruct(self, call: Call, run: Execution) -> None:
         """A motion or a wait; all else moves nothing.
@@ -149,60 +124,49 @@ class _Fanuc:
         Raises:
             BadProgram: a motion that is not read.
         """
-        with at(str(call.line)):
-            if call.name in MOVES:
-                run.add(self._move(call, run).slowed(self.share))
-            elif call.name == OVERRIDE and call.args:
-                self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 100.0)
-            elif call.name in LARGEST_SPEEDS:
-                run.note(UNSAID, f"{call.name} ({call.line})")
-            elif call.name == WAIT:
-                seconds = number(run.evaluated(call.args[0]), call.line, "the time")
-                if seconds > 0.0:
-                    where = call.line.number, seconds, call.line.file, call.line.own
-                    run.add(ControllerWait(*where, reads_on=True))
-            else:
-                run.pass_over(call)
+        if call.name in MOVES:
+            run.add(self._move(call, run).slowed(self.share))
+        elif call.name == OVERRIDE and call.args:
+            self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 100.0)
+        elif call.name in LARGEST_SPEEDS:
+            run.note(UNSAID, f"{call.name} ({call.line})")
+        elif call.name == WAIT:
+            self.wait(call, run)
+        else:
+            run.pass_over(call)
 
     def _move(self, call: Call, run: Execution) -> ControllerMove:
         (constant, speed), kind = call.args, MOVES[call.name]
         assert isinstance(constant, Constant)
         motion: Motion = constant.value
         if motion.calls:
-            run.note(
-                "programs that motions call on their way (TB, TA, DB): not followed",
-                str(call.line),
-            )
+            what = "programs that motions call on their way (TB, TA, DB): not followed"
+            run.note(what, f"{call.line}")
         for word in motion.options:
+            if not _IDLE.fullmatch(word):
+                fault = f"{word} is not read, and may move the target or the way"
+                raise BadProgram(fault, valid="take it out of the motion")
             if re.fullmatch(r"ACC(?!100$)\d+", word):
                 run.note(NOT_FOLLOWED, f"{word} ({call.line})")
-        unread = [word for word in motion.options if not _IDLE.fullmatch(word)]
-        if unread:
-            fault = f"{unread[0]} is not read, and may move the target or the way"
-            raise BadProgram(fault, valid="take it out of the motion")
-        if any(
-            word.startswith("PSPD") for word in motion.options
-        ):  # a share of the speed in a process
-            run.note(UNSAID, f"{call.line}")
+            elif word.startswith("PSPD"):  # a share of the speed in a process
+                run.note(UNSAID, f"{call.line}")
         if not kind or len(motion.points) != (2 if kind == "circ" else 1):
             fault = f"{call.name} with {len(motion.points)} points is not read"
             raise BadProgram(fault, valid="J and L with one, C with two")
-        ends = [self._target(name, one, kind, run, call.line) for name, one in motion.points]
+        ends = [self._target(name, one, kind, run) for name, one in motion.points]
         to, tool = ends[-1]
         return ControllerMove(
-            line=call.line.number,
+            line=call.line,
             kind=kind,  # type: ignore[arg-type]
             to=to,
             tool=tool,
             via=ends[0][0] if kind == "circ" else None,
             zone=self._zone(motion.end),
-            file=call.line.file,
-            own=call.line.own,
             **_speed(kind, motion.unit, run.evaluated(speed), call, run),
         )
 
     def _target(
-        self, name: str, one: Position | None, kind: str, run: Execution, line: Line
+        self, name: str, one: Position | None, kind: str, run: Execution
     ) -> tuple[Target, np.ndarray]:
         """The end of a motion, and the tool on the flange.
 
@@ -214,38 +178,36 @@ class _Fanuc:
                 f"{name} is given a value before", valid="a point that no line changes"
             )
         if one is None:
-            fault = (
-                "a position register" if name.startswith("PR") else "no position of it under /POS"
-            )
+            is_register = name.startswith("PR")
+            fault = "a position register" if is_register else "no position of it under /POS"
             raise BadProgram(f"{name}: {fault}", valid="use P[…] with a position in the file")
         untaught = [key for key, value in one.values.items() if value is None]
         is_joints = "J1" in one.values
         missing = [key for key in (_JOINTS if is_joints else _POSE) if key not in one.values]
         if untaught or missing:
-            raise BadProgram(
-                f"{name} has no {', '.join(untaught or missing)}", valid="a taught position"
-            )
-        tool = self._frame(name, "UTOOL", one.tool, line, run, kind != "ptp" or not is_joints)
+            fault = f"{name} has no {', '.join(untaught or missing)}"
+            raise BadProgram(fault, valid="a taught position")
+        tool = self._frame(name, "UTOOL", one.tool, run, kind != "ptp" or not is_joints)
         values = {key: float(value) for key, value in one.values.items() if value is not None}
         if is_joints:
             axes = tuple(math.radians(values[key]) for key in _JOINTS)
             return AxisTarget(axes, one.external, name), tool
         x, y, z, *turns = (values[key] for key in _POSE)
         pose = pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
-        frame = self._frame(name, "UFRAME", one.frame, line, run, True)
+        frame = self._frame(name, "UFRAME", one.frame, run, True)
         asked = _configuration(one.configuration) if kind == "ptp" else {}
         return PoseTarget(frame @ pose, one.external, name=name, **asked), tool
 
     def _frame(
-        self, name: str, kind: str, taught: int | None, line: Line, run: Execution, needed: bool
+        self, name: str, kind: str, taught: int | None, run: Execution, needed: bool
     ) -> np.ndarray:
         """(4, 4) [m] A frame or a tool by its number, which the program sets or the point has; 0 is none.
 
         Raises:
             BadProgram: they differ, as no controller accepts. MissingKey: the case does not say it.
         """
-        chosen = run.value_of(Name(f"{kind}_NUM", line))
-        current = None if isinstance(chosen, Unknown) else number(chosen, line, f"{kind}_NUM")
+        chosen = run.value_of(Name(f"{kind}_NUM", Line(0)))
+        current = None if isinstance(chosen, Unknown) else number(chosen, f"{kind}_NUM")
         index = taught if current is None else current
         if taught is not None and index != taught and needed:
             fault = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
@@ -254,22 +216,16 @@ class _Fanuc:
             return np.eye(4)
         key, word = f"{kind}[{index or 0:g}]", "frames" if kind == "UFRAME" else "tools"
         given: Mapping[str, Any] = getattr(self.asked, word)
-        is_changed = not isinstance(run.variables.get(key), type(None))
+        is_changed = run.variables.get(key) is not None
         if index is not None and key in given and not is_changed:
             return np.asarray(given[key].matrix())
         if not needed:
             return np.eye(4)
         if index is None:
-            raise BadProgram(
-                f"{name}: no {kind}_NUM is set before", valid=f"write {kind}_NUM=1 before it"
-            )
-        fault = f"{key} is set in the program" if is_changed else f"{key} is not in a listing"
-        raise not_in_files(
-            f"{name}: {fault}",
-            word,
-            key,
-            f'program: {{{word}: {{"{key}": {{xyz: […], rpy: […]}}}}}} in m and rad',
-        )
+            fault = f"{name}: no {kind}_NUM is set before"
+            raise BadProgram(fault, valid=f"write {kind}_NUM=1 before it")
+        fault = "is set in the program" if is_changed else "is not in a listing"
+        raise not_in_files(f"{name}: {key} {fault}", word, key)
 
     def _zone(self, end: str) -> float:
         """[m] The radius of the corner at a motion's end.
@@ -284,12 +240,8 @@ class _Fanuc:
         for key in (end, kind):
             if key in self.asked.zones:
                 return self.asked.zones[key]
-        raise not_in_files(
-            f"{end} does not say where the corner begins",
-            "zones",
-            end,
-            f"program: {{zones: {{{end}: 0.05}}}}, the radius of such corners [m], or {kind} of all",
-        )
+        fault = f"{end} does not say where the corner begins"
+        raise not_in_files(fault, "zones", end, more=f", or {kind} of all")
 
 
 def _speed(kind: str, unit: str, value: Any, call: Call, run: Execution) -> dict[str, Any]:

@@ -8,13 +8,13 @@ from __future__ import annotations
 import math
 import operator
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from clearance.errors import BadProgram, BadSyntax
+from clearance.formats.program.blocks import BlockReader
 from clearance.formats.program.expressions import (
     COMPARED,
-    MOST_DEPTH,
     Call,
     Constant,
     Expression,
@@ -38,7 +38,7 @@ from clearance.formats.program.statements import (
     Unreadable,
     While,
 )
-from clearance.formats.program.tokens import Cursor, Line, text_of, tokens_of
+from clearance.formats.program.tokens import END, Cursor, Line, Token, text_of, tokens_of
 
 _WORD = re.compile(
     r"""(?P<skip>[ \t]+)
@@ -55,14 +55,7 @@ def named(text: str) -> str:
     return re.sub(r":[^\]]*", "", re.sub(r"\s+", "", text)).upper()
 
 
-class _Registers(Grammar):
-    """A grammar in which registers are names (`R[1]`)."""
-
-    def folded(self, name: str) -> str:
-        return named(name)
-
-
-_GRAMMAR = _Registers(
+_GRAMMAR = Grammar(
     binary={
         "OR": (1, lambda a, b: bool(a) or bool(b)),
         "AND": (2, lambda a, b: bool(a) and bool(b)),
@@ -79,7 +72,7 @@ _GRAMMAR = _Registers(
     unary={"!": (6, operator.not_), "-": (6, operator.neg)},
     constants={"ON": True, "OFF": False, "TRUE": True, "FALSE": False},
     index="\0\0",
-    folds=True,
+    fold=named,
 )
 
 _POINT = r"(PR?)\s*\[\s*([^\]:]*)(?::[^\]]*)?\]"
@@ -91,7 +84,6 @@ _SPEED = re.compile(
 _END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGNORECASE)
 _ASSIGNED = re.compile(r"(?is)((?:R|P|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)")
 _JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
-_ENDS = ("ENDIF", "ELSE", "ENDFOR", "=")
 _TIMED = re.compile(
     r"(?i)\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,\s*"
     r"(CALL\s+[\w-]+(\s*\([^()]*\))?|\w+\s*\[[^\]]*\]\s*=\s*[^\s,]+)"
@@ -148,10 +140,11 @@ def listing_of(data: bytes, file: str = "") -> Listing:
     positions = {} if points is None else positions_of(text[points.end() : end.start()])
     rows = text[start.end() : body_end].split("\n")
     first = text.count("\n", 0, start.end()) + 1
-    return Listing(head[1].upper(), _Reader([*_instructions(rows, first, file)], positions).all())
+    instructions = [*_instructions(rows, first, file), Token(END, "", Line(first, file))]
+    return Listing(head[1].upper(), _Reader(instructions, positions).all())
 
 
-def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line, str]]:
+def _instructions(rows: list[str], first: int, file: str) -> Iterator[Token]:
     """The text of each instruction without its number, and its line; remarks are left out."""
     parts, line = list[str](), Line(first, file)
     for number, row in enumerate(rows, first):
@@ -166,22 +159,28 @@ def _instructions(rows: list[str], first: int, file: str) -> Iterator[tuple[Line
         if part.endswith(";"):
             text = " ".join(parts)[:-1].strip()
             if text and not text.startswith(("!", "//", "--")):
-                yield line, text
+                yield Token("instruction", text, line)
             parts = []
     if parts:
-        raise BadSyntax(
-            f"{' '.join(parts)!r:.60} has no end", where=str(line), valid="';', in a whole file"
-        )
+        fault = f"{' '.join(parts)!r:.60} has no end"
+        raise BadSyntax(fault, where=str(line), valid="';', in a whole file")
 
 
-@dataclass(eq=False)
-class _Reader:
+class _Instructions(Cursor):
+    """Goes through instructions, each of which counts as its first word."""
+
+    def is_at(self, *words: str) -> bool:
+        return self.next.kind != END and _first(self.next.text) in words
+
+
+class _Reader(BlockReader):
     """Reads the instructions of a listing."""
 
-    instructions: list[tuple[Line, str]]
-    positions: Mapping[int, Position]
-    at: int = 0
-    depth: int = 0
+    ends = ("ENDIF", "ELSE", "ENDFOR", "=")
+
+    def __init__(self, instructions: Sequence[Token], positions: Mapping[int, Position]) -> None:
+        super().__init__(ExpressionReader(_Instructions(instructions), _GRAMMAR))
+        self.positions = positions
 
     def all(self) -> tuple[Statement, ...]:
         """All statements.
@@ -189,59 +188,28 @@ class _Reader:
         Raises:
             BadSyntax: the end of a block that is none.
         """
-        found = self._body()
-        if self.at < len(self.instructions):
-            line, text = self.instructions[self.at]
-            raise BadSyntax(f"{text!r:.60} ends nothing", where=str(line), valid="a whole file")
-        return tuple(found)
-
-    def _body(self) -> list[Statement]:
-        """Statements up to the end of their block."""
-        found = list[Statement]()
-        while self.at < len(self.instructions) and self._word not in _ENDS:
-            line, text = self.instructions[self.at]
-            self.at += 1
-            found += self._block(line, text) or self._simple(line, text)
+        found, last = self.body(), self.cursor.next
+        if last.kind != END:
+            fault = f"{last.text!r:.60} ends nothing"
+            raise BadSyntax(fault, where=str(last.line), valid="a whole file")
         return found
 
-    @property
-    def _word(self) -> str:
-        return _first(self.instructions[self.at][1])
-
-    def _until(self, line: Line, what: str, *ends: str) -> list[Statement]:
-        """The statements of a block up to one of its ends, which is not taken."""
-        self.depth += 1
-        if self.depth > MOST_DEPTH:
-            raise BadSyntax(f"{what} within {MOST_DEPTH} blocks", where=str(line), valid="fewer")
-        found = self._body()
-        self.depth -= 1
-        if self.at >= len(self.instructions) or self._word not in ends:
-            raise BadSyntax(
-                f"{what} has no {ends[-1]}",
-                where=str(line),
-                valid="a whole file: this one is cut off",
-            )
-        return found
-
-    def _block(self, line: Line, text: str) -> list[Statement]:
-        """A statement that holds others; nothing for another one."""
+    def statement(self) -> list[Statement]:
+        """The statements of the next instruction, and of the block that it begins."""
+        _, text, line = self.cursor.take()
         word = _first(text)
         if word == "FOR":
             return [self._for(line, text)]
         if word == "SELECT":
             return [self._select(line, text)]
-        if word == "IF" and (
-            found := re.fullmatch(r"IF\b(.*)\bTHEN", text, re.IGNORECASE | re.DOTALL)
-        ):
-            return [self._if(line, found[1])]
-        return []
+        found = re.fullmatch(r"IF\b(.*)\bTHEN", text, re.IGNORECASE | re.DOTALL)
+        return [self._if(line, found[1])] if found else self._simple(line, text)
 
     def _if(self, line: Line, condition: str) -> If:
-        branches = [(_condition(condition, line), tuple(self._until(line, "IF", "ELSE", "ENDIF")))]
-        if self._word == "ELSE":
-            self.at += 1
-            branches.append((Constant(True), tuple(self._until(line, "IF", "ENDIF"))))
-        self.at += 1
+        branches = [(_condition(condition, line), self.block(line, "IF", "ELSE", "ENDIF"))]
+        if self.cursor.accept("ELSE"):
+            branches.append((Constant(True), self.block(line, "IF", "ENDIF")))
+        self.cursor.take()
         return If(line, "IF", tuple(branches))
 
     def _select(self, line: Line, text: str) -> If:
@@ -249,14 +217,11 @@ class _Reader:
         condition, action = _split(text[len("SELECT") :])
         value, _, first = condition.partition("=")
         branches = [(_condition(f"{value}={first}", line), self._action(line, action))]
-        while self.at < len(self.instructions) and self._word in ("=", "ELSE"):
-            own, case = self.instructions[self.at]
-            self.at += 1
-            condition, action = _split(case)
-            asked = (
-                Constant(True) if _first(case) == "ELSE" else _condition(f"{value}{condition}", own)
-            )
-            branches.append((asked, self._action(own, action)))
+        while case := self.cursor.accept("=", "ELSE"):
+            condition, action = _split(case.text)
+            is_other = _first(case.text) == "ELSE"
+            asked = Constant(True) if is_other else _condition(f"{value}{condition}", case.line)
+            branches.append((asked, self._action(case.line, action)))
         return If(line, "SELECT", tuple(branches))
 
     def _for(self, line: Line, text: str) -> For:
@@ -264,13 +229,12 @@ class _Reader:
             r"FOR\s+(R\[[^\]]*\])\s*=(.*?)\b(TO|DOWNTO)\b(.*)", text, re.IGNORECASE | re.DOTALL
         )
         if found is None:
-            raise BadSyntax(
-                f"{text!r:.60} cannot be read", where=str(line), valid="FOR R[1]=1 TO 3"
-            )
+            fault = f"{text!r:.60} cannot be read"
+            raise BadSyntax(fault, where=str(line), valid="FOR R[1]=1 TO 3")
         first, last = (_condition(found[i], line) for i in (2, 4))
         step = Constant(1.0 if found[3].upper() == "TO" else -1.0)
-        body = tuple(self._until(line, "FOR", "ENDFOR"))
-        self.at += 1
+        body = self.block(line, "FOR", "ENDFOR")
+        self.cursor.take()
         return For(line, "FOR", Name(named(found[1]), line), first, last, step, body)
 
     def _action(self, line: Line, text: str) -> tuple[Statement, ...]:
@@ -360,7 +324,7 @@ def _condition(text: str, line: Line) -> Expression:
     reader = ExpressionReader(Cursor(tokens, folds=True), _GRAMMAR)
     try:
         found = reader.expression()
-        if reader.cursor.next.kind == "END":
+        if reader.cursor.next.kind == END:
             return found
     except BadSyntax:
         pass

@@ -7,10 +7,10 @@ Not for: what the program does with it (each language).
 from __future__ import annotations
 
 import difflib
+import json
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from dataclasses import asdict, replace
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from clearance.errors import BadProgram, ClearanceError, MissingKey
 from clearance.formats.program.controller_program import (
     ControllerMove,
     ControllerProgram,
-    ControllerWait,
     ProgramRequest,
 )
 from clearance.formats.schema.pose import Pose
@@ -34,13 +33,15 @@ MOST_LACKING = 20
 """Values by name that an error asks for at once."""
 
 
-def not_in_files(fault: str, key: str, name: str, valid: str, where: str = "") -> MissingKey:
+def not_in_files(fault: str, key: str, name: str, before: str = "", more: str = "") -> MissingKey:
     """The error for a value by name that no file of a program has.
 
     Args:
-        key: of the program, one of `NAMED`. valid: what there has to be, as `program: {…}`.
+        key: of the program, one of `NAMED`. before, more: beside what the program may have.
     """
-    error = MissingKey(fault, where=where, valid=valid)
+    unit = ", the radius of such corners [m]" if key == "zones" else " in m and rad"
+    valid = f"{before}program: {{{_written([(key, name)])}}}{unit}{more}"
+    error = MissingKey(fault, valid=valid)
     error.lacks = key, name
     return error
 
@@ -124,7 +125,7 @@ def require_used(
                 without = read(replace(request, asked=asked))
             except ClearanceError:
                 continue
-            if _same(_plain(without), _plain(found)):
+            if _plain(without) == _plain(found):
                 fault = "it changes no move: the program does not use it, or says it itself"
                 raise BadProgram(fault, where=f"{key}.{name}", valid=_nearest(name, words))
 
@@ -141,24 +142,12 @@ def _nearest(name: str, words: list[str]) -> str:
     return f"did you mean {near[0]!r}?" if near else "without it"
 
 
-def _plain(program: ControllerProgram) -> list[ControllerMove | ControllerWait]:
-    """The moves, without the tools that do not matter to them."""
-    return [
+def _plain(program: ControllerProgram) -> str:
+    """The moves to their last digit, without the tools that do not matter to them."""
+    moves = (
         replace(one, tool=np.eye(4))
         if isinstance(one, ControllerMove) and not one.uses_tool
         else one
         for one in program.moves
-    ]
-
-
-def _same(one: Any, other: Any) -> bool:
-    """Whether values are the same to their last part."""
-    if isinstance(one, np.ndarray):
-        return np.array_equal(one, other)
-    if isinstance(one, list):
-        return len(one) == len(other) and all(map(_same, one, other))
-    if not is_dataclass(one):
-        return bool(one == other)
-    return type(one) is type(other) and all(
-        _same(getattr(one, part.name), getattr(other, part.name)) for part in fields(one)
     )
+    return json.dumps([asdict(one) for one in moves], default=np.ndarray.tolist)

@@ -35,8 +35,7 @@ class Grammar:
         binary, unary: operators, how firmly each binds, and what it does.
         constants: words for values. index: the brackets of an index. before_items: words before a bracket of
             values. optional: what is before the name of an argument (then `:=`); empty where `=` behind it is.
-        folds: whether capital letters mean the same as small ones. spelling: how names are written then, by their
-            small letters; others are in small letters.
+        fold: a name as it is compared, where capital letters mean the same as small ones; else None.
     """
 
     binary: Mapping[str, tuple[int, Callable[..., Any]]]
@@ -45,11 +44,8 @@ class Grammar:
     index: str = "[]"
     optional: str = ""
     before_items: tuple[str, ...] = ()
-    folds: bool = False
-    spelling: Mapping[str, str] = field(default_factory=dict)
+    fold: Callable[[str], str] | None = None
 
     def folded(self, name: str) -> str:
         """A name as it is compared."""
-        if not self.folds:
-            return name
-        return self.spelling.get(name.lower()) or Spelled(name.lower(), str(name))
+        return name if self.fold is None else self.fold(name)

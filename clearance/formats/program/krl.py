@@ -8,24 +8,23 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, at, nearest_name
+from clearance.errors import BadProgram, at
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
     ControllerProgram,
-    ControllerWait,
     PoseTarget,
     ProgramRequest,
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Expression, Name, Unknown, number
+from clearance.formats.program.expressions import Call, Expression, Name, Unknown
 from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, SPLINE, SYSTEM, WAIT
 from clearance.formats.program.krl_files import files_of
 from clearance.formats.program.krl_settings import (
@@ -46,6 +45,7 @@ from clearance.formats.program.krl_values import (
     matrix_of,
     why,
 )
+from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import Assign
 from clearance.formats.schema.program_file import ProgramFile
@@ -81,27 +81,17 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                 run.persistent.put(
                     one.target.name, f"{one.target.name} ({one.line})", run.variables
                 )
-        run.run(files.routines[_entry(files.entries, asked.asked.entry)].body)
+        entry = asked.asked.entry
+        entry = entry_of("procedure", files.entries, entry, (entry or "").upper(), files.entries[0])
+        run.run(files.routines[entry].body)
         bodies = [routine.body for routine in files.routines.values()]
         unread = [*not_followed(bodies, run)]
-        notes = (*run.notes, *language.notes())
-        doubts = (*run.doubts, *language.root.doubts(asked.asked), *unread)
-        return ControllerProgram(
-            tuple(run.moves), notes, doubts=doubts, maker="kuka", left_out=run.left_out
-        )
-
-
-def _entry(names: Sequence[str], asked: str | None) -> str:
-    """The procedure that runs: the one that is asked for, or the first."""
-    if asked is None or asked.upper() in names:
-        return names[0] if asked is None else asked.upper()
-    raise BadProgram(
-        f"no procedure {asked!r}", where="entry", valid=nearest_name(asked.upper(), names)
-    )
+        doubts = (*language.root.doubts(asked.asked), *unread)
+        return language.program_of(run, language.notes(), doubts)
 
 
 @dataclass(eq=False)
-class _Krl:
+class _Krl(Language):
     """The instructions of KRL, and where the robot is.
 
     Attributes:
@@ -117,28 +107,20 @@ class _Krl:
     axes: Mapping[str, float] | None = None
     root: RobotRoot = field(default_factory=RobotRoot)
     is_automatic: bool = False
-    suffix = ".src"
-    retiming = frozenset((WAIT,))
+    maker, suffix = "kuka", ".src"
+    moving = frozenset((*MOVES, SPLINE, "BAS"))
+    still = frozenset((*QUIET, *FUNCTIONS, AGGREGATE, WAIT))
+    timed = retiming = (WAIT,)
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""
         note = "automatic operation is assumed: $T1 and $T2 are FALSE"
         return [note] if self.is_automatic else []
 
-    # what the run asks
-
     @property
     def state(self) -> Any:
+        """Where the robot is."""
         return (None if self.pose is None else self.pose.tolist(), self.unit, self.axes)
-
-    def moves(self, name: str) -> bool | None:
-        """Whether an instruction decides where the robot goes; None for one that is not known."""
-        if name in MOVES or name in (SPLINE, "BAS"):
-            return True
-        return False if name in QUIET or name in FUNCTIONS or name in (AGGREGATE, WAIT) else None
-
-    def waits(self, call: Call) -> bool:
-        return call.name == WAIT
 
     def writes(self, call: Call) -> tuple[Expression, ...]:
         """All arguments of a procedure that is in no file; instructions change no variables that are read."""
@@ -150,9 +132,6 @@ class _Krl:
             self.is_automatic = True
             return False
         return None
-
-    def items(self, values: list[Any], kind: str) -> Any:
-        return values
 
     def part_of(self, value: Any, by: Any) -> Any:
         """A part of an aggregate, or an element of an array; texts of pendants have none."""
@@ -182,27 +161,22 @@ class _Krl:
         Raises:
             BadInput: a move that is not read.
         """
-        with at(str(call.line)):
-            if call.name in MOVES:
-                self._move(call, run)
-            elif call.name == WAIT:
-                seconds = number(run.evaluated(call.args[0]), call.line, "the time")
-                if seconds > 0.0:
-                    run.add(ControllerWait(call.line.number, seconds, call.line.file))
-            elif call.name == "BAS":
-                command, *value = [run.evaluated(one) for one in call.args] or [Unknown("nothing")]
-                Settings(run, call.line).bas(command, value[0] if value else 0)
-            elif call.name == SPLINE:
-                raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
-            elif call.args:  # an interrupt or a trigger, and what it calls
-                (called,) = (str(run.evaluated(one)) for one in call.args)
-                if called != SYSTEM:
-                    run.run_concurrently(call.name, called, call.line)
-                run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
-            else:
-                run.pass_over(call)
-
-    # moves
+        if call.name in MOVES:
+            self._move(call, run)
+        elif call.name == WAIT:
+            self.wait(call, run, reads_on=False)
+        elif call.name == "BAS":
+            command, *value = [run.evaluated(one) for one in call.args] or [Unknown("nothing")]
+            Settings(run, call.line).bas(command, value[0] if value else 0)
+        elif call.name == SPLINE:
+            raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
+        elif call.args:  # an interrupt or a trigger, and what it calls
+            (called,) = (str(run.evaluated(one)) for one in call.args)
+            if called != SYSTEM:
+                run.run_concurrently(call.name, called)
+            run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
+        else:
+            run.pass_over(call)
 
     def _move(self, call: Call, run: Execution) -> None:
         first = call.args[0]
@@ -216,19 +190,16 @@ class _Krl:
         kind = MOVES[call.name]
         targets = [_aggregate(run.evaluated(one)) for one in call.args]
         if len(targets) != (2 if kind == "circ" else 1) or call.name.endswith("CIRC_REL"):
-            raise BadProgram(
-                f"{call.name} with {len(targets)} targets is not read",
-                valid="CIRC with two, LIN, PTP",
-            )
+            fault = f"{call.name} with {len(targets)} targets is not read"
+            raise BadProgram(fault, valid="CIRC with two, LIN, PTP")
         if call.name.endswith("_REL"):
             targets = [self._absolute(targets[0], "#TOOL" in call.named, settings)]
         require_followed(settings)
         to = self._target(kind, targets[-1], _name_of(call.args[-1]), settings)
-        via = (
-            self._target("via", {**dict.fromkeys("ABC", 0.0), **targets[0]}, "", settings)
-            if kind == "circ"
-            else None
-        )
+        via = None
+        if kind == "circ":
+            point = {**dict.fromkeys("ABC", 0.0), **targets[0]}
+            via = self._target("via", point, "", settings)
         move = self._made(call, kind, to, via, settings)
         run.add(move)
         self._reached(move, settings)
@@ -243,20 +214,18 @@ class _Krl:
         is_free = isinstance(to, AxisTarget) and isinstance(settings.value("$TOOL"), Unknown)
         words = [name for name in call.named if name.startswith("C_")]
         moved = ControllerMove(
-            line=call.line.number,
+            line=call.line,
             kind=kind,  # type: ignore[arg-type]
             to=to,
             tool=np.eye(4) if is_free else settings.frame("$TOOL", "tools"),
             via=via,
             orientation=settings.orientation(kind),
             zone=settings.zone(kind, words, self.asked.zones),
-            file=call.line.file,
             **speeds,
         )
         override = Call("$OV_PRO", (), {}, call.line)
-        return moved.slowed(
-            settings.run.share_of_speeds(settings.value("$OV_PRO"), override, 100.0)
-        )
+        share = settings.run.share_of_speeds(settings.value("$OV_PRO"), override, 100.0)
+        return moved.slowed(share)
 
     def _absolute(self, way: Aggregate, in_tool: bool, settings: Settings) -> Aggregate:
         """The target of a relative move.
@@ -265,19 +234,16 @@ class _Krl:
             BadInput: where the robot is before is not known, or the tool is to turn.
         """
         if any(re.fullmatch("E[1-6]", key) and value != 0.0 for key, value in way.items()):
-            raise BadProgram(
-                "a relative move of external axes is not read", valid="write a move to them"
-            )
+            fault = "a relative move of external axes is not read"
+            raise BadProgram(fault, valid="write a move to them")
         if any(key in AXES for key in way):
             if self.axes is None:
-                raise BadProgram(
-                    "the axes before this move are not known", valid="write PTP to axes before it"
-                )
+                fault = "the axes before this move are not known"
+                raise BadProgram(fault, valid="write PTP to axes before it")
             return {key: self.axes[key] + _numeric(way.get(key, 0.0)) for key in AXES}
         if any(way.get(key, 0.0) != 0.0 for key in "ABC"):
-            raise BadProgram(
-                "a relative move that turns the tool is not read", valid="write a move to a pose"
-            )
+            fault = "a relative move that turns the tool is not read"
+            raise BadProgram(fault, valid="write a move to a pose")
         step = np.array([_numeric(way.get(key, 0.0)) * MM for key in "XYZ"])
         pose = self._now(settings)
         pose[:3, 3] += pose[:3, :3] @ step if in_tool else step
@@ -286,15 +252,10 @@ class _Krl:
     def _now(self, settings: Settings) -> np.ndarray:
         """(4, 4) `base_from_tool` [m] before a move, in the frames that hold for it."""
         if self.pose is None or self.unit != settings.unit:
-            raise BadProgram(
-                "the tool's pose before this move is not known, and this move counts from it",
-                valid="X, Y, Z, A, B and C, or a move to a pose before it",
-            )
-        return (
-            inverse(settings.frame("$BASE", "frames"))
-            @ self.pose
-            @ settings.frame("$TOOL", "tools")
-        )
+            fault = "the tool's pose before this move is not known, and this move counts from it"
+            raise BadProgram(fault, valid="X, Y, Z, A, B and C, or a move to a pose before it")
+        base, tool = settings.frame("$BASE", "frames"), settings.frame("$TOOL", "tools")
+        return np.asarray(inverse(base) @ self.pose @ tool)
 
     def _target(self, kind: str, given: Aggregate, name: str, settings: Settings) -> Target:
         """The axes or the pose that an aggregate says."""
@@ -312,10 +273,8 @@ class _Krl:
         full = {**(self.axes or {}), **{key: _numeric(given[key]) for key in AXES if key in given}}
         missing = [key for key in AXES if key not in full]
         if missing:
-            raise BadProgram(
-                f"no {', '.join(missing)}, and where it is before is not known",
-                valid="all six axes",
-            )
+            fault = f"no {', '.join(missing)}, and where it is before is not known"
+            raise BadProgram(fault, valid="all six axes")
         return AxisTarget(tuple(math.radians(full[key]) for key in AXES), external, name)
 
     def _pose(self, given: Aggregate, settings: Settings) -> np.ndarray:
@@ -379,9 +338,8 @@ def _aggregate(value: Any) -> Aggregate:
         BadInput: it is not known, or none.
     """
     if not isinstance(value, Mapping):
-        raise BadProgram(
-            f"the target is not known: {why(value)}", valid="the file that declares it beside"
-        )
+        valid = "the file that declares it beside"
+        raise BadProgram(f"the target is not known: {why(value)}", valid=valid)
     return value
 
 

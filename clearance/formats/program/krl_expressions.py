@@ -24,7 +24,7 @@ from clearance.formats.program.expressions import (
 )
 from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.krl_values import composed, quotient
-from clearance.formats.program.tokens import Cursor, Line, Token
+from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 
 MOVES = {
     spline + kind + relative: kind.lower()
@@ -38,11 +38,8 @@ WAIT, SPLINE = "WAIT SEC", "SPLINE"
 """Calls that stand for a wait, and for a spline, which is not read."""
 
 QUIET = frozenset(
-    (
-        *("INTERRUPT", "TRIGGER", "PULSE", "ANOUT", "ANIN", "DIGIN", "SIGNAL", "EXT"),
-        *("EXTFCT", "EXTP", "EXTFCTP", "STRUC", "ENUM", "IMPORT", "$OUT"),
-        *("SET_CD_PARAMS", "MSGNOTIFY", "MSGQUIT", "ERR_CLEAR", "ON_ERROR_PROCEED"),
-    )
+    "INTERRUPT TRIGGER PULSE ANOUT ANIN DIGIN SIGNAL EXT EXTFCT EXTP EXTFCTP STRUC ENUM IMPORT $OUT "
+    "SET_CD_PARAMS MSGNOTIFY MSGQUIT ERR_CLEAR ON_ERROR_PROCEED".split()
 )
 """Instructions that move nothing, whatever stands behind them."""
 
@@ -86,14 +83,7 @@ def _of(kind: type, act: Callable[..., Any]) -> Callable[..., Any]:
     return acted
 
 
-class _Capitals(Grammar):
-    """A grammar whose names are compared in capitals."""
-
-    def folded(self, name: str) -> str:
-        return name.upper()
-
-
-GRAMMAR = _Capitals(
+GRAMMAR = Grammar(
     binary={
         "==": (1, operator.eq),
         "<>": (1, operator.ne),
@@ -117,7 +107,7 @@ GRAMMAR = _Capitals(
         "+": (8, operator.pos),
     },
     constants={"TRUE": True, "FALSE": False},
-    folds=True,
+    fold=str.upper,
 )
 
 
@@ -178,9 +168,9 @@ def parameters_of(cursor: Cursor) -> tuple[tuple[str, ...], frozenset[str]]:
         name = cursor.expect_kind("name", "a parameter").text.upper()
         words = list[str]()
         while not cursor.is_at(",", ")"):
-            words.append(cursor.take().text.upper())
-            if words[-1] == "\n":
+            if cursor.next.kind == NEWLINE:
                 cursor.refuse("')'")
+            words.append(cursor.take().text.upper())
         found.append(name)
         if "IN" not in words:
             returned.add(name)

@@ -48,7 +48,7 @@ def files_of(asked: ProgramRequest) -> Files:
     groups, types = _groups(asked), dict[str, str]()
     own = groups.pop(_stem(asked.shown))
     modules = [one for name, group in groups.items() for one in _modules(name, group, types)]
-    mine = [module_of(list(_lines(source)), types) for source in own]
+    mine = [module_of(_lines(source), types) for source in own]
     if not mine[-1].routines:
         raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
     routines = {name: one for module in (*modules, *mine) for name, one in module.routines.items()}
@@ -74,11 +74,11 @@ def _modules(name: str, group: Sequence[Source], types: dict[str, str]) -> list[
 
     Data without procedures (`$config.dat`) are for all.
     """
-    plain = [module_of(list(_lines(source)), {}) for source in group]
+    plain = [module_of(_lines(source), {}) for source in group]
     own = set[str]()
     if any(module.routines for module in plain):
         own = {one for module in plain for one in _own_names(module)}
-    named = ([_named(line, own, name) for line in _lines(source)] for source in group)
+    named = ((_named(line, own, name) for line in _lines(source)) for source in group)
     return [module_of(lines, types) for lines in named]
 
 

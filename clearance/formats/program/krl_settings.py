@@ -53,24 +53,12 @@ FIRST: Mapping[str, Any] = {
 }
 """Variables that every program has."""
 
-SAVED = (
-    "$VEL",
-    "$VEL_AXIS",
-    "$ACC",
-    "$TOOL",
-    "$BASE",
-    "$IPO_MODE",
-    "$APO",
-    "$ORI_TYPE",
-    "$CIRC_TYPE",
-)
+SAVED = tuple("$VEL $VEL_AXIS $ACC $TOOL $BASE $IPO_MODE $APO $ORI_TYPE $CIRC_TYPE".split())
 """Variables that `WITH` changes for one move; all others say nothing of its way."""
 
 _COMMANDS = frozenset(
-    (
-        *("#INITMOV", "#TOOL", "#BASE", "#FRAMES", "#VEL_PTP", "#VEL_CP", "#ACC_PTP", "#ACC_CP"),
-        *("#PTP_PARAMS", "#CP_PARAMS", "#PTP_DAT", "#CP_DAT", "#ACC_GLUE"),
-    )
+    "#INITMOV #TOOL #BASE #FRAMES #VEL_PTP #VEL_CP #ACC_PTP #ACC_CP #PTP_PARAMS #CP_PARAMS #PTP_DAT "
+    "#CP_DAT #ACC_GLUE".split()
 )
 
 
@@ -130,9 +118,8 @@ class Settings:
             return matrix_of(value, name)
         index = re.match(r"(?:(?:TOOL|BASE)_DATA\[)?(\d+)(?:\]| of it )", why(value))
         named = f"{name[1:]}_DATA[{index[1]}]" if index else name
-        valid = f'program: {{{key}: {{"{named}": {{xyz: […], rpy: […]}}}}}} in m and rad'
         fault = f"{name} is not known: {why(value)}"
-        raise not_in_files(fault, key, named, f"a file beside that sets it, or {valid}")
+        raise not_in_files(fault, key, named, "a file beside that sets it, or ")
 
     def numbered(self, array: str, index: Any, none: str) -> Any:
         """The tool or base of a number; 0 is none."""
@@ -141,11 +128,8 @@ class Settings:
         if index == 0:
             return self.value(none)
         found = self.part(array, int(index))
-        return (
-            Unknown(f"{array}[{int(index)}] is not in the files")
-            if isinstance(found, Unknown)
-            else found
-        )
+        missing = Unknown(f"{array}[{int(index)}] is not in the files")
+        return missing if isinstance(found, Unknown) else found
 
     def tool(self, index: Any) -> Any:
         return self.numbered("TOOL_DATA", index, "$NULLFRAME")
@@ -186,9 +170,8 @@ class Settings:
             self.set("$APO", self.value("DEF_APO_CDIS"), "CDIS")
             self.share(100.0)
         elif command in ("#TOOL", "#BASE"):
-            self.set(
-                f"${command[1:]}", self.tool(value) if command == "#TOOL" else self.base(value)
-            )
+            found = self.tool(value) if command == "#TOOL" else self.base(value)
+            self.set(f"${command[1:]}", found)
         elif command in ("#VEL_PTP", "#PTP_PARAMS", "#PTP_DAT"):
             self._of_joints(command, value)
         elif command in ("#VEL_CP", "#CP_PARAMS", "#CP_DAT"):
@@ -228,10 +211,8 @@ class Settings:
         turn, circle = self.value("$ORI_TYPE"), self.value("$CIRC_TYPE")
         found = _ORIENTATIONS.get((str(turn), "#BASE" if kind == "lin" else str(circle)))
         if found is None:
-            raise BadProgram(
-                f"$ORI_TYPE is {turn} and $CIRC_TYPE {circle}",
-                valid="#VAR and #BASE, #CONSTANT and #BASE, or #CONSTANT and #PATH",
-            )
+            valid = "#VAR and #BASE, #CONSTANT and #BASE, or #CONSTANT and #PATH"
+            raise BadProgram(f"$ORI_TYPE is {turn} and $CIRC_TYPE {circle}", valid=valid)
         return found
 
     def speeds(self, kind: str) -> dict[str, Any]:
@@ -279,12 +260,7 @@ class Settings:
         if word in zones:
             return zones[word]
         lacks = "$APO.CDIS, its length, is not in the files" if by_length else "is no length"
-        raise not_in_files(
-            f"{word}: {lacks}",
-            "zones",
-            word,
-            f"program: {{zones: {{{word}: 0.05}}}}, the radius of such corners [m]",
-        )
+        raise not_in_files(f"{word}: {lacks}", "zones", word)
 
 
 def _corner_of_joints(data: Any) -> Aggregate:
@@ -312,16 +288,7 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "SORI_TYP": lambda settings, data: _part(data, "ORI_TYP"),
     **{
         name: lambda settings, *_: Unknown("only the controller knows it")
-        for name in (
-            "VARSTATE",
-            "SLOAD",
-            "SACC_CP",
-            "SACC_JOINT",
-            "SJERK",
-            "STRLEN",
-            "CAST_FROM",
-            "CAST_TO",
-        )
+        for name in "VARSTATE SLOAD SACC_CP SACC_JOINT SJERK STRLEN CAST_FROM CAST_TO".split()
     },
     **{name: _of_number(act) for name, act in (("ABS", abs), ("SQRT", math.sqrt))},
     **{name: _of_number(act, math.radians) for name, act in (("SIN", math.sin), ("COS", math.cos))},
@@ -371,13 +338,8 @@ def _shared_names(routines: Sequence[Routine]) -> set[str]:
             if isinstance(one, Assign) and one.is_own and isinstance(one.target, Name)
         }
         for one in statements:
-            name = (
-                assigned(one.target)
-                if isinstance(one, Assign)
-                else one.name
-                if isinstance(one, For)
-                else None
-            )
+            name = assigned(one.target) if isinstance(one, Assign) else None
+            name = one.name if isinstance(one, For) else name
             if name is not None and name.name not in own and name.name not in routine.parameters:
                 found.add(name.name)
     return found

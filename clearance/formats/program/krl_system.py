@@ -23,13 +23,11 @@ from clearance.geometry.pose import inverse
 from clearance.world.notice import listed
 
 QUIET = frozenset(
-    (
-        *("$ACT_BASE", "$ACT_TOOL", "$ADVANCE", "$ANIN", "$ANOUT", "$BWDSTART", "$CURR_RED", "$CYCFLAG", "$ERR"),
-        *("$FLAG", "$H_POS", "$IN", "$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3", "$LOOP_MSG", "$MSG_T", "$OUT"),
-        *("$OV_PRO", "$OV_ROB", "$PRO_MODE", "$SOFTN_END", "$SOFTP_END", "$TIMER", "$TIMER_STOP", "$TORQMON"),
-        *("$VEL_EXTAX", "$ACC_AXIS", "$ACC_EXTAX", "$JERK", "$GEAR_JERK", "$CP_VEL_TYPE", "$RED_VEL", "$RED_ACC"),
-    )
-)  # fmt: skip
+    "$ACT_BASE $ACT_TOOL $ADVANCE $ANIN $ANOUT $BWDSTART $CURR_RED $CYCFLAG $ERR $FLAG $H_POS $IN $LOAD "
+    "$LOAD_A1 $LOAD_A2 $LOAD_A3 $LOOP_MSG $MSG_T $OUT $OV_PRO $OV_ROB $PRO_MODE $SOFTN_END $SOFTP_END $TIMER "
+    "$TIMER_STOP $TORQMON $VEL_EXTAX $ACC_AXIS $ACC_EXTAX $JERK $GEAR_JERK $CP_VEL_TYPE $RED_VEL "
+    "$RED_ACC".split()
+)
 """Those that say nothing of the way of a move."""
 
 _NULL = np.eye(4)
@@ -60,9 +58,8 @@ def require_followed(settings: Settings) -> None:
 def _frame(settings: Settings, name: str) -> np.ndarray:
     value = settings.value(name)
     if not isinstance(value, Mapping):
-        raise BadProgram(
-            f"{name} is not known: {why(value)}", valid="give it a value that the files decide"
-        )
+        valid = "give it a value that the files decide"
+        raise BadProgram(f"{name} is not known: {why(value)}", valid=valid)
     return matrix_of(value, name)
 
 

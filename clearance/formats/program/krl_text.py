@@ -5,13 +5,13 @@ Not for: what instructions do (`krl`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 from clearance.errors import BadSyntax
+from clearance.formats.program.blocks import BlockReader
 from clearance.formats.program.expressions import (
-    MOST_DEPTH,
     Call,
     Constant,
     Expression,
@@ -37,8 +37,6 @@ from clearance.formats.program.statements import (
     RETURN,
     Assign,
     Do,
-    For,
-    If,
     Leave,
     Routine,
     Statement,
@@ -46,13 +44,18 @@ from clearance.formats.program.statements import (
     While,
     assigned,
 )
-from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
-
-_Branch = tuple[Expression | None, tuple[Statement, ...]]
+from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token
 
 _JUMPS = ("RETURN", "EXIT", "GOTO", "BRAKE", "RESUME")  # decide which lines run
 
-_ENDS = ("END", "ENDFCT", "DEF", "DEFFCT")
+_BLOCKS = ("IF", "SWITCH", "WHILE", "FOR", "REPEAT", "LOOP", SPLINE, "PTP_SPLINE")
+
+_HEADS = ("DEF", "DEFFCT")
+
+_ENDS = (
+    *("END", "ENDFCT", *_HEADS, "ELSE", "ENDIF", "CASE", "DEFAULT", "ENDSWITCH", "ENDFOR"),
+    *("ENDWHILE", "UNTIL", "ENDLOOP"),
+)
 
 
 @dataclass(frozen=True)
@@ -68,146 +71,126 @@ class Module:
     declared: tuple[Statement, ...]
 
 
-def module_of(lines: Sequence[list[Token]], types: dict[str, str]) -> Module:
+def module_of(rows: Iterable[list[Token]], types: dict[str, str]) -> Module:
     """The statements of a file.
 
     Args:
-        lines: the words of each, with its end. types: of the variables of all files, INT and REAL; those of this
-            one are added.
+        rows: the words of each line, with its end. types: of the variables of all files, INT and REAL; those of
+            this one are added.
 
     Raises:
         BadSyntax: a block or a procedure without its end, a move that cannot be read: with the line.
     """
-    return _Reader(list(lines), types).module()
+    words, public, last = list[Token](), set[Line](), Line(1)
+    for row in rows:
+        last = row[0].line
+        is_public = row[0].text.upper() == "GLOBAL" and row[1].text.upper() in _HEADS
+        public |= {last} if is_public else set()
+        words += row[is_public:]
+    cursor = Cursor([*words, Token(END, "", last)], folds=True)
+    return _Reader(Expressions(cursor, GRAMMAR), types, public).module()
 
 
-class _Reader:
+class _Reader(BlockReader):
     """Reads the lines of a file."""
 
-    def __init__(self, lines: list[list[Token]], types: dict[str, str]) -> None:
-        self._lines, self._at = lines, 0
-        self._types, self._own = types, dict[str, str]()
-        self._public, self._depth = set[str](), 0
+    ends = _ENDS
+
+    def __init__(
+        self, expressions: Expressions, types: dict[str, str], public: Collection[Line]
+    ) -> None:
+        super().__init__(expressions)
+        self._types, self._own, self._in_routine = types, dict[str, str](), False
+        self._public = public
 
     def module(self) -> Module:
         """All of it."""
-        routines, declared = dict[str, Routine](), list[Statement]()
-        while self._at < len(self._lines):
-            if self._word in ("DEF", "DEFFCT") or self._second in ("DEF", "DEFFCT"):
+        routines, declared, public = dict[str, Routine](), list[Statement](), set[str]()
+        while self.cursor.next.kind != END:
+            declared += self.body()
+            if self.cursor.next.kind != END:
+                is_public = self.cursor.next.line in self._public
                 routine = self._routine()
                 routines.setdefault(routine.name.upper(), routine)
-            else:
-                declared += self._body(("DEF", "DEFFCT"), within_routine=False)
-        public = frozenset(self._public) | frozenset([*routines][:1])
-        return Module(routines, public, tuple(declared))
-
-    @property
-    def _word(self) -> str:
-        return self._lines[self._at][0].text.upper()
-
-    @property
-    def _second(self) -> str:
-        """The word after GLOBAL."""
-        return self._lines[self._at][1].text.upper() if self._word == "GLOBAL" else ""
-
-    def _taken(self) -> Expressions:
-        """The words of the next line, which is then behind."""
-        self._at += 1
-        return Expressions(Cursor(self._lines[self._at - 1], folds=True), GRAMMAR)
+                public.update([routine.name.upper()] if is_public else [])
+        return Module(routines, frozenset((*public, *[*routines][:1])), tuple(declared))
 
     def _routine(self) -> Routine:
         """A procedure or a function, at whose head this is."""
-        cursor = self._taken().cursor
-        is_public = cursor.accept("GLOBAL")
-        head = cursor.expect("DEF", "DEFFCT")
+        cursor = self.cursor
+        head = cursor.expect(*_HEADS)
         end = "END" if head.text.upper() == "DEF" else "ENDFCT"
         names = [cursor.expect_kind("name", "a name")]
         while not cursor.is_at("("):
-            names.append(cursor.take())
-            if names[-1].kind == NEWLINE:
+            if cursor.next.kind == NEWLINE:
                 cursor.refuse("'('")
+            names.append(cursor.take())
         parameters, returned = parameters_of(cursor)
-        self._own = {}
-        self._public.update([names[-1].text.upper()] if is_public else [])
-        body = [one for one in self._body(_ENDS) if _declared(one) not in parameters]
-        if self._at >= len(self._lines) or self._word != end:
-            raise BadSyntax(
-                f"{names[-1].text} has no {end}",
-                where=str(head.line),
-                valid="a whole file: this one is cut off",
-            )
-        self._at += 1
-        return Routine(names[-1].text, head.line, parameters, tuple(body), returned=returned)
+        self._row()
+        self._own, self._in_routine = {}, True
+        body = self.block(head.line, names[-1].text, end)
+        self._in_routine = False
+        cursor.take()
+        own = tuple(one for one in body if _declared(one) not in parameters)
+        return Routine(names[-1].text, head.line, parameters, own, returned=returned)
 
-    def _body(self, ends: Sequence[str], within_routine: bool = True) -> list[Statement]:
-        """Statements up to one of some words."""
-        found = list[Statement]()
-        while self._at < len(self._lines) and self._word not in ends and self._second not in ends:
-            found += self._statement(within_routine)
+    def _row(self) -> list[Token]:
+        """The words of a line from here, and its end, which are then behind."""
+        found = [self.cursor.take()]
+        while found[-1].kind not in (NEWLINE, END):
+            found.append(self.cursor.take())
         return found
 
-    def _until(self, line: Line, word: str, *ends: str) -> list[Statement]:
-        """The statements of a block up to one of its ends, which is not taken.
-
-        Raises:
-            BadSyntax: it has none, or is too deep in others.
-        """
-        self._depth += 1
-        if self._depth > MOST_DEPTH:
-            raise BadSyntax(f"{word} within {MOST_DEPTH} blocks", where=str(line), valid="fewer")
-        found = self._body((*ends, *_ENDS))
-        self._depth -= 1
-        if self._at >= len(self._lines) or self._word not in ends:
-            raise BadSyntax(
-                f"{word} has no {ends[-1]}",
-                where=str(line),
-                valid="a whole file: this one is cut off",
-            )
-        return found
-
-    def _statement(self, within_routine: bool) -> list[Statement]:
+    def statement(self) -> list[Statement]:
         """The statements of the next line, and of the block that begins there."""
-        word, line = self._word, self._lines[self._at][0].line
-        if (block := self._block(word, line)) is not None:
-            return [block]
-        read = self._taken()
-        if word == "GLOBAL" and read.cursor.after(1).text.upper() == "INTERRUPT":
+        cursor, first = self.cursor, self.cursor.next
+        word, line = first.text.upper(), first.line
+        if cursor.accept(*_BLOCKS):
+            return [self._block(word, line)]
+        row = self._row()
+        if [one.text.upper() for one in row[:2]] == ["GLOBAL", "INTERRUPT"]:
             word = "INTERRUPT"
+        read = Expressions(Cursor(row, folds=True), GRAMMAR)
         if word in ("DECL", "GLOBAL", *TYPES):
-            return self._declared(read, within_routine)
+            return self._declared(read)
         if word in QUIET:
-            return [Do(line, Call(word, called_beside(self._lines[self._at - 1]), {}, line))]
+            return [Do(line, Call(word, called_beside(row), {}, line))]
         if word in NOTHING:
             return []
         try:
             return self._simple(word, line, read)
         except BadSyntax:
-            marks = {one.text for one in self._lines[self._at - 1]}
+            marks = {one.text for one in row}
             if word in (*MOVES, "WAIT") or "{" in marks:
                 raise
             if "=" in marks and "(" not in marks:
                 unread = Constant(Unknown(f"{word} is given what is not read"))
                 return [Assign(line, Name(word, line), unread)]
-            return [Unreadable(line, word, word in _JUMPS)] if within_routine else []
+            return [Unreadable(line, word, word in _JUMPS)] if self._in_routine else []
 
-    def _block(self, word: str, line: Line) -> Statement | None:
-        """The statement that a block is, which begins with a word; None for another one."""
+    def _block(self, word: str, line: Line) -> Statement:
+        """The statement that a block is, whose first word is taken."""
         match word:
             case "IF":
-                return self._if(line)
+                return self.branches(line, word, self.expression(), "THEN", "", "ENDIF")
             case "SWITCH":
-                return self._switch(line)
-            case "FOR":
-                return self._for(line)
+                return self.cases(line, word, "ENDSWITCH")
             case "WHILE":
-                return self._while(line)
-            case "REPEAT":
-                return self._repeat(line)
-            case "LOOP":
-                return self._loop(line)
-            case "SPLINE" | "PTP_SPLINE":
-                return self._spline(line)
-        return None
+                return self.loop(line, word, "", "ENDWHILE")
+            case "FOR":
+                found = self.counted(line, word, "=", "")
+                whole = Assign(line, found.name, Operation(as_integer, (found.name,), line))
+                return replace(found, body=(whole, *found.body))
+            case "REPEAT" | "LOOP":
+                end = "UNTIL" if word == "REPEAT" else "ENDLOOP"
+                body = self.block(line, word, end)
+                self.cursor.take()
+                condition = self.expression() if word == "REPEAT" else Constant(True)
+                return While(line, word, condition, body, at_end=word == "REPEAT")
+        while not self.cursor.is_at("ENDSPLINE", *_ENDS) and self.cursor.next.kind != END:
+            self._row()
+        self.cursor.accept("ENDSPLINE")
+        return Do(line, Call(SPLINE, (), {}, line))  # it is refused when it is run
 
     def _simple(self, word: str, line: Line, read: Expressions) -> list[Statement]:
         """A statement of one line."""
@@ -231,7 +214,7 @@ class _Reader:
         call = target if isinstance(target, Call) else Call(word, (), {}, line)
         return [Do(line, call)]
 
-    def _declared(self, read: Expressions, within_routine: bool) -> list[Statement]:
+    def _declared(self, read: Expressions) -> list[Statement]:
         """The values that a declaration gives; an array begins empty."""
         cursor, found = read.cursor, list[Statement]()
         is_global = False
@@ -245,7 +228,7 @@ class _Reader:
                 if cursor.take().text == "[":
                     while cursor.next.kind != NEWLINE and not cursor.accept("]"):
                         cursor.take()
-            own = within_routine and not is_global
+            own = self._in_routine and not is_global
             (self._own if own else self._types)[name.name] = kind
             if cursor.accept("="):
                 value = self._of_type(name, read.expression())
@@ -279,78 +262,6 @@ class _Reader:
         if cursor.expect("SEC", "FOR").text.upper() == "SEC":
             return Do(line, Call(WAIT, (read.expression(),), {}, line))
         return While(line, "WAIT FOR", read.expression(), (), at_end=True)
-
-    def _if(self, line: Line) -> If:
-        read = self._taken()
-        read.cursor.take()
-        condition = read.expression()
-        read.cursor.expect("THEN")
-        branches: list[_Branch] = [(condition, tuple(self._until(line, "IF", "ELSE", "ENDIF")))]
-        if self._word == "ELSE":
-            self._at += 1
-            branches.append((None, tuple(self._until(line, "IF", "ENDIF"))))
-        self._at += 1
-        return If(line, "IF", tuple(branches))
-
-    def _switch(self, line: Line) -> If:
-        read = self._taken()
-        read.cursor.take()
-        value = read.expression()
-        self._until(line, "SWITCH", "CASE", "DEFAULT", "ENDSWITCH")
-        branches = list[_Branch]()
-        while self._word != "ENDSWITCH":
-            case = self._taken()
-            condition: Expression | None = None
-            if case.cursor.take().text.upper() == "CASE":
-                condition = _one_of(value, case)
-            branches.append(
-                (condition, tuple(self._until(line, "SWITCH", "CASE", "DEFAULT", "ENDSWITCH")))
-            )
-        self._at += 1
-        return If(line, "SWITCH", tuple(branches))
-
-    def _for(self, line: Line) -> For:
-        read = self._taken()
-        cursor = read.cursor
-        cursor.take()
-        name = Name(GRAMMAR.folded(cursor.expect_kind("name", "a variable").text), line)
-        cursor.expect("=")
-        first = read.expression()
-        cursor.expect("TO")
-        last = read.expression()
-        step = read.expression() if cursor.accept("STEP") else None
-        whole = Assign(line, name, Operation(as_integer, (name,), line))
-        body = (whole, *self._until(line, "FOR", "ENDFOR"))
-        self._at += 1
-        return For(line, "FOR", name, first, last, step, body)
-
-    def _while(self, line: Line) -> While:
-        read = self._taken()
-        read.cursor.take()
-        condition = read.expression()
-        body = tuple(self._until(line, "WHILE", "ENDWHILE"))
-        self._at += 1
-        return While(line, "WHILE", condition, body)
-
-    def _repeat(self, line: Line) -> While:
-        self._at += 1
-        body = tuple(self._until(line, "REPEAT", "UNTIL"))
-        read = self._taken()
-        read.cursor.take()
-        return While(line, "REPEAT", read.expression(), body, at_end=True)
-
-    def _loop(self, line: Line) -> While:
-        self._at += 1
-        body = tuple(self._until(line, "LOOP", "ENDLOOP"))
-        self._at += 1
-        return While(line, "LOOP", Constant(True), body)
-
-    def _spline(self, line: Line) -> Do:
-        """A spline, whose parts are passed over: it is refused when it is run."""
-        while self._at < len(self._lines) and self._word not in ("ENDSPLINE", *_ENDS):
-            self._at += 1
-        self._at += 1
-        return Do(line, Call(SPLINE, (), {}, line))
 
 
 def _move(word: str, line: Line, read: Expressions) -> Call:
@@ -390,11 +301,3 @@ def _declared(one: Statement) -> str:
 def _require_end(cursor: Cursor) -> None:
     if cursor.next.kind != NEWLINE:
         cursor.refuse("the end of the line")
-
-
-def _one_of(value: Expression, read: Expressions) -> Expression:
-    """True where a value is one of those that a CASE lists."""
-    line, cases = read.cursor.next.line, [read.expression()]
-    while read.cursor.accept(","):
-        cases.append(read.expression())
-    return Operation(lambda found, *given: found in given, (value, *cases), line)

@@ -11,7 +11,7 @@ from itertools import islice
 
 import numpy as np
 
-from clearance.errors import BadProgram, MissingKey, at, nearest_name
+from clearance.errors import at
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -21,16 +21,11 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.rapid_data import (
-    tool_record,
-    work_object_record,
-)
-from clearance.formats.program.rapid_grammar import grammar
+from clearance.formats.program.language import entry_of
+from clearance.formats.program.rapid_data import tool_record, work_object_record
+from clearance.formats.program.rapid_grammar import GRAMMAR
 from clearance.formats.program.rapid_instructions import Rapid
 from clearance.formats.program.rapid_text import Modules
-from clearance.formats.program.rapid_words import (
-    WORDS,
-)
 from clearance.formats.program.tokens import text_of
 from clearance.formats.schema.program_file import ProgramFile
 
@@ -41,30 +36,26 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
     Raises:
         BadInput: with the file and the line.
     """
-    rules, modules = grammar(WORDS), Modules()
+    given, modules = asked.asked, Modules()
     with at(asked.shown):
-        modules.read(text_of(asked.data), rules)
+        modules.read(text_of(asked.data))
         for file, data in asked.beside.items():
-            modules.read(text_of(data, file), rules, file)
-        given = asked.asked
-        known_data = {
-            **{name.lower(): tool_record(one.matrix()) for name, one in given.tools.items()},
-            **{
-                name.lower(): work_object_record(one.matrix()) for name, one in given.frames.items()
-            },
-        }
-        language = Rapid(modules, known_data, {name.lower(): name for name in given.units})
-        skip = frozenset(rules.folded(one) for one in given.skip)
-        run = Execution(language, modules.routines, skip)
-        language.declare(run)
-        language.keep(run)
-        run.enter(modules.routines[_entry(modules, given.entry)])
-        moves = _with_zones(run.moves, language.zones)
-        notes = (*run.notes, *language.assumed, *_on_cycles(moves))
-        doubts = (*run.doubts, *_replaced(modules, given))
-        return ControllerProgram(
-            tuple(moves), notes, doubts=doubts, maker="abb", left_out=run.left_out
+            modules.read(text_of(data, file), file)
+        tools, frames = (
+            {name.lower(): record(one.matrix()) for name, one in poses.items()}
+            for poses, record in ((given.tools, tool_record), (given.frames, work_object_record))
         )
+        language = Rapid(modules, tools | frames, {name.lower(): name for name in given.units})
+        run = Execution(language, modules.routines, frozenset(map(GRAMMAR.folded, given.skip)))
+        language.declare(run)
+        own = modules.routines.items()
+        names = [name for name, one in own if not one.parameters and not one.is_thread]
+        asked_name = (given.entry or "").lower()
+        entry = entry_of("procedure", names, given.entry, asked_name, "main")
+        run.enter(modules.routines[entry])
+        run.moves = _with_zones(run.moves, language.zones)
+        notes = (*language.assumed, *_on_cycles(run.moves))
+        return language.program_of(run, notes, _replaced(modules, given))
 
 
 def _replaced(modules: Modules, given: ProgramFile) -> Iterator[str]:
@@ -85,28 +76,6 @@ def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:
     return [
         "the procedure runs once: in cycles the way from its end to its beginning is not measured"
     ]
-
-
-def _entry(modules: Modules, asked: str | None) -> str:
-    """The procedure that runs.
-
-    Raises:
-        BadInput: there is none of the name; MissingKey: no `main`, and several others.
-    """
-    names = [
-        name for name, one in modules.routines.items() if not one.parameters and not one.is_thread
-    ]
-    if asked is not None:
-        if asked.lower() not in names:
-            valid = nearest_name(asked, names)
-            raise BadProgram(f"there is no procedure {asked!r}", where="entry", valid=valid)
-        return asked.lower()
-    if "main" in names or len(names) == 1:
-        return "main" if "main" in names else names[0]
-    if not names:
-        raise BadProgram("no procedure that runs by itself is in it", valid="PROC main()")
-    fault = f"there is no procedure main, but {', '.join(map(str, names))}"
-    raise MissingKey(fault, where="entry", valid="the procedure that runs")
 
 
 def _with_zones(

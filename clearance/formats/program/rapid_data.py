@@ -167,6 +167,32 @@ def flange_from_tool(value: list[Any]) -> np.ndarray:
     return pose_of(frame)
 
 
+def speed_of(value: Any, options: Mapping[str, float]) -> tuple[float, float, float | None]:
+    """[m/s] and [rad/s] of the tool, and the time that the move asks for in their place [s].
+
+    Args:
+        options: arguments of the move that replace them, V [mm/s] and T [s].
+    """
+    tcp, turn, *_ = record(value, 4, is_flagged=False)
+    speed, time = 1e-3 * options.get("v", tcp), options.get("t")
+    if time is not None and not time > 0.0:
+        raise BadProgram(f"T is {time:g} s", valid="more than 0")
+    if not speed > 0.0:
+        raise BadProgram(f"the speed is {speed:g} m/s", valid="more than 0")
+    return speed, math.radians(turn), time
+
+
+def zone_of(value: Any, options: Mapping[str, float]) -> tuple[float, float]:
+    """[m] The radii of a zone for the tool's point, which Z replaces, and its orientation; 0 where it stops."""
+    stops, point, turn, *_ = record(value, 7, is_flagged=True)
+    if stops:
+        return 0.0, 0.0
+    point = options.get("z", point)
+    if point < 0.0 or turn < 0.0:
+        raise BadProgram(f"a zone of {point:g} mm", valid="0 or more")
+    return 1e-3 * point, 1e-3 * turn
+
+
 class Work(NamedTuple):
     """A work object: its pose (4, 4) [m] on a mechanical unit, or on the controller's base if that is empty."""
 
@@ -199,12 +225,18 @@ def _offs(target: list[Any], *way: float) -> list[Any]:
     return [[a + b for a, b in zip(target[0], way, strict=True)], *target[1:]]
 
 
-def rel_tool(
-    target: list[Any], way: tuple[float, float, float], rx: float, ry: float, rz: float
+def _rel_tool(
+    target: list[Any],
+    x: float,
+    y: float,
+    z: float,
+    rx: float = 0.0,
+    ry: float = 0.0,
+    rz: float = 0.0,
 ) -> list[Any]:
     """`RelTool`: moved along the tool's axes [mm], then turned about its x, the new y and the new z [degrees]."""
     pose = pose_of(target)
-    pose[:3, 3] += 1e-3 * pose[:3, :3] @ np.array(way)
+    pose[:3, 3] += 1e-3 * pose[:3, :3] @ np.array([x, y, z])
     for angle, axis in ((rx, 0), (ry, 1), (rz, 2)):
         turn = [0.0, 0.0, 0.0]
         turn[axis] = math.radians(angle)
@@ -212,18 +244,22 @@ def rel_tool(
     return [*frame_of(pose), *target[2:]]
 
 
-def array_of(first: Any, sizes: list[float]) -> Any:
-    """An array of a datum of a routine: its value, or a first value for each item."""
+def array_of(first: Any, *sizes: float) -> Any:
+    """An array that is declared: its value, or a first value for each item.
+
+    Raises:
+        BadProgram: a size that is none.
+    """
     if isinstance(first, list) or not sizes:
         return first
     if not 1 <= sizes[0] <= 1000:
-        raise ValueError(sizes[0])
+        raise BadProgram(f"an array of {sizes[0]:g} items", valid="1 to 1000")
     item = Unknown("an item of an array has no value") if first is None else first
-    return [array_of(item, sizes[1:]) for _ in range(int(sizes[0]))]
+    return [array_of(item, *sizes[1:]) for _ in range(int(sizes[0]))]
 
 
-def _rounded(value: float, digits: float = 0.0) -> float:
-    return math.floor(abs(value) * 10.0**digits + 0.5) / 10.0**digits * math.copysign(1.0, value)
+def _rounded(value: float, dec: float = 0.0, more: float = 0.5) -> float:
+    return math.floor(abs(value) * 10.0**dec + more) / 10.0**dec * math.copysign(1.0, value)
 
 
 def _turned(z: float, y: float, x: float) -> list[float]:
@@ -233,7 +269,9 @@ def _turned(z: float, y: float, x: float) -> list[float]:
 
 
 VALUES: Mapping[str, Callable[..., Any]] = {
+    "%array": array_of,
     "Offs": _offs,
+    "RelTool": _rel_tool,
     "PoseMult": lambda a, b: frame_of(pose_of(a) @ pose_of(b)),
     "PoseInv": lambda a: frame_of(inverse(pose_of(a))),
     "PoseVect": lambda a, way: frame_of(pose_of(a) @ pose_of([way, _HERE[1]]))[0],
@@ -248,7 +286,7 @@ VALUES: Mapping[str, Callable[..., Any]] = {
     "Pow": math.pow,
     "Exp": math.exp,
     "Round": _rounded,
-    "Trunc": lambda a: float(math.trunc(a)),
+    "Trunc": lambda a, dec=0.0: _rounded(a, dec, 0.0),
     "Sin": lambda a: math.sin(math.radians(a)),
     "Cos": lambda a: math.cos(math.radians(a)),
     "Tan": lambda a: math.tan(math.radians(a)),

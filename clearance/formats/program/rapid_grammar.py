@@ -7,9 +7,13 @@ from __future__ import annotations
 
 import operator
 import re
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from clearance.formats.program.expressions import COMPARED, numeric
-from clearance.formats.program.grammar import Grammar
+from clearance.formats.program.grammar import Grammar, Spelled
+from clearance.formats.program.rapid_words import WORDS as KNOWN
 
 WORDS = re.compile(
     r"""(?P<skip>\s+|![^\n]*|%%%.*?%%%)
@@ -23,17 +27,16 @@ WORDS = re.compile(
 
 def added(a: object, b: object) -> object:
     """Numbers, texts and positions are added."""
-    if isinstance(a, list) and isinstance(b, list):
-        return [numeric(operator.add)(x, y) for x, y in zip(a, b, strict=True)]
     if isinstance(a, str) and isinstance(b, str):
         return a + b
-    return numeric(operator.add)(a, b)
+    return _by_item(operator.add, a, b)
 
 
-def _difference(a: object, b: object) -> object:
+def _by_item(act: Callable[[Any, Any], Any], a: object, b: object) -> object:
+    """An operator on numbers, or on each item of two positions."""
     if isinstance(a, list) and isinstance(b, list):
-        return [numeric(operator.sub)(x, y) for x, y in zip(a, b, strict=True)]
-    return numeric(operator.sub)(a, b)
+        return [numeric(act)(x, y) for x, y in zip(a, b, strict=True)]
+    return numeric(act)(a, b)
 
 
 def _product(a: object, b: object) -> object:
@@ -48,35 +51,28 @@ def _product(a: object, b: object) -> object:
     return numeric(operator.mul)(a, b)
 
 
-def grammar(spelling: dict[str, str]) -> Grammar:
-    """How RAPID writes expressions.
-
-    Args:
-        spelling: how known names are written, by their small letters.
-    """
-    return Grammar(
-        binary={
-            "OR": (1, lambda a, b: bool(a) or bool(b)),
-            "XOR": (1, lambda a, b: bool(a) != bool(b)),
-            "AND": (2, lambda a, b: bool(a) and bool(b)),
-            "=": (4, operator.eq),
-            "<>": (4, operator.ne),
-            **{word: (4, act) for word, act in COMPARED.items()},
-            "+": (5, added),
-            "-": (5, _difference),
-            "*": (6, _product),
-            "/": (6, numeric(operator.truediv)),
-            "DIV": (6, numeric(lambda a, b: float(int(a / b)))),
-            "MOD": (6, numeric(lambda a, b: a - b * int(a / b))),
-        },
-        unary={
-            "NOT": (3, operator.not_),
-            "-": (7, lambda a: _product(-1.0, a)),
-            "+": (7, lambda a: a),
-        },
-        constants={"true": True, "false": False},
-        index="{}",
-        optional="\\",
-        folds=True,
-        spelling=spelling,
-    )
+GRAMMAR = Grammar(
+    binary={
+        "OR": (1, lambda a, b: bool(a) or bool(b)),
+        "XOR": (1, lambda a, b: bool(a) != bool(b)),
+        "AND": (2, lambda a, b: bool(a) and bool(b)),
+        "=": (4, operator.eq),
+        "<>": (4, operator.ne),
+        **{word: (4, act) for word, act in COMPARED.items()},
+        "+": (5, added),
+        "-": (5, partial(_by_item, operator.sub)),
+        "*": (6, _product),
+        "/": (6, numeric(operator.truediv)),
+        "DIV": (6, numeric(lambda a, b: float(int(a / b)))),
+        "MOD": (6, numeric(lambda a, b: a - b * int(a / b))),
+    },
+    unary={
+        "NOT": (3, operator.not_),
+        "-": (7, lambda a: _product(-1.0, a)),
+        "+": (7, lambda a: a),
+    },
+    constants={"true": True, "false": False},
+    index="{}",
+    optional="\\",
+    fold=lambda name: KNOWN.get(name.lower()) or Spelled(name.lower(), str(name)),
+)

@@ -6,16 +6,14 @@ Source: ABB, Technical reference manual, RAPID instructions, functions and data 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from clearance.errors import BadProgram, ClearanceError, at
+from clearance.errors import BadProgram, ClearanceError
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
-    ControllerWait,
     PoseTarget,
     Target,
 )
@@ -31,7 +29,7 @@ from clearance.formats.program.expressions import (
     known,
     number,
 )
-from clearance.formats.program.rapid_arguments import speed_of, zone_of
+from clearance.formats.program.language import Language
 from clearance.formats.program.rapid_data import (
     NO_AXIS,
     RECORDS,
@@ -43,10 +41,11 @@ from clearance.formats.program.rapid_data import (
     external_of,
     flange_from_tool,
     pose_of,
-    rel_tool,
+    speed_of,
     work_of,
+    zone_of,
 )
-from clearance.formats.program.rapid_text import Declaration, Modules
+from clearance.formats.program.rapid_text import FIRST, Declaration, Modules
 from clearance.formats.program.rapid_words import (
     LIMITS,
     MOVES,
@@ -62,10 +61,11 @@ from clearance.formats.program.rapid_words import (
 from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
 from clearance.formats.program.remarks import WAITS as TAKES_TIME
 from clearance.formats.program.statements import assigned
+from clearance.formats.program.tokens import on
 
 
 @dataclass(eq=False)
-class Rapid:
+class Rapid(Language):
     """What RAPID's instructions do.
 
     Attributes:
@@ -82,8 +82,12 @@ class Rapid:
     share: float = 1.0
     fastest: float = math.inf
     zones: dict[int, tuple[float, float]] = field(default_factory=dict)
-    suffix = ""
+    maker = "abb"
+    moving = frozenset((*MOVES, *OTHER_MOVES, "ConfJ"))
+    still = frozenset(WORDS.values())
+    timed = WAITS | PAUSES
     retiming = LIMITS | WAITS | PAUSES | {"VelSet"}
+    values = VALUES
 
     @property
     def state(self) -> Any:
@@ -99,26 +103,14 @@ class Rapid:
         return found
 
     def declare(self, run: Execution) -> None:
-        """Gives all data of modules their first values."""
+        """Gives all data of modules their first values, and says which of them are kept between runs, unless the
+        case says them."""
         for name, one in self.modules.declared.items():
             if name not in run.variables:
                 run.value_of(Name(name, one.line))
-
-    def keep(self, run: Execution) -> None:
-        """Says which data of modules keep their values between runs, unless the case says them."""
         for name, one in self.modules.declared.items():
             if one.kind == "PERS" and name not in self.known_data:
                 run.persistent.put(name, f"{name} ({one.line})", run.variables)
-
-    def moves(self, name: str) -> bool | None:
-        """Whether an instruction decides where the robot goes; None for one that is not known."""
-        if name in MOVES or name in OTHER_MOVES or name == "ConfJ":
-            return True
-        return False if name.lower() in WORDS or name == "%array" else None
-
-    def waits(self, call: Call) -> bool:
-        """Whether a word waits for a time, a person, a signal or another machine."""
-        return call.name in WAITS or call.name in PAUSES
 
     def value_of(self, name: str, run: Execution) -> Any:
         """The value of a datum of a module, of the case, or of the controller."""
@@ -128,21 +120,17 @@ class Rapid:
         if one is None:
             return STANDARD.get(name)
         run.variables[name] = Unknown(f"{name!r} is declared by itself at {one.line}")
-        run.variables[name] = self._first_value(one, run)
+        with on(one.line):
+            run.variables[name] = self._first_value(one, run)
         return run.variables[name]
 
     def _first_value(self, one: Declaration, run: Execution) -> Any:
         if one.value is not None:
             return run.evaluated(one.value)
-        usual = {"num": 0.0, "dnum": 0.0, "bool": False, "string": ""}.get(one.type_name)
+        usual = FIRST.get(one.type_name)
         if one.sizes:
-            sizes = [number(run.evaluated(size), one.line, "a size") for size in one.sizes]
-            return array_of(usual, sizes)
+            return array_of(usual, *(number(run.evaluated(size), "a size") for size in one.sizes))
         return Unknown(f"{one.name!r} has no value at {one.line}") if usual is None else usual
-
-    def items(self, values: list[Any], kind: str) -> Any:
-        """A record or an array."""
-        return values
 
     def part_of(self, value: Any, by: Any) -> Any:
         """A field of a record, or an item of an array."""
@@ -173,32 +161,21 @@ class Rapid:
         if name in MOVES:
             self._move(call, MOVES[name], run)
         elif name == "WaitTime":
-            seconds = (
-                number(run.evaluated(call.args[0]), call.line, "the time") if call.args else 0.0
-            )
-            if seconds > 0.0:
-                reads_on = "inpos" not in call.named
-                where = call.line.number, seconds, call.line.file
-                run.add(ControllerWait(*where, reads_on=reads_on))
+            self.wait(call, run, "inpos" not in call.named)
         elif name in WAITS:
-            raise BadProgram(
-                f"{name} waits for what only the controller knows",
-                where=str(call.line),
-                valid=f"skip: [{name}] to leave such waits out",
-            )
+            fault = f"{name} waits for what only the controller knows"
+            raise BadProgram(fault, valid=f"skip: [{name}] to leave such waits out")
         elif name == "CONNECT":
-            self._connect(call, run)
+            trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
+            run.run_concurrently("trap", trap)
+            run.note("traps that move nothing", f"{trap} ({call.line})")
         elif name in ("SingArea", "CirPathMode") and {*call.named} <= {"off", "pathframe"}:
             run.pass_over(call)
         elif name in OTHER_MOVES:
-            fault = f"{name} changes where the robot goes, in a way that is not read"
-            is_turned = name == "SingArea"
             off = "SingArea\\Off, so that the tool keeps its orientation"
-            raise BadProgram(
-                fault,
-                where=str(call.line),
-                valid=off if is_turned else "take it out of the program",
-            )
+            valid = off if name == "SingArea" else "take it out of the program"
+            fault = f"{name} changes where the robot goes, in a way that is not read"
+            raise BadProgram(fault, valid=valid)
         else:
             self._set(call, run)
 
@@ -213,7 +190,7 @@ class Rapid:
             share, fastest = (run.evaluated(one) for one in call.args)
             self.share = run.share_of_speeds(share, call, 100.0)
             is_known = not isinstance(fastest, Unknown)
-            self.fastest = number(fastest, call.line, call.name) if is_known else math.inf
+            self.fastest = number(fastest, call.name) if is_known else math.inf
             if not is_known:
                 run.note(UNSAID, f"{call.name} ({call.line})")
         run.forget_written(call)
@@ -235,83 +212,70 @@ class Rapid:
         one = self.modules.declared.get(name.name)
         return one is not None and one.kind == "CONST"
 
-    def _connect(self, call: Call, run: Execution) -> None:
-        trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
-        run.run_concurrently("trap", trap, call.line)
-        run.note("traps that move nothing", f"{trap} ({call.line})")
-
     def result_of(self, call: Call, run: Execution) -> Any:
         """The value of a function."""
         if call.name == "Present":
             (one,) = call.args
             return isinstance(one, Name) and one.name in run.frames[-1]
-        args = [run.evaluated(one) for one in call.args]
-        named = {name: run.evaluated(one) for name, one in call.named.items()}
-        if call.name in ("ATan2", "Round") and "dec" in named:
-            args.append(named["dec"])
-        for one in (*args, *named.values()):
-            if isinstance(one, Unknown):
-                run.forget_written(call)
-                return one
-        try:
-            if call.name == "%array":
-                return array_of(args[0], args[1:])
-            if call.name == "RelTool":
-                target, *way = args
-                turns = (named.get("rx", 0.0), named.get("ry", 0.0), named.get("rz", 0.0))
-                return rel_tool(target, (way[0], way[1], way[2]), *turns)
-            if call.name in VALUES:
-                return VALUES[call.name](*args)
-        except ClearanceError:
-            raise
-        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError):
-            given = ", ".join(f"{one!r:.40}" for one in args)
-            raise BadProgram(
-                f"{call.name} has no value for {given}", where=str(call.line)
-            ) from None
-        run.forget_written(call)
-        return Unknown(f"{call.name} at {call.line}")
+        return super().result_of(call, run)
 
     def _move(self, call: Call, rule: MoveRule, run: Execution) -> None:
         _require_plain(call, rule)
-        line = call.line
         asked = {
             "target": call.args[rule.to],
             "speed": call.args[rule.speed],
             "zone": call.args[rule.zone],
             "tool": call.args[rule.tool],
-            "work object": call.named.get("wobj", Name("wobj0", line)),
+            "work object": call.named.get("wobj", Name("wobj0", call.line)),
+            **({"point on the arc": call.args[0]} if rule.to == 1 else {}),
         }
-        if rule.to == 1:
-            asked = {"point on the arc": call.args[0], **asked}
-        given = {
-            what: known(run.evaluated(one), line, f"the {what}") for what, one in asked.items()
+        given = {what: known(run.evaluated(one), f"the {what}") for what, one in asked.items()}
+        options = {
+            key: number(run.evaluated(call.named[key]), key.upper())
+            for key in ("v", "t", "z")
+            if key in call.named
         }
-        with _expecting_data(call):
-            work = work_of(given["work object"], self.units)
-            speed, turn_speed, time = speed_of(given["speed"], call, run)
-            via = None
-            if rule.to == 1:
-                via = self._target(call, given["point on the arc"], call.args[0], work, run)
-            to = self._target(call, given["target"], call.args[rule.to], work, run)
-            point, turn = zone_of(given["zone"], call, run)
-            if not speed > 0.0:
-                raise BadProgram(f"the speed is {speed:g} m/s", valid="more than 0")
-            move = ControllerMove(
-                line.number, rule.kind, to, flange_from_tool(given["tool"]), via, file=line.file
+        try:
+            move, zone = self._made(call, rule, given, options, run)
+        except ClearanceError:
+            raise
+        except (LookupError, TypeError, ValueError):
+            fault, valid = (
+                "is given data of another kind",
+                "a target, speeddata, zonedata, tooldata",
             )
-        move = replace(move, time=time)
+            raise BadProgram(f"{call.name} {fault}", valid=valid) from None
+        if call.name.startswith("Arc"):
+            run.note(UNSAID, f"{call.name} ({call.line})")
+        if "conc" in call.named or call.name.endswith("Sync"):  # something goes on beside the move
+            word = "\\Conc" if "conc" in call.named else call.name
+            run.note(TAKES_TIME, f"{word} ({call.line})")
+        if max(zone) > 0.0:
+            self.zones[len(run.moves)] = zone
+        run.add(move.slowed(self.share))
+
+    def _made(
+        self,
+        call: Call,
+        rule: MoveRule,
+        given: Mapping[str, Any],
+        options: Mapping[str, float],
+        run: Execution,
+    ) -> tuple[ControllerMove, tuple[float, float]]:
+        """The move of an instruction, and the radii of its zone."""
+        work = work_of(given["work object"], self.units)
+        speed, turn_speed, time = speed_of(given["speed"], options)
+        via = None
+        if rule.to == 1:
+            via = self._target(call, given["point on the arc"], call.args[0], work, run)
+        to = self._target(call, given["target"], call.args[rule.to], work, run)
+        zone = zone_of(given["zone"], options)
+        tool = flange_from_tool(given["tool"])
+        move = ControllerMove(call.line, rule.kind, to, tool, via, time=time)
         if rule.kind != "ptp":
             speed = min(speed, 1e-3 * self.fastest / self.share)
             move = replace(move, speed=speed, turn_speed=turn_speed, orientation="path")
-        if call.name.startswith("Arc"):
-            run.note(UNSAID, f"{call.name} ({line})")
-        if "conc" in call.named or call.name.endswith("Sync"):  # something goes on beside the move
-            word = "\\Conc" if "conc" in call.named else call.name
-            run.note(TAKES_TIME, f"{word} ({line})")
-        if max(point, turn) > 0.0:
-            self.zones[len(run.moves)] = (point, turn)
-        run.add(move.slowed(self.share))
+        return move, zone
 
     def _target(
         self, call: Call, value: Any, one: Expression, work: Work, run: Execution
@@ -319,11 +283,8 @@ class Rapid:
         name = _shown(one, run)
         if call.name == "MoveAbsJ":
             axes, external = value
-            return AxisTarget(
-                tuple(math.radians(one) for one in axes if abs(one) < NO_AXIS),
-                external_of(external),
-                name,
-            )
+            own = tuple(math.radians(one) for one in axes if abs(one) < NO_AXIS)
+            return AxisTarget(own, external_of(external), name)
         trans, rot, flags, external = value
         pose, more = work.pose @ pose_of([trans, rot]), external_of(external)
         found = PoseTarget(pose, more, name=name, unit=work.unit)
@@ -336,30 +297,14 @@ def _require_plain(call: Call, rule: MoveRule) -> None:
     """Nothing, if a move has all its arguments, and none that changes its way.
 
     Raises:
-        BadProgram: with the line.
+        BadProgram: it has not.
     """
     for name in ("corr", "track", "weave", "sync"):
         if name in call.named:
-            fault = f"\\{name} changes the way"
-            raise BadProgram(fault, where=str(call.line), valid="take the argument out")
+            raise BadProgram(f"\\{name} changes the way", valid="take the argument out")
     if len(call.args) <= rule.tool:
         fault = f"{call.name} has {len(call.args)} of its arguments"
-        raise BadProgram(fault, where=str(call.line), valid="target, speed, zone and tool")
-
-
-@contextmanager
-def _expecting_data(call: Call) -> Iterator[None]:
-    """Says of data of another kind that they are, and where."""
-    with at(str(call.line)):
-        try:
-            yield
-        except ClearanceError:
-            raise
-        except (LookupError, TypeError, ValueError):
-            raise BadProgram(
-                f"{call.name} is given data of another kind",
-                valid="a target, speeddata, zonedata, tooldata",
-            ) from None
+        raise BadProgram(fault, valid="target, speed, zone and tool")
 
 
 def _shown(one: Expression, run: Execution) -> str:

@@ -96,17 +96,7 @@ UNKNOWN_VALUES = frozenset(
 
 WORDS = {
     word.lower(): word
-    for words in (
-        MOVES,
-        OTHER_MOVES,
-        WAITS,
-        STILL,
-        WRITES,
-        UNKNOWN_VALUES,
-        VALUES,
-        ("RelTool", "Present"),
-    )
-    for word in words
+    for word in (*MOVES, *OTHER_MOVES, *WAITS, *STILL, *WRITES, *UNKNOWN_VALUES, *VALUES, "Present")
 }
 """All of them as they are written, by their small letters."""
 

@@ -58,10 +58,10 @@ class Remarks:
         if isinstance(value, Unknown):
             self.note(UNSAID, f"{call.name} ({call.line})")
             return 1.0
-        share = number(value, call.line, call.name) / whole
+        share = number(value, call.name) / whole
         if not 0.0 < share <= 1.0:
-            fault, valid = f"{call.name} is {value:g}", f"more than 0, at most {whole:g}"
-            raise BadProgram(fault, where=str(call.line), valid=valid)
+            valid = f"more than 0, at most {whole:g}"
+            raise BadProgram(f"{call.name} is {value:g}", valid=valid)
         if share < 1.0:
             self.note("shares of all speeds are followed", f"{call.name} {value:g} ({call.line})")
         return share

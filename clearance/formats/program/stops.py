@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.errors import BadProgram, at
 from clearance.formats.program.controlled_arm import ControlledArm
-from clearance.formats.program.controller_program import ControllerMove, ControllerWait, place_of
+from clearance.formats.program.controller_program import ControllerMove, ControllerWait
 
 NO_WAY = 1e-9
 """[m] and sine of a turn: a move that is shorter is none."""
@@ -48,10 +48,10 @@ class Stops:
                 waits = isinstance(other, ControllerWait) and other.reads_on
                 if why and (waits or why == ONLY_TURNS):
                     text = "a wait follows a corner zone" if waits else f"a corner zone, and {why}"
-                    text = f"{place_of(one)}: {text}: the tool is taken to stop"
+                    text = f"{one.line}: {text}: the tool is taken to stop"
                     self.cut.append(f"{text}, and the controller may cut the corner")
                 elif why:
-                    self.notes.append(f"{place_of(one)}: the tool stops, since {why}")
+                    self.notes.append(f"{one.line}: the tool stops, since {why}")
                 before = replace(one, zone=0.0) if why else one
             yield before if isinstance(one, ControllerMove) and before else one
 
@@ -71,8 +71,8 @@ class Stops:
         if one is self.first:
             return "it begins there"
         if not np.array_equal(one.tool, other.tool):
-            with at(place_of(one)):
-                fault = f"it ends in a corner zone, and {place_of(other)} has another tool"
+            with at(str(one.line)):
+                fault = f"it ends in a corner zone, and {other.line} has another tool"
                 raise BadProgram(fault, valid="write it without a zone, or use the same tool")
         moved = self._moved(before, one), self._moved(one, other)
         if "" in moved:

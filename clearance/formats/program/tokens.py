@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import NamedTuple
 
-from clearance.errors import BadSyntax
+from clearance.errors import BadSyntax, ClearanceError
 
 
 class Line(NamedTuple):
@@ -22,6 +23,17 @@ class Line(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.file} line {self.number}".lstrip()
+
+
+@contextmanager
+def on(line: Line) -> Iterator[None]:
+    """Says of an error on which line it arises, unless one within says it."""
+    try:
+        yield
+    except ClearanceError as error:
+        if "line " not in error.where:
+            error.where = f"{line}: {error.where}".removesuffix(": ")
+        raise
 
 
 class Token(NamedTuple):

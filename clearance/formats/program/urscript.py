@@ -17,7 +17,6 @@ from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
     ControllerProgram,
-    ControllerWait,
     PoseTarget,
     ProgramRequest,
     Target,
@@ -32,9 +31,10 @@ from clearance.formats.program.expressions import (
     known,
     number,
 )
+from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.statements import Do, Routine, Statement
-from clearance.formats.program.tokens import Line, text_of
-from clearance.formats.program.urscript_text import UrScript, labels_of, script_of
+from clearance.formats.program.tokens import text_of
+from clearance.formats.program.urscript_text import labels_of, script_of
 from clearance.formats.program.urscript_words import (
     BLOCKING,
     BLOCKING_BEFORE,
@@ -79,15 +79,16 @@ def read_urscript(asked: ProgramRequest) -> ControllerProgram:
                 raise DuplicateName(f"{name!r} is defined twice", where=file)
             script.routines |= another.routines
             data_of_others += another.body
-        tool = asked.asked.tools.get(TCP)
+        tool, entry = asked.asked.tools.get(TCP), asked.asked.entry
         language = _UrScript(None if tool is None else tool.matrix(), labels_of(text))
         run = Execution(language, script.routines, frozenset(asked.asked.skip))
-        entry = _entry(script, asked.asked.entry)
+        names = [name for name in script.outer if not script.routines[name].is_thread]
+        is_bare = entry is None and bool(script.body or not names)
+        name = "" if is_bare else entry_of("function", names, entry, entry or "", "")
         run.run(_outside(data_of_others, run.routines))
-        run.run(script.body if entry is None else _outside(script.body, run.routines))
-        if entry is not None:
-            run.run(script.routines[entry].body)
-        return ControllerProgram((*run.moves,), (*run.notes,), maker="ur", left_out=run.left_out)
+        run.run(script.body if is_bare else _outside(script.body, run.routines))
+        run.run(() if is_bare else script.routines[name].body)
+        return language.program_of(run)
 
 
 def _outside(body: Iterable[Statement], routines: Mapping[str, Routine]) -> list[Statement]:
@@ -95,197 +96,9 @@ def _outside(body: Iterable[Statement], routines: Mapping[str, Routine]) -> list
     return [one for one in body if not (isinstance(one, Do) and one.call.name in routines)]
 
 
-def _entry(script: UrScript, asked: str | None) -> str | None:
-    """The function that is the program; None where statements outside of all are.
-
-    Raises:
-        BadInput: there is no such function, or several could be it.
-    """
-    outer = [name for name in script.outer if not script.routines[name].is_thread]
-    if asked is not None:
-        if asked not in outer:
-            valid = nearest_name(asked, outer)
-            raise BadProgram(f"there is no function {asked!r}", where="entry", valid=valid)
-        return asked
-    if script.body or not outer:
-        return None
-    if len(outer) > 1:
-        fault = f"functions {', '.join(outer)} are there, and nothing calls one"
-        raise MissingKey(fault, where="entry", valid="the one that is the program")
-    return outer[0]
-
-
-@dataclass(eq=False)
-class _UrScript:
-    """What URScript's functions do.
-
-    Attributes:
-        tool: (4, 4) `flange_from_tool` [m]; None until it is known. labels: of nodes, by line.
-        last: the target of the last move, if it stops. share: of all speeds, which `set_speed` says.
-    """
-
-    tool: np.ndarray | None
-    labels: Mapping[int, str]
-    last: Any = None
-    share: float = 1.0
-    suffix = ""
-    retiming = frozenset(("set_speed",))
-
-    @property
-    def state(self) -> Any:
-        """The tool, where it is, and the share of all speeds."""
-        return (None if self.tool is None else self.tool.tolist(), self.last, self.share)
-
-    def moves(self, name: str) -> bool | None:
-        """Whether a function decides where the robot goes; None for one that is not known."""
-        if name in PARAMETERS or name in OTHER_MOVES or name == "set_tcp":
-            return True
-        still = name in STILL or name in _VALUES or name.startswith(STILL_BEFORE)
-        return False if still or name in ("sleep", "pose_trans", "get_inverse_kin") else None
-
-    def waits(self, call: Call) -> bool:
-        """Whether a function waits for someone; a popup does if it blocks."""
-        if call.name == "popup":
-            blocks = call.named.get("blocking", call.args[4] if len(call.args) > 4 else None)
-            return blocks not in (None, Constant(False))
-        return call.name in BLOCKING or call.name.startswith(BLOCKING_BEFORE)
-
-    def value_of(self, name: str, _: Execution) -> Any:
-        """None: all names but `True` and `False` are variables."""
-        return {"pi": math.pi}.get(name)
-
-    def writes(self, _: Call) -> tuple[Expression, ...]:
-        """None: functions have values and change no variables."""
-        return ()
-
-    def items(self, values: list[Any], kind: str) -> Any:
-        """A list, or a pose."""
-        return ToolPose(values) if kind else values
-
-    def part_of(self, value: Any, by: Any) -> Any:
-        """An item of a list."""
-        return value[_index(by)]
-
-    def with_part(self, value: Any, by: Any, new: Any) -> None:
-        """Changes an item of a list."""
-        value[_index(by)] = new
-
-    def instruct(self, call: Call, run: Execution) -> None:
-        """A move, a wait, another tool; all else moves nothing.
-
-        Raises:
-            BadInput: a move of another kind.
-        """
-        if call.name in PARAMETERS:
-            self._move(call, run)
-        elif call.name == "sleep":
-            (seconds,) = (number(run.evaluated(one), call.line, "the time") for one in call.args)
-            if seconds > 0.0:
-                where = call.line.number, seconds, call.line.file
-                run.add(ControllerWait(*where, reads_on=True))
-        elif call.name == "set_tcp":
-            (pose, *_) = (run.evaluated(one) for one in (*call.args, *call.named.values()))
-            self.tool, self.last = _placed(pose, call.line), None
-        elif call.name == "run":
-            name = call.args[0].value if isinstance(call.args[0], Constant) else ""
-            run.run_concurrently("thread", name, call.line)
-            run.note("threads that move nothing", f"{name} ({call.line})")
-        elif self.moves(call.name):
-            raise BadProgram(
-                f"{call.name} moves the robot on a way that the file does not decide",
-                where=str(call.line),
-                valid=f"{', '.join(PARAMETERS)}",
-            )
-        elif call.name == "set_speed" and call.args:
-            self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 1.0)
-        else:
-            run.pass_over(call)
-
-    def result_of(self, call: Call, run: Execution) -> Any:
-        """The value of a function."""
-        args = [run.evaluated(one) for one in call.args]
-        named = {name: run.evaluated(one) for name, one in call.named.items()}
-        if call.name in ("get_actual_tcp_pose", "get_target_tcp_pose"):
-            if isinstance(self.last, ToolPose):
-                return ToolPose(self.last)
-        elif call.name in ("get_actual_joint_positions", "get_target_joint_positions"):
-            if isinstance(self.last, list) and not isinstance(self.last, ToolPose):
-                return [*self.last]
-        elif call.name == "get_inverse_kin":
-            near = named.get("qnear", args[1] if len(args) > 1 else None)
-            pose = args[0] if args else named.get("x")
-            if isinstance(pose, Unknown):
-                return pose
-            with_near = None if near is None else _six(near, call.line, "qnear")
-            own = named.get("tcp", args[4] if len(args) > 4 else "")
-            tool = self._tool(call.line, False) if isinstance(own, str) else _placed(own, call.line)
-            return Solved((_placed(pose, call.line) @ inverse(tool)).tolist(), with_near)
-        elif call.name in _VALUES:
-            unknown = [one for one in args if isinstance(one, Unknown)]
-            return unknown[0] if unknown else _value(call, args)
-        return Unknown(f"{call.name}() at {call.line}")
-
-    def _move(self, call: Call, run: Execution) -> None:
-        given = _arguments(call, run)
-        values = {name: run.evaluated(one) for name, one in given.items()}
-        options = {
-            name: number(value, call.line, name)
-            for name, value in values.items()
-            if name in ("a", "v", "t", "r", "mode")
-        }
-        acceleration, speed = (
-            options.get(name, usual)
-            for name, usual in zip(("a", "v"), DEFAULTS[call.name], strict=True)
-        )
-        for name, value in {"a": acceleration, "v": speed}.items():
-            if not value > 0.0:
-                raise BadProgram(f"{name} is {value:g}", where=str(call.line), valid="more than 0")
-        if call.name == "movep":
-            run.note(
-                "r of movep is taken for the distance of its arc from the corner", f"{call.line}"
-            )
-        ends = [key for key in TARGETS if key in given]
-        if len(ends) != (2 if call.name == "movec" else 1):
-            raise MissingKey(f"{call.name} has no target", where=str(call.line))
-        label = "" if call.line.file else self.labels.get(call.line.number, "")
-        targets = [_target(values[key], given[key], call.line, self.tool, label) for key in ends]
-        is_joints = call.name == "movej"
-        move = ControllerMove(
-            call.line.number,
-            "ptp" if is_joints else "lin" if len(ends) == 1 else "circ",
-            targets[-1],
-            self._tool(call.line, is_joints and isinstance(targets[-1], AxisTarget)),
-            targets[0] if len(ends) == 2 else None,
-            "tangent" if options.get("mode") == 1.0 else "to",
-            speed=None if is_joints else speed,
-            acceleration=None if is_joints else acceleration * self.share**2,
-            axis_speed=speed if is_joints else None,
-            axis_acceleration=acceleration * self.share**2 if is_joints else None,
-            time=options["t"] if options.get("t", 0.0) > 0.0 else None,
-            zone=options.get("r", 0.0),
-            file=call.line.file,
-        )
-        run.add(move.slowed(self.share))
-        self.last = values[ends[-1]] if move.zone == 0.0 else None
-
-    def _tool(self, line: Line, is_any: bool) -> np.ndarray:
-        """The tool.
-
-        Raises:
-            MissingKey: the script takes that of the installation, and the case does not say it.
-        """
-        if self.tool is not None or is_any:
-            return np.eye(4) if self.tool is None else self.tool
-        raise MissingKey(
-            "no set_tcp before this move: its tool is that of the installation",
-            where=str(line),
-            valid=f"program: {{tools: {{{TCP}: {{xyz: […]}}}}}}, its pose on the flange",
-        )
-
-
-def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None, label: str) -> Target:
+def _target(value: Any, one: Expression, tool: np.ndarray | None, label: str) -> Target:
     """The target of a tool that a value is, with the name that it has in the script, or else its node's."""
-    known(value, line, "the target")
+    known(value, "the target")
     by = one.args[0] if isinstance(one, Call) and isinstance(value, Solved) and one.args else one
     name = by.name if isinstance(by, Name) else label
     if isinstance(value, Solved):
@@ -293,8 +106,8 @@ def _target(value: Any, one: Expression, line: Line, tool: np.ndarray | None, la
         flange = np.array(value.flange)
         return PoseTarget(flange if tool is None else flange @ tool, near=near, name=name)
     if isinstance(value, ToolPose):
-        return PoseTarget(_placed(value, line), name=name)
-    return AxisTarget(tuple(_six(value, line, "the target")), name=name)
+        return PoseTarget(_placed(value), name=name)
+    return AxisTarget(tuple(_six(value, "the target")), name=name)
 
 
 def _arguments(call: Call, run: Execution) -> dict[str, Expression]:
@@ -306,11 +119,10 @@ def _arguments(call: Call, run: Execution) -> dict[str, Expression]:
     names = PARAMETERS[call.name]
     if len(call.args) > len(names):
         fault = f"{call.name} is given {len(call.args)} arguments"
-        raise BadProgram(fault, where=str(call.line), valid=f"at most {len(names)}")
+        raise BadProgram(fault, valid=f"at most {len(names)}")
     for name in call.named:
         if name not in names:
-            valid = nearest_name(name, names)
-            raise BadProgram(f"{call.name} has no {name!r}", where=str(call.line), valid=valid)
+            raise BadProgram(f"{call.name} has no {name!r}", valid=nearest_name(name, names))
     return {**dict(zip(names, call.args, strict=False)), **call.named}
 
 
@@ -320,32 +132,22 @@ def _index(by: Any) -> int:
     return int(by)
 
 
-def _six(value: Any, line: Line, what: str) -> list[float]:
+def _six(value: Any, what: str) -> list[float]:
     if not isinstance(value, list) or len(value) != 6:
-        raise BadProgram(f"{what} is {value!r:.60}", where=str(line), valid="six numbers")
-    return [number(one, line, what) for one in value]
+        raise BadProgram(f"{what} is {value!r:.60}", valid="six numbers")
+    return [number(one, what) for one in value]
 
 
-def _pose(value: Any, line: Line) -> ToolPose:
-    known(value, line, "the pose")
-    if not isinstance(value, ToolPose):
-        raise BadProgram(f"{value!r:.60} is given", where=str(line), valid="a pose p[…]")
-    return ToolPose(_six(value, line, "the pose"))
-
-
-def _placed(value: Any, line: Line) -> np.ndarray:
+def _placed(value: Any) -> np.ndarray:
     """(4, 4) of a value that has to be a pose [m].
 
     Raises:
-        BadInput: with the line.
+        BadInput: it is none, or not known.
     """
-    pose = _pose(value, line)
-    with at(str(line)):
-        return _matrix(pose)
-
-
-def _matrix(pose: ToolPose) -> np.ndarray:
-    """(4, 4) of a pose [m]."""
+    known(value, "the pose")
+    if not isinstance(value, ToolPose):
+        raise BadProgram(f"{value!r:.60} is given", valid="a pose p[…]")
+    pose = _six(value, "the pose")
     return pose_from_rotation_vector(pose[:3], pose[3:])
 
 
@@ -354,23 +156,9 @@ def _written(matrix: np.ndarray) -> ToolPose:
     return ToolPose([*matrix[:3, 3].tolist(), *rotation_vector(matrix[:3, :3]).tolist()])
 
 
-def _value(call: Call, args: list[Any]) -> Any:
-    try:
-        return _VALUES[call.name](*args)
-    except (ArithmeticError, IndexError, TypeError, ValueError, AttributeError):
-        given = ", ".join(f"{one!r:.40}" for one in args)
-        raise BadProgram(f"{call.name} has no value for {given}", where=str(call.line)) from None
-
-
 def _of_poses(act: Callable[..., np.ndarray]) -> Callable[..., ToolPose]:
     """A function of poses by one of their matrices."""
-
-    def applied(*poses: Any) -> ToolPose:
-        if not all(isinstance(one, ToolPose) and len(one) == 6 for one in poses):
-            raise TypeError
-        return _written(act(*(_matrix(one) for one in poses)))
-
-    return applied
+    return lambda *poses: _written(act(*map(_placed, poses)))
 
 
 def _added(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -396,3 +184,153 @@ _VALUES: Mapping[str, Callable[..., Any]] = {
     "pose_add": _of_poses(_added),
     "point_dist": lambda a, b: math.dist(a[:3], b[:3]),
 }
+
+
+@dataclass(eq=False)
+class _UrScript(Language):
+    """What URScript's functions do.
+
+    Attributes:
+        tool: (4, 4) `flange_from_tool` [m]; None until it is known. labels: of nodes, by line.
+        last: the target of the last move, if it stops. share: of all speeds, which `set_speed` says.
+    """
+
+    tool: np.ndarray | None
+    labels: Mapping[int, str]
+    last: Any = None
+    share: float = 1.0
+    maker = "ur"
+    moving = frozenset((*PARAMETERS, *OTHER_MOVES, "set_tcp"))
+    still = frozenset((*STILL, *_VALUES, "sleep", "get_inverse_kin"))
+    timed = BLOCKING
+    still_before, timed_before = STILL_BEFORE, BLOCKING_BEFORE
+    retiming = ("set_speed",)
+    values = _VALUES
+
+    @property
+    def state(self) -> Any:
+        """The tool, where it is, and the share of all speeds."""
+        return (None if self.tool is None else self.tool.tolist(), self.last, self.share)
+
+    def waits(self, call: Call) -> bool:
+        """Whether a function waits for someone; a popup does if it blocks."""
+        if call.name == "popup":
+            blocks = call.named.get("blocking", call.args[4] if len(call.args) > 4 else None)
+            return blocks not in (None, Constant(False))
+        return super().waits(call)
+
+    def value_of(self, name: str, run: Execution) -> Any:
+        """None: all names but `True`, `False` and `pi` are variables."""
+        return {"pi": math.pi}.get(name)
+
+    def items(self, values: list[Any], kind: str) -> Any:
+        """A list, or a pose."""
+        return ToolPose(values) if kind else values
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """An item of a list."""
+        return value[_index(by)]
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        """Changes an item of a list."""
+        value[_index(by)] = new
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """A move, a wait, another tool; all else moves nothing.
+
+        Raises:
+            BadInput: a move of another kind.
+        """
+        if call.name in PARAMETERS:
+            self._move(call, run)
+        elif call.name == "sleep":
+            self.wait(call, run)
+        elif call.name == "set_tcp":
+            (pose, *_) = (run.evaluated(one) for one in (*call.args, *call.named.values()))
+            self.tool, self.last = _placed(pose), None
+        elif call.name == "run":
+            name = call.args[0].value if isinstance(call.args[0], Constant) else ""
+            run.run_concurrently("thread", name)
+            run.note("threads that move nothing", f"{name} ({call.line})")
+        elif self.moves(call.name):
+            fault = f"{call.name} moves the robot on a way that the file does not decide"
+            raise BadProgram(fault, valid=", ".join(PARAMETERS))
+        elif call.name == "set_speed" and call.args:
+            self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 1.0)
+        else:
+            run.pass_over(call)
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        """The value of a function."""
+        if call.name in ("get_actual_tcp_pose", "get_target_tcp_pose"):
+            if isinstance(self.last, ToolPose):
+                return ToolPose(self.last)
+        elif call.name in ("get_actual_joint_positions", "get_target_joint_positions"):
+            if isinstance(self.last, list) and not isinstance(self.last, ToolPose):
+                return [*self.last]
+        elif call.name == "get_inverse_kin":
+            names = ("x", "qnear", "maxPositionError", "maxOrientationError", "tcp")
+            given = dict(zip(names, call.args, strict=False)) | dict(call.named)
+            pose, near, own = (
+                run.evaluated(given[name]) if name in given else None
+                for name in ("x", "qnear", "tcp")
+            )
+            if isinstance(pose, Unknown):
+                return pose
+            tool = self._tool(False) if own is None or isinstance(own, str) else _placed(own)
+            with_near = None if near is None else _six(near, "qnear")
+            return Solved((_placed(pose) @ inverse(tool)).tolist(), with_near)
+        return super().result_of(call, run)
+
+    def _move(self, call: Call, run: Execution) -> None:
+        given = _arguments(call, run)
+        values = {name: run.evaluated(one) for name, one in given.items()}
+        options = {
+            name: number(value, name)
+            for name, value in values.items()
+            if name in ("a", "v", "t", "r", "mode")
+        }
+        acceleration, speed = (
+            options.get(name, usual)
+            for name, usual in zip(("a", "v"), DEFAULTS[call.name], strict=True)
+        )
+        for name, value in {"a": acceleration, "v": speed}.items():
+            if not value > 0.0:
+                raise BadProgram(f"{name} is {value:g}", valid="more than 0")
+        if call.name == "movep":
+            what = "r of movep is taken for the distance of its arc from the corner"
+            run.note(what, f"{call.line}")
+        ends = [key for key in TARGETS if key in given]
+        if len(ends) != (2 if call.name == "movec" else 1):
+            raise MissingKey(f"{call.name} has no target")
+        label = "" if call.line.file else self.labels.get(call.line.number, "")
+        targets = [_target(values[key], given[key], self.tool, label) for key in ends]
+        is_joints = call.name == "movej"
+        move = ControllerMove(
+            call.line,
+            "ptp" if is_joints else "lin" if len(ends) == 1 else "circ",
+            targets[-1],
+            self._tool(is_joints and isinstance(targets[-1], AxisTarget)),
+            targets[0] if len(ends) == 2 else None,
+            "tangent" if options.get("mode") == 1.0 else "to",
+            speed=None if is_joints else speed,
+            acceleration=None if is_joints else acceleration * self.share**2,
+            axis_speed=speed if is_joints else None,
+            axis_acceleration=acceleration * self.share**2 if is_joints else None,
+            time=options["t"] if options.get("t", 0.0) > 0.0 else None,
+            zone=options.get("r", 0.0),
+        )
+        run.add(move.slowed(self.share))
+        self.last = values[ends[-1]] if move.zone == 0.0 else None
+
+    def _tool(self, is_any: bool) -> np.ndarray:
+        """The tool.
+
+        Raises:
+            MissingKey: the script takes that of the installation, and the case does not say it.
+        """
+        if self.tool is not None or is_any:
+            return np.eye(4) if self.tool is None else self.tool
+        fault = "no set_tcp before this move: its tool is that of the installation"
+        valid = f"program: {{tools: {{{TCP}: {{xyz: […]}}}}}}, its pose on the flange"
+        raise MissingKey(fault, valid=valid)

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 import operator
 import re
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from clearance.errors import BadSyntax, DuplicateName
+from clearance.formats.program.blocks import BlockReader
 from clearance.formats.program.expressions import (
     COMPARED,
     Call,
     Constant,
-    Expression,
     ExpressionReader,
     Name,
     numeric,
@@ -26,14 +25,12 @@ from clearance.formats.program.statements import (
     STOP,
     Assign,
     Do,
-    If,
     Leave,
     Routine,
     Statement,
     Unreadable,
-    While,
 )
-from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token, tokens_of
+from clearance.formats.program.tokens import END, NEWLINE, Cursor, Token, tokens_of
 
 WORDS = re.compile(
     r"""(?P<skip>[ \t\f\\]+|\#[^\n]*|\$[^\n]*)
@@ -107,129 +104,84 @@ def script_of(text: str, file: str = "") -> UrScript:
     Raises:
         BadSyntax: with the line.
     """
-    return _Reader(Cursor(tokens_of(text, WORDS, file))).script()
+    cursor = Cursor(tokens_of(text, WORDS, file))
+    return _Reader(ExpressionReader(cursor, GRAMMAR)).script()
 
 
-class _Reader:
+class _Reader(BlockReader):
     """Reads statements, one after another."""
 
-    def __init__(self, cursor: Cursor) -> None:
-        self._cursor, self._expressions = cursor, ExpressionReader(cursor, GRAMMAR)
-        self._script, self._depth = UrScript(), 0
+    ends, other = ("end", "else", "elif", "elseif"), "else"
 
     def script(self) -> UrScript:
         """All statements."""
-        self._script.body = self._body()
-        if self._cursor.next.kind != END:
-            self._cursor.refuse("a statement")
+        self._script, self._n_around = UrScript(), 0
+        self._script.body = self.body()
+        if self.cursor.next.kind != END:
+            self.cursor.refuse("a statement")
         return self._script
 
-    def _body(self) -> tuple[Statement, ...]:
-        """Statements up to what ends a block, which is not taken."""
-        found = list[Statement]()
-        while True:
-            while self._cursor.next.kind == NEWLINE:
-                self._cursor.take()
-            if self._cursor.next.kind == END or self._cursor.is_at("end", "else", "elif", "elseif"):
-                return tuple(found)
-            found += self._statement()
-
-    def _statement(self) -> list[Statement]:
-        word = self._cursor.next
-        if word.text in _ROUTINES:
-            self._routine()
+    def statement(self) -> list[Statement]:
+        """The statement that follows; none of one that does nothing, or of a function."""
+        word = self.cursor.next
+        if self.cursor.accept(*_ROUTINES):
+            self._routine(word)
             return []
         found = self._other(word)
-        at_end = self._cursor.next.kind in (NEWLINE, END) or self._cursor.is_at("end", "else")
+        at_end = self.cursor.next.kind in (NEWLINE, END) or self.cursor.is_at("end", "else")
         if not at_end:
-            self._cursor.refuse("the end of the line")
+            self.cursor.refuse("the end of the line")
         return [found] if found is not None else []
 
     def _other(self, word: Token) -> Statement | None:
-        cursor = self._cursor
+        cursor = self.cursor
         if cursor.accept("if"):
-            return self._if(word.line)
+            return self.branches(word.line, "if", self.expression(), "", "elif elseif", "end")
         if cursor.accept("while"):
-            return While(word.line, "while", *self._loop())
-        if word.text in _LEAVES:
-            cursor.take()
+            return self.loop(word.line, "while", ":", "end")
+        if cursor.accept(*_LEAVES):
             ends = cursor.next.kind in (NEWLINE, END) or cursor.is_at("end")
-            value = None if ends or word.text == "halt" else self._value()
+            value = None if ends or word.text == "halt" else self.expression()
             return Leave(word.line, word.text, _LEAVES[word.text], value)
         if cursor.accept("pass"):
             return None
         if cursor.accept("run", "kill", "join"):
-            called = self._value()
+            called = self.expression()
             name = called.name if isinstance(called, Call | Name) else ""
             return Do(word.line, Call(word.text, (Constant(name),), {}, word.line))
         return self._assignment(word)
 
     def _assignment(self, word: Token) -> Statement | None:
         """A variable's value, or a call."""
-        scope = self._cursor.accept("global", "local")
-        target = self._expressions.expression(5)
-        if not self._cursor.accept("="):
+        scope = self.cursor.accept("global", "local")
+        target = self.expressions.expression(5)
+        if not self.cursor.accept("="):
             if isinstance(target, Call):
                 return Do(word.line, target)
             return None if scope and isinstance(target, Name) else Unreadable(word.line, word.text)
-        if self._cursor.is_at("run"):
-            return self._other(self._cursor.next)
-        is_own = scope is not None and scope.text == "local"
-        is_global = scope is not None and scope.text == "global"
-        return Assign(word.line, target, self._value(), is_own, is_global)
+        if self.cursor.is_at("run"):
+            return self._other(self.cursor.next)
+        kinds = (scope is not None and scope.text == kind for kind in ("local", "global"))
+        return Assign(word.line, target, self.expression(), *kinds)
 
-    def _value(self) -> Expression:
-        return self._expressions.expression()
-
-    def _loop(self) -> tuple[Expression, tuple[Statement, ...]]:
-        condition = self._value()
-        self._cursor.expect(":")
-        return condition, self._block(self._body)
-
-    def _if(self, line: Line) -> If:
-        branches = list[tuple[Expression | None, tuple[Statement, ...]]]()
-        condition: Expression | None = self._value()
-        while True:
-            self._cursor.accept(":")
-            branches.append((condition, self._nested(self._body)))
-            if self._cursor.accept("elif", "elseif"):
-                condition = self._value()
-            elif self._cursor.accept("else"):
-                condition = None
-            else:
-                self._cursor.expect("end")
-                return If(line, "if", tuple(branches))
-
-    def _block(self, body: Callable[[], tuple[Statement, ...]]) -> tuple[Statement, ...]:
-        """What stands up to `end`."""
-        found = self._nested(body)
-        self._cursor.expect("end")
-        return found
-
-    def _nested(self, body: Callable[[], tuple[Statement, ...]]) -> tuple[Statement, ...]:
-        self._depth += 1
-        if self._depth > 60:
-            self._cursor.refuse("at most 60 blocks within one another")
-        found = body()
-        self._depth -= 1
-        return found
-
-    def _routine(self) -> None:
-        """A function, a thread or a secondary program."""
-        kind = self._cursor.take()
-        name = self._cursor.expect_kind("name", "a name")
-        self._cursor.expect("(")
-        args, named = self._expressions.arguments(")")
-        self._cursor.expect(")")
-        self._cursor.expect(":")
+    def _routine(self, kind: Token) -> None:
+        """A function, a thread or a secondary program, whose first word is taken."""
+        name = self.cursor.expect_kind("name", "a name")
+        self.cursor.expect("(")
+        args, named = self.expressions.arguments(")")
+        self.cursor.expect(")")
+        self.cursor.expect(":")
         parameters = [*(one.name for one in args if isinstance(one, Name)), *named]
         if len(parameters) != len(args) + len(named):
             raise BadSyntax("a parameter without a name", where=str(name.line))
         if name.text in self._script.routines:
             raise DuplicateName(f"{name.text!r} is defined twice", where=str(name.line))
-        if not self._depth:
+        if not self._n_around:
             self._script.outer.append(name.text)
-        body = self._block(self._body)
+        self._n_around += 1
+        body = self.block(name.line, kind.text, "end")
+        self._n_around -= 1
+        self.cursor.take()
         self._script.routines[name.text] = Routine(
             name.text, name.line, tuple(parameters), body, kind.text != "def", defaults=dict(named)
         )

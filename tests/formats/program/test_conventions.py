@@ -18,6 +18,7 @@ from clearance.formats.program.controller_program import (
 )
 from clearance.formats.program.conventions import CONVENTIONS
 from clearance.formats.program.conversion import ConvertedProgram, converted
+from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import pose_from_rotation_vector, pose_from_rpy
@@ -69,7 +70,7 @@ says itself how far out the faceplate is.
 def made(robot: Robot, maker: str, degrees=(0.0,) * 6, **asked) -> ConvertedProgram:
     """A move to axes by a program of a maker's language."""
     to = AxisTarget(tuple(math.radians(one) for one in degrees), name="P1")
-    read = ControllerProgram((ControllerMove(3, "ptp", to, np.eye(4)),), maker=maker)
+    read = ControllerProgram((ControllerMove(Line(3), "ptp", to, np.eye(4)),), maker=maker)
     return converted(read, validated(ProgramFile, {"file": "a.ls", **asked}, "program"), robot, {})
 
 
@@ -122,7 +123,7 @@ def test_joints_that_turn_otherwise_are_refused_until_the_case_says_how():
     ):
         made(robot, "kuka", axes_as="kuka")
     flagged = ControllerMove(
-        4, "ptp", PoseTarget(np.eye(4), ranges={1: (3.0, 4.0)}, is_behind=True), np.eye(4)
+        Line(4), "ptp", PoseTarget(np.eye(4), ranges={1: (3.0, 4.0)}, is_behind=True), np.eye(4)
     )
     asked = validated(ProgramFile, {"file": "a.src", "axes_as": "kuka"}, "program")
     with pytest.raises(
@@ -186,8 +187,8 @@ def test_axes_and_pose_of_a_published_point_agree():
     near = tuple(map(math.radians, degrees))
     pose = pose_from_rpy([1.5, 0.0, 0.36], [math.radians(135.0), math.radians(-45.0), 0.0])
     moves = [
-        ControllerMove(3, "ptp", AxisTarget(near), np.eye(4)),
-        ControllerMove(4, "ptp", PoseTarget(pose, near=near), np.eye(4)),
+        ControllerMove(Line(3), "ptp", AxisTarget(near), np.eye(4)),
+        ControllerMove(Line(4), "ptp", PoseTarget(pose, near=near), np.eye(4)),
     ]
     asked = validated(ProgramFile, {"file": "a.ls"}, "program")
     found = converted(ControllerProgram((*moves,), maker="fanuc"), asked, robot, {})

@@ -18,6 +18,7 @@ from clearance.formats.program.controller_program import (
     PoseTarget,
 )
 from clearance.formats.program.conversion import converted
+from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import pose_from_rpy
@@ -26,7 +27,7 @@ from tests.programs.arms import arm
 
 QUARTER = math.pi / 2
 AXES = AxisTarget((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), name="home")
-HOME = ControllerMove(3, "ptp", AXES, np.eye(4), share=0.5)
+HOME = ControllerMove(Line(3), "ptp", AXES, np.eye(4), share=0.5)
 POSE = replace(HOME, to=PoseTarget(pose_from_rpy([0.5, 0.0, 0.3], [0.0, 0.0, 0.0])))
 
 
@@ -57,10 +58,10 @@ def test_joints_follow_axes_by_sign_offset_and_other_axes():
 
 def test_a_pose_is_seen_from_the_controllers_base():
     target = PoseTarget(at(0.5, 0.0, 0.3), name="P1")
-    line = ControllerMove(7, "lin", target, at(0.0, 0.0, 0.1), speed=0.2, zone=0.01)
+    line = ControllerMove(Line(7), "lin", target, at(0.0, 0.0, 0.1), speed=0.2, zone=0.01)
     base = {"on": "world", "xyz": [1.0, 2.0, 0.0], "rpy": ["-90deg", 0.0, "180 deg"]}
     on = replace(line, to=PoseTarget(at(0.6, 0.0, 0.3)))
-    found = made(HOME, line, on, ControllerWait(8, 0.5), line, line, base=base)
+    found = made(HOME, line, on, ControllerWait(Line(8), 0.5), line, line, base=base)
     turned = {**base, "rpy": [-QUARTER, 0.0, math.pi]}
     assert found.program.frames["controller"].model_dump(exclude_unset=True) == turned
     assert found.program.tool.xyz == [0.0, 0.0, 0.1] and found.program.tool.link == "tool_tip"
@@ -77,11 +78,15 @@ def test_a_pose_is_seen_from_the_controllers_base():
 
 def test_controllers_stop_where_no_way_follows():
     one = replace(POSE, kind="lin", zone=0.01)
-    two = replace(one, to=PoseTarget(at(0.6, 0.0, 0.3)), line=4)
-    found = made(HOME, one, two, ControllerWait(8, 0.5), one, two, replace(two, line=5), one)
+    two = replace(one, to=PoseTarget(at(0.6, 0.0, 0.3)), line=Line(4))
+    found = made(
+        HOME, one, two, ControllerWait(Line(8), 0.5), one, two, replace(two, line=Line(5)), one
+    )
     zones = [move.lin.zone for move in found.program.moves if move.lin]
     assert zones == [0.01, 0.0, 0.01, 0.0, 0.0, 0.0]
-    turned = replace(two, to=PoseTarget(pose_from_rpy([0.6, 0.0, 0.3], [0.0, 0.0, 0.2])), line=6)
+    turned = replace(
+        two, to=PoseTarget(pose_from_rpy([0.6, 0.0, 0.3], [0.0, 0.0, 0.2])), line=Line(6)
+    )
     for again in ([one, two, turned, one], [one, replace(two, zone=0.0), turned, one]):
         (told,) = [line for line in made(HOME, *again).assumed if "only turns" in line][:1]
         assert "the tool is taken to stop, and the controller may cut the corner" in told
@@ -93,7 +98,7 @@ def test_a_corner_before_a_wait_that_begins_on_the_way_stands_in_the_headline():
     line = replace(POSE, kind="lin", zone=0.01)
     last = replace(line, zone=0.0)
     for reads_on in (False, True):
-        found = made(HOME, line, ControllerWait(8, 0.5, reads_on=reads_on), last)
+        found = made(HOME, line, ControllerWait(Line(8), 0.5, reads_on=reads_on), last)
         told = "line 3: a wait follows a corner zone: the tool is taken to stop"
         assert [one.split(",")[0] for one in found.assumed if "wait" in one] == [told] * reads_on
         assert any("no move follows" in note for note in found.notes) != reads_on
@@ -144,7 +149,7 @@ def test_the_start_is_the_first_target_of_axes_and_its_way_in_is_unknown():
 
 
 def test_another_tool_is_a_move_of_its_own():
-    other = replace(POSE, tool=at(0.0, 0.0, 0.2), line=9)
+    other = replace(POSE, tool=at(0.0, 0.0, 0.2), line=Line(9))
     found = made(HOME, POSE, other, HOME, other)
     assert found.program.tool.xyz == [0.0, 0.0, 0.0]
     assert [one.tool and one.tool.xyz for one in found.program.moves] == (
@@ -203,8 +208,8 @@ def test_times_rest_on_accelerations_unless_all_moves_say_them_or_their_time():
 
 def test_an_external_axis_that_moves_needs_a_joint():
     target = PoseTarget(at(0.5, 0.0, 0.3), {"E1": 0.0})
-    one = ControllerMove(7, "lin", target, np.eye(4))
-    moved = replace(one, to=replace(target, external={"E1": 20.0}), line=8)
+    one = ControllerMove(Line(7), "lin", target, np.eye(4))
+    moved = replace(one, to=replace(target, external={"E1": 20.0}), line=Line(8))
     taught = replace(one, to=replace(target, external={"E1": 0.001}))
     assert made(HOME, one, taught).program.moves[1].lin.hold == {}
     with pytest.raises(cl.ClearanceError, match="line 8: external axis E1 moves, and no joint"):
@@ -214,7 +219,7 @@ def test_an_external_axis_that_moves_needs_a_joint():
 def test_a_corner_where_the_tool_begins_is_none():
     first, line = (
         replace(HOME, zone=0.01),
-        ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4)),
+        ControllerMove(Line(7), "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4)),
     )
     found = made(first, line)
     assert found.program.moves[0].ptp.zone == 0.0 and any(
@@ -225,7 +230,7 @@ def test_a_corner_where_the_tool_begins_is_none():
 
 
 def test_a_line_may_keep_the_tool_as_it_is():
-    line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
+    line = ControllerMove(Line(7), "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
     assert made(HOME, line).program.moves[1].lin.to.turns
     assert not made(HOME, replace(line, orientation="constant")).program.moves[1].lin.to.turns
 
@@ -233,7 +238,7 @@ def test_a_line_may_keep_the_tool_as_it_is():
 def test_a_controller_whose_base_is_not_the_root_asks_for_it():
     robot = arm("heron6").robot
     asked = validated(ProgramFile, {"file": "a.ls", "link": "tool_tip"}, "program")
-    line = ControllerMove(7, "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
+    line = ControllerMove(Line(7), "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
     assert converted(ControllerProgram((HOME,), base="at axis 2"), asked, robot, {}).program.moves
     with pytest.raises(
         cl.ClearanceError, match="base: at axis 2; where it is, seen from the robot's root, as"
@@ -262,7 +267,7 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
             {},
             "line 3: it ends in a corner zone, and line 3 has another tool; write it without",
         ),
-        ([ControllerWait(3, 1.0)], {}, "nothing moves"),
+        ([ControllerWait(Line(3), 1.0)], {}, "nothing moves"),
         ([HOME, replace(POSE, to=PoseTarget(at(4e8, 0, 0)))], {}, "line 3: a point 4e+08 m away"),
         (
             [HOME],

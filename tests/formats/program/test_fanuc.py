@@ -9,6 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.formats.program.controller_program import ControllerWait
+from clearance.formats.program.tokens import Line
 from tests.formats.program.reading import read
 
 HEAD = "/PROG  CELL\n/ATTR\nOWNER\t\t= MNEDITOR;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n/MN\n"
@@ -70,8 +71,8 @@ WAIT   1.50(sec) ;
     home, line, next_, arc, wait = found.moves
     degrees = [10.0, 20.0, -5.0, 0.0, -45.0, 30.0]
     assert np.degrees(home.to.axes) == pytest.approx(degrees) and home.share == 0.5
-    assert [move.line for move in found.moves] == [9, 10, 11, 13, 15]
-    assert [move.own for move in found.moves] == [4, 5, 6, 8, 10]
+    assert [move.line.number for move in found.moves] == [9, 10, 11, 13, 15]
+    assert [move.line.own for move in found.moves] == [4, 5, 6, 8, 10]
     # x of the frame is the robot's y
     assert place(line) == pytest.approx([0.5, 0.1, 0.25]) and line.tool[2, 3] == 0.1
     # R 90 in a frame turned by 90 degrees about z, after W 180: x back, y along, z down
@@ -81,7 +82,7 @@ WAIT   1.50(sec) ;
     assert next_.speed == pytest.approx(0.05) and next_.zone == 0.01
     assert arc.via.pose[:3, 3] == pytest.approx([0.5, 0.1, 0.25])
     assert place(arc) == pytest.approx([0.4, 0.2, 0.25]) and wait == ControllerWait(
-        15, 1.5, own=10, reads_on=True
+        Line(15, own=10), 1.5, reads_on=True
     )
     told = "\n".join(found.notes)
     assert "DO (line 12)" in told and "TB, TA, DB" in told
@@ -104,7 +105,7 @@ L P[4] R[9]mm/sec FINE ;
     )
     sub = listing("L P[2] R[2]mm/sec FINE ;\nR[2]=50 ;", point(2, 0.0, 0.0)).replace("CELL", "SUB")
     found = read("CELL.LS", listing(body), {"SUB.LS": sub.encode()}, **CASE)
-    assert [(move.file, move.line) for move in found.moves] == [
+    assert [(move.line.file, move.line.number) for move in found.moves] == [
         *(("", 13), ("", 11), ("SUB.LS", 6), ("", 17))
     ]
     assert [move.speed for move in found.moves] == [0.1, 0.1, 0.1, None]
@@ -208,4 +209,4 @@ def test_a_listing_may_have_a_mark_and_letters_of_another_page():
     one, two = (
         read("CELL.LS", text.encode(code), **CASE).moves for code in ("utf-8-sig", "latin-1")
     )
-    assert len(one) == len(two) == 1 and one[0].line == two[0].line == 9
+    assert len(one) == len(two) == 1 and one[0].line.number == two[0].line.number == 9

@@ -9,6 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.formats.program.controller_program import AxisTarget, ControllerWait
+from clearance.formats.program.tokens import Line
 from tests.formats.program.reading import read
 
 HEAD = """&ACCESS RVP
@@ -61,13 +62,13 @@ LIN XP1:GRID[1]"""
     home, line, slow, after = found.moves
     quarter = math.pi / 2
     assert home.to.axes == pytest.approx((0.0, -quarter, quarter, 0.0, quarter / 2, 0.0))
-    assert (home.line, home.kind, home.share, home.to.name) == (7, "ptp", 1.0, "XHOME")
+    assert (home.line.number, home.kind, home.share, home.to.name) == (7, "ptp", 1.0, "XHOME")
     # the base is turned by 90 degrees about z: its x is the robot's y
     assert place(line) == pytest.approx([0.5, 0.1, 0.35]) and line.tool[2, 3] == 0.2
     # A 90 in it makes 180 about z, then C 180 about the new x: x goes back, y stays, z looks down
     turned = np.array([[-1, 0, 0], [0, 1, 0], [0, 0, -1]])
     assert np.abs(line.to.pose[:3, :3] - turned).max() < 1e-12
-    assert (line.line, line.zone, line.speed) == (13, 0.008, 0.5)
+    assert (line.line.number, line.zone, line.speed) == (13, 0.008, 0.5)
     assert (slow.speed, after.speed) == (0.1, 0.5)
     # 10 mm along y of XP1, which is the robot's y
     assert place(after) == pytest.approx([0.5, 0.11, 0.35])
@@ -94,7 +95,14 @@ DEF stitch(at:IN, deep:IN)
 """
     )
     first, one, _, two, down, back, wait, last = moves_of(body)
-    assert [move.line for move in (first, one, two, down, back, last)] == [10, 21, 21, 22, 14, 16]
+    assert [move.line.number for move in (first, one, two, down, back, last)] == [
+        10,
+        21,
+        21,
+        22,
+        14,
+        16,
+    ]
     # x of the base is y of the robot
     assert place(one) == pytest.approx([0.5, 0.0, 0.4]) and place(two)[1:] == pytest.approx(
         [0.02, 0.395]
@@ -104,7 +112,7 @@ DEF stitch(at:IN, deep:IN)
     assert place(back) == pytest.approx([0.5, 0.02, 0.37])
     assert place(last) == pytest.approx([0.493, 0.02, 0.37])
     assert np.array_equal(last.to.pose[:3, :3], back.to.pose[:3, :3]) and last.speed == 0.2
-    assert wait == ControllerWait(15, 0.5)
+    assert wait == ControllerWait(Line(15), 0.5)
 
 
 def test_arcs_turn_as_their_types_say_and_a_line_may_keep_the_tool():
@@ -196,7 +204,7 @@ def test_texts_of_controllers_are_read_in_their_encodings(encode):
     text = f"{HEAD}PTP XHOME ; Grundstellung über dem Tisch\nEND"
     data = text.replace("\n", "\r\n").encode() if encode == "crlf" else text.encode(encode)
     (move,) = read("weld.src", data, {"weld.dat": POINTS.encode()}).moves
-    assert isinstance(move.to, AxisTarget) and move.line == 7
+    assert isinstance(move.to, AxisTarget) and move.line.number == 7
 
 
 LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
@@ -257,7 +265,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("HALT", "line 7: 'HALT' is not understood"),
         ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
         ("PTP XHOME\nEND\nDEF half()\nPTP XHOME\nEN", "line 9: half has no END; a whole file"),
-        ("FOR I=1 TO 3\nPTP XHOME", "line 7: FOR has no ENDFOR; a whole file"),
+        ("FOR I=1 TO 3\nPTP XHOME", "line 7: FOR has no ENDFOR before 'END' at line 9"),
     ],
 )
 def test_what_the_files_do_not_decide_is_refused_with_its_line(body, told):
@@ -291,7 +299,7 @@ def test_a_base_on_another_machine_is_refused():
     ).moves  # BASE_DATA is seen from the plate as it is from the robot's foot
     for move, other in zip((one, two, last), stands, strict=True):
         assert np.array_equal(move.to.pose, other.to.pose)
-    with pytest.raises(cl.ClearanceError, match="line 9: this has no value for"):
+    with pytest.raises(cl.ClearanceError, match="^weld.src: line 9: this has no value for"):
         program(f"{body.replace('LIN XP1', 'XP1=$BASE:XP1')}\nLIN XP1", points, **units)
     with pytest.raises(
         cl.ClearanceError, match="line 11: the tool's pose before this move is not known"
@@ -308,7 +316,11 @@ def test_each_module_has_points_and_procedures_of_its_own():
     found = read("weld.src", f"{HEAD}{body}\nEND\n", beside).moves
     # x of the base is the robot's y
     assert [place(move)[1] for move in found] == pytest.approx([0.007, 0.02, 0.02])
-    assert [(move.file, move.line) for move in found] == [("sub/pick.src", 5), ("", 15), ("", 12)]
+    assert [(move.line.file, move.line.number) for move in found] == [
+        ("sub/pick.src", 5),
+        ("", 15),
+        ("", 12),
+    ]
     assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
 
 

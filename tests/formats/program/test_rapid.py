@@ -59,7 +59,7 @@ def moves_of(body, data="", **asked):
 
 def test_calls_and_loops_become_moves_with_their_lines():
     found = read("a.mod", CELL)
-    assert [one.line for one in found.moves] == [14, 25, 26, 25, 26, 19, 20, 21]
+    assert [one.line.number for one in found.moves] == [14, 25, 26, 25, 26, 19, 20, 21]
     home, over, on, over_low, _, wait, arc, last = found.moves
     axes = [math.radians(one) for one in (0, 10, -20, 0, 90, 0)]
     assert isinstance(home.to, AxisTarget) and list(home.to.axes) == axes and home.to.external == {}
@@ -139,7 +139,7 @@ def test_data_of_other_modules_and_of_the_case_are_found():
         tools={"Pen": {"xyz": [0.0, 0.0, 0.2]}},
         frames={"desk": {"xyz": [0.5, 0.0, 0.0]}},
     ).moves
-    assert (move.file, move.line) == ("data.sys", 5)
+    assert (move.line.file, move.line.number) == ("data.sys", 5)
     assert place(move.to) == pytest.approx([501, 2, 3]) and move.tool[2, 3] == 0.2
 
 
@@ -193,11 +193,17 @@ def test_a_field_is_that_of_its_own_record():
         moves_of(body, records)  # which of them is meant is not known
 
 
+def test_numbers_are_cut_and_rounded_to_their_digits():
+    at = r"[[Trunc(12.39\Dec:=1),Round(12.35\Dec:=1),Trunc(-1.9)]"
+    (move,) = moves_of(f"MoveL {at},{P.partition('],')[2]},v5,fine,tool0;")
+    assert move.to.pose[:3, 3] == pytest.approx([0.0123, 0.0124, -0.001])
+
+
 def test_encodings_are_read():
     move = f"MoveAbsJ [[0,0,0,0,0,0],{NONE}],v5,fine,tool0; ! für"
     text = f"MODULE M\nPROC main()\n! Stück\n{move}\nENDPROC\nENDMODULE"
     for data in (text.encode("latin-1"), b"\xef\xbb\xbf" + text.encode()):
-        assert [one.line for one in read("a.PRG", data.replace(b"\n", b"\r\n")).moves] == [4]
+        assert [one.line.number for one in read("a.PRG", data.replace(b"\n", b"\r\n")).moves] == [4]
 
 
 FAULTS = {
@@ -223,6 +229,7 @@ FAULTS = {
     "PDispOn p, tool0;": "line 3: PDispOn changes where the robot goes",
     "FOR i FROM 1 TO n DO ENDFOR": "line 3: the range of 'i' is not known: 'n' is in no file",
     "FOR i FROM 1 TO 5 STEP 0 DO ENDFOR": "line 3: a step of 0",
+    "VAR num i{0};": "line 3: an array of 0 items; 1 to 1000",
     "ENDPROC PROC main()": "line 3: 'main' is there twice",
 }  # fmt: skip
 
@@ -238,7 +245,9 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
     "end", ["MoveL p10_Table, v100", "MoveL p10_Table, v100, fine, gun\\WObj:=table;"]
 )
 def test_a_module_that_is_cut_off_is_refused(end):
-    with pytest.raises(cl.ClearanceError, match="line 26: the file ends; "):
+    with pytest.raises(
+        cl.ClearanceError, match="line 26: the file ends; |line 24: PROC has no ENDPROC; "
+    ):
         read("a.mod", CELL[: CELL.index(end) + len(end)])
 
 
@@ -345,6 +354,6 @@ def test_a_branch_that_persistent_data_decide_is_doubted():
 def test_the_procedure_that_runs_is_chosen():
     text = f"MODULE M PROC a() MoveL {P},v5,fine,tool0; ENDPROC PROC b() ENDPROC ENDMODULE"
     assert len(read("a.mod", text, entry="A").moves) == 1
-    for entry, told in ((None, "no procedure main, but a, b"), ("c", "no procedure 'c'")):
+    for entry, told in ((None, "several procedures are there: a, b"), ("c", "no procedure 'c'")):
         with pytest.raises(cl.ClearanceError, match=told):
             read("a.mod", text, entry=entry)

@@ -50,7 +50,11 @@ def place(move):
 def test_calls_and_loops_become_moves_with_their_lines():
     found = read("a.script", CELL)
     one, two = found.moves[:7], found.moves[7:]
-    assert [move.line for move in one] == [15, 8, 9, 11, 8, 9, 11] == [move.line for move in two]
+    assert (
+        [move.line.number for move in one]
+        == [15, 8, 9, 11, 8, 9, 11]
+        == [move.line.number for move in two]
+    )
     home, over, on, wait, _, next_, _ = one
     assert home.to == AxisTarget((0.0, -math.pi / 2, 1.5, -1.5, -1.5, 0.0), name="home")
     assert (home.kind, home.axis_speed, home.zone) == ("ptp", 0.8, 0.0)
@@ -115,7 +119,7 @@ def test_the_installations_tool_is_asked_for():
 def test_encodings_are_read():
     text = "# Stück\nmovej([0,0,0,0,0,0]) # für\n"
     for data in (text.encode("latin-1"), b"\xef\xbb\xbf" + text.encode(), text.encode("utf-8")):
-        assert [move.line for move in moves_of(data.replace(b"\n", b"\r\n"))] == [2]
+        assert [move.line.number for move in moves_of(data.replace(b"\n", b"\r\n"))] == [2]
     with pytest.raises(cl.ClearanceError, match=r"^a\.script: this is no text of single bytes"):
         moves_of(text.encode("utf-16"))
 
@@ -141,8 +145,12 @@ FAULTS = {
     "movej([0,0,0,0,0,0], speed=1)": "movej has no 'speed'",
     "movej([0,0,0,0,0,0": "line 1: the file ends; ',', or ']' is needed",
     "movej(p[0,0,0,0,0,0": "line 1: the file ends",
-    "def f():\n" + Q: "line 2: the file ends; 'end' is needed",
-    "def f():\n" + Q + "\nend\ndef g():\n" + Q + "\nend": "entry: functions f, g are there",
+    "def f():\n" + Q: "line 1: def has no end; a whole file",
+    "def f():\n"
+    + Q
+    + "\nend\ndef g():\n"
+    + Q
+    + "\nend": "entry: several functions are there: f, g",
     "def f():\nf()\nend\nf()": "more than 40 routines call one another",
     "x = " + Q: "line 1: movej moves the robot, and has no value; write the move as a statement",
     "movej(1 / 0)": "this has no value",
@@ -199,7 +207,7 @@ def test_what_moves_nothing_is_left_out_by_name():
 
 def test_a_move_within_what_is_passed_over_is_made():
     found = moves_of("def f():\n" + Q + "\nreturn True\nend\nset_digital_out(1, f())\ntextmsg(f())")
-    assert [one.line for one in found] == [2, 2]
+    assert [one.line.number for one in found] == [2, 2]
 
 
 def test_solved_axes_are_of_the_tool_that_they_are_solved_for():
@@ -223,7 +231,7 @@ def test_a_function_is_chosen_and_files_stand_beside():
     main = "def f():\nhelp()\nend\ndef g():\nend"
     beside = {"more.script": b"def help():\n\nmovej([0,0,0,0,0,0])\nend"}
     (move,) = read("a.script", main, beside, entry="f").moves
-    assert (move.file, move.line) == ("more.script", 3)
+    assert (move.line.file, move.line.number) == ("more.script", 3)
     with pytest.raises(cl.ClearanceError, match="there is no function 'h'"):
         moves_of(main, entry="h")
     with pytest.raises(cl.ClearanceError, match=r"more\.script: 'help' is defined twice"):
