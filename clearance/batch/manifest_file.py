@@ -53,8 +53,6 @@ class Manifest(StrictModel):
     The others are options (`said_in`).
     """
 
-    FILLED = frozenset({"name", "cases", "cell", "trajectories", "robot", "read_as"})
-
     name: Name | None = None
     cases: Files | None = None
     cell: Name | None = None
@@ -82,8 +80,6 @@ class Manifest(StrictModel):
 
 class _Levels(StrictModel):
     """Limits instead of those of the cases; rules that give their own keep them."""
-
-    FILLED = frozenset(_LEVELS)
 
     fail: Any = None
     warn: Any = None

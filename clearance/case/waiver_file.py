@@ -41,8 +41,6 @@ def day_of(given: object) -> date:
 class _Row(StrictModel):
     """One waiver."""
 
-    FILLED = frozenset({"case", "rule"})
-
     case: Name = "*"
     between: TwoPatterns
     rule: Name = "*"

@@ -35,8 +35,6 @@ def _without_stroke(name: str) -> str:
 class Robot(StrictModel):
     """A robot, where it stands, what it does, and what of it is measured."""
 
-    FILLED = frozenset({"name", "trajectory"})
-
     name: Annotated[Name, AfterValidator(_without_stroke)] | None = None
     urdf: Name
     xacro: bool = False
@@ -62,8 +60,6 @@ class Carry(WindowedEntry):
     `grasp: exact` says that the gripper itself positions the part. With tolerances, errors of the carrier at the
     grasp then do not count.
     """
-
-    FILLED = frozenset({"until"})
 
     part: Name
     by: Name
@@ -132,7 +128,6 @@ class RobotEntry(NamedTuple):
 class Case(StrictModel):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
-    FILLED = frozenset({"trajectory", "tolerance"})
     MOVES: ClassVar[bool] = True
     """Something must move."""
 
@@ -161,9 +156,6 @@ class Case(StrictModel):
                 raise Contradiction("both robot and robots are given", valid="one of them")
             if "robot" not in data and "robots" not in data:
                 raise MissingKey("'robot' is missing", valid="robot, or robots for several")
-            for key in ("robot", "robots"):
-                if data.get(key, ...) is None:
-                    raise BadInput("nothing is given", where=key, valid=_NEEDED[key])
         return data
 
     @model_validator(mode="after")
@@ -204,9 +196,3 @@ class Cell(Case):
     """A case file that may leave out what moves: trajectories are given to it one after another."""
 
     MOVES = False
-
-
-_NEEDED = {
-    "robot": f"a mapping is needed, with keys {', '.join(Robot.keys())}",
-    "robots": "a list of robots is needed",
-}

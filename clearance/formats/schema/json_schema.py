@@ -12,7 +12,6 @@ from clearance.formats.known_formats import Kind, names_of
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import STATE
 from clearance.formats.schema.obstacle import SHAPES
-from clearance.formats.schema.strict_model import StrictModel
 from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS, preset_names
 from clearance.world.notice import CODES_OF_KINDS, KINDS, WARNINGS
 
@@ -32,7 +31,8 @@ def case_schema() -> dict[str, Any]:
     """The JSON Schema of a case file."""
     made = schema.Case.model_json_schema()
     parts, keys = made["$defs"], made["properties"]
-    _without_nothing(made, parts)
+    for part in (made, *parts.values()):
+        _without_nothing(part.get("properties", {}))
     keys["scene"] = _or_path(keys["scene"], f"a file with the scene ({names_of(Kind.SCENE)})")
     keys["accept"]["items"]["enum"] = [*KINDS, *WARNINGS, *CODES_OF_KINDS]
     made["oneOf"] = [{"required": ["robot"]}, {"required": ["robots"]}]
@@ -83,23 +83,13 @@ def _edit_obstacle(part: dict[str, Any]) -> None:
     ]
 
 
-def _without_nothing(made: dict[str, Any], parts: dict[str, Any]) -> None:
-    """Takes out that a key may have nothing behind it where that is refused."""
-    named = {**parts, schema.Case.__name__: made}
-    for model in dict.fromkeys(one for one in _models(StrictModel) if one.__name__ in named):
-        for key in model.FILLED:
-            given = named[model.__name__]["properties"][key]
+def _without_nothing(properties: dict[str, Any]) -> None:
+    """Takes out that a key may have nothing behind it, which is refused."""
+    for given in properties.values():
+        if given.get("default", ...) is None:
+            del given["default"]
             kinds = [kind for kind in given.pop("anyOf") if kind != {"type": "null"}]
-            given.pop("default", None)
             given.update(kinds[0] if len(kinds) == 1 else {"anyOf": kinds})
-    for key in ("robot", "robots"):
-        made["properties"][key] = made["properties"][key]["anyOf"][0]
-
-
-def _models(base: type[StrictModel]) -> Iterator[type[StrictModel]]:
-    for model in base.__subclasses__():
-        yield model
-        yield from _models(model)
 
 
 def _or_path(mapping: dict[str, Any], what: str) -> dict[str, Any]:

@@ -16,8 +16,6 @@ TwoPatterns = Annotated[list[Name], Field(min_length=2, max_length=2)]
 class PairRow(WindowedEntry):
     """Pairs of bodies by two patterns, and when they are meant."""
 
-    FILLED = WindowedEntry.FILLED | {"while_carried"}
-
     between: TwoPatterns
     while_carried: Name | None = None
 
@@ -47,8 +45,6 @@ class AllowedPair(PairRow):
 
 class Rule(PairRow):
     """Limits of some pairs [m]; of several rules for a pair the last counts."""
-
-    FILLED = PairRow.FILLED | {"name", "fail", "warn"}
 
     name: Name | None = None
     fail: Level | None = None

@@ -56,8 +56,6 @@ class ScaledFile(StrictModel):
 class Mesh(ScaledFile):
     """A mesh file; `tolerance` [m] is how far the facets of a CAD file may be off its surface."""
 
-    FILLED = frozenset({"tolerance"})
-
     collada_up_axis: Literal["ros", "file"] = "file"
     tolerance: Annotated[float | None, Field(ge=FINEST_TESSELLATION, le=COARSEST_TESSELLATION)] = (
         None
@@ -86,8 +84,6 @@ class ScanUnit(StrictModel):
 
 class ScannedPoints(ScaledFile):
     """A file of points of a scan, each a ball of `radius` [m]; its coordinates are in `units`, times `scale`."""
-
-    FILLED = frozenset({"units"})
 
     radius: Annotated[float, Field(gt=0)]
     units: ScanUnit | None = None
@@ -118,8 +114,6 @@ class Obstacle(_Shaped):
     """A named solid: it stands at `pose`, rides `on` a link or an obstacle at `pose`, or goes where the table of
     `moves` says. Its clearance is lessened by `padding`.
     """
-
-    FILLED = frozenset({"on", "moves"})
 
     mesh: Mesh | None = None
     points: ScannedPoints | None = None
@@ -159,8 +153,6 @@ class Scene(StrictModel):
     """What stands around the robots, or moves there. `frame` is what poses are given in: it is taken for the
     world, and suspect where it is a link that stands elsewhere. `warnings` are told by each check, a line each.
     """
-
-    FILLED = frozenset({"frame"})
 
     obstacles: list[Obstacle]
     frame: Name | None = None

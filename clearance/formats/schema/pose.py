@@ -56,15 +56,11 @@ class Pose(StrictModel):
 class Base(Pose):
     """Where a robot's root link stands, in the world or on a link or an obstacle."""
 
-    FILLED = frozenset({"on"})
-
     on: Name | None = None
 
 
 class WindowedEntry(StrictModel):
     """What is so from a time until a time of the run [s], or always."""
-
-    FILLED = frozenset({"from", "until"})
 
     from_: Annotated[float | None, Field(alias="from")] = None
     until: float | None = None

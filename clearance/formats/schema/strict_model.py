@@ -12,7 +12,6 @@ from typing import (
     TYPE_CHECKING,
     Annotated,
     Any,
-    ClassVar,
     TypeVar,
     Union,
     get_args,
@@ -79,10 +78,7 @@ Angle = Annotated[
 
 
 class StrictModel(BaseModel):
-    """A mapping whose keys are all known."""
-
-    FILLED: ClassVar[frozenset[str]] = frozenset()
-    """Keys that may be left out, but not be there with nothing behind them."""
+    """A mapping whose keys are all known; one that may be left out is not there with nothing behind it."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
@@ -90,6 +86,22 @@ class StrictModel(BaseModel):
     def keys(cls) -> tuple[str, ...]:
         """The keys as they are written in a file."""
         return tuple(field.alias or name for name, field in cls.model_fields.items())
+
+    @classmethod
+    def refuse_nothing(cls, data: dict[str, Any]) -> None:
+        """Refuses a key with nothing behind it, where that would be the same as no key.
+
+        Raises:
+            BadInput: with the key.
+        """
+        optional = {
+            one.alias or name for name, one in cls.model_fields.items() if one.default is None
+        }
+        for key in data:
+            if data[key] is None and key in optional:
+                raise BadInput(
+                    "nothing is given", where=key, valid="a value; else leave the key out"
+                )
 
     @classmethod
     def _blocks(cls) -> Iterator[tuple[str, type[StrictModel]]]:
@@ -119,10 +131,7 @@ class StrictModel(BaseModel):
         for key in data:
             if key not in keys:
                 raise UnknownKey(f"unknown key {key!r}", valid=cls._meant(str(key)))
-            if key in cls.FILLED and data[key] is None:
-                raise BadInput(
-                    "nothing is given", where=key, valid="a value; else leave the key out"
-                )
+        cls.refuse_nothing(data)
         return data
 
 

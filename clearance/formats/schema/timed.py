@@ -55,8 +55,6 @@ class LengthUnit(StrictModel):
 class PoseFile(TimedFile):
     """Poses over time and when they are followed; lengths of a table may be in other `units`."""
 
-    FILLED = frozenset({"units"})
-
     units: LengthUnit | None = None
 
     @property
@@ -81,13 +79,6 @@ class TrajectoryFile(TimedFile):
     is the start at 0 s if the first sample is later: positions, or names of states. `program` is a robot
     program instead of a file, or the path of one; it starts in `start_state`.
     """
-
-    FILLED = frozenset(
-        (
-            *("which", "units", "joints", "period", "columns", "topic"),
-            *("gaps", "wrap", "start_state", "program"),
-        )
-    )
 
     which: Annotated[int | None, Field(ge=1)] = None
     units: Units | None = None

@@ -102,16 +102,12 @@ class NumberRow(StrictModel):
 class Placement(NumberRow):
     """How far a frame may be off: the length of its offset [m], and a turn about any axis [rad]."""
 
-    FILLED = frozenset({"xyz", "angle"})
-
     xyz: Offset | None = None
     angle: Angle | None = None
 
 
 class ObstacleRow(Placement):
     """Of an obstacle; and how far its surface may stand out [m]."""
-
-    FILLED = Placement.FILLED | {"surface"}
 
     surface: Offset | None = None
 
@@ -133,11 +129,7 @@ class _NamedRows(StrictModel):
         if not isinstance(data, dict) or not data:
             given = f"{data!r:.60} is given" if data else "nothing is given"
             raise BadTolerance(given, valid="a mapping is needed")
-        for key in cls.FILLED:
-            if key in data and data[key] is None:
-                raise BadTolerance(
-                    "nothing is given", where=key, valid="a value; else leave the key out"
-                )
+        cls.refuse_nothing(data)
         return data
 
 
@@ -157,7 +149,6 @@ class BaseTolerance(_NamedRows, Placement):
 class Tracking(_NamedRows):
     """What controllers leave of joints [rad] or [m]: numbers by joint, or those of a controllers file."""
 
-    FILLED = frozenset({"file"})
     __pydantic_extra__: dict[str, Magnitude] = Field(init=False)
 
     file: Name | None = None
@@ -191,8 +182,6 @@ ERRORS = ("joints", "tracking", "kinematics", "base", "obstacles", "links", "tim
 
 class Tolerance(StrictModel):
     """How far all that a case speaks of may be off."""
-
-    FILLED = frozenset(ERRORS)
 
     joints: dict[Name, Magnitude] | None = None
     tracking: Tracking | None = None
