@@ -21,6 +21,7 @@ from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined, placed
 from clearance.formats.mesh.polygon_cut import fan, strip
 from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.triangles import Triangles, refuse_missing_corners
+from clearance.geometry.pose import pose_from_quaternion
 
 _HARMLESS = (
     "KHR_materials_",
@@ -153,21 +154,13 @@ def _matrix(node: GltfObject) -> np.ndarray:
 
 
 def _moved_turned_scaled(node: GltfObject) -> np.ndarray:
-    x, y, z, w = node.numbers("rotation", (0.0, 0.0, 0.0, 1.0), 4)
-    length = np.sqrt(x * x + y * y + z * z + w * w)
+    turn = node.numbers("rotation", (0.0, 0.0, 0.0, 1.0), 4)
+    length = np.linalg.norm(turn)
     if not abs(length - 1.0) < 0.01:
         raise NotFinite(f"its rotation has the length {length:g}", valid="a unit quaternion")
-    x, y, z, w = np.array([x, y, z, w]) / length
-    turn = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-    matrix = np.eye(4)
-    matrix[:3, :3] = turn * node.numbers("scale", (1.0, 1.0, 1.0), 3)
-    matrix[:3, 3] = node.numbers("translation", (0.0, 0.0, 0.0), 3)
+    place = node.numbers("translation", (0.0, 0.0, 0.0), 3)
+    matrix = pose_from_quaternion(place.tolist(), (turn / length).tolist())
+    matrix[:3, :3] *= node.numbers("scale", (1.0, 1.0, 1.0), 3)
     return matrix
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from clearance.errors import BadRobot, at
 from clearance.formats.robot.compound_joints import COMPOUND, chained
 from clearance.formats.robot.mjcf.mujoco_adapter import MjcfBody, MjcfFollower, MjcfJoint, MjcfModel
-from clearance.geometry.pose import pose_from_quaternion
+from clearance.geometry.pose import pose_from_quaternion, pose_from_rotation_vector
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice, Severity
 from clearance.world.robot import Joint, JointKind, Mimic
@@ -101,12 +101,7 @@ def _to_zero(joint: MjcfJoint, axis: np.ndarray) -> np.ndarray:
         return np.eye(4)
     if joint.kind == "slide":
         return _moved(-joint.reference * axis)
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    pose = np.eye(4)
-    half = np.sin(-0.5 * joint.reference)
-    pose[:3, :3] += np.sin(-joint.reference) * cross + 2.0 * half * half * (cross @ cross)
-    return pose
+    return pose_from_rotation_vector([0.0, 0.0, 0.0], (-joint.reference * axis).tolist())
 
 
 def _moved(place: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadRobot, at
 from clearance.formats.robot.compound_joints import chained, notes_on_parts
 from clearance.formats.robot.urdf.elements import number, numbers, pose_of
+from clearance.geometry.pose import pose_from_rotation_vector
 from clearance.tolerance import REACH
 from clearance.world.mimics import masters_of
 from clearance.world.names import require_own_names
@@ -177,17 +178,8 @@ def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:
 
 def _at_rest(joint: Joint, position: float) -> Joint:
     """A joint that follows a fixed one cannot move: it becomes fixed at its offset."""
-    pose = joint.parent_from_joint @ _motion(joint, position)
+    moved, still = (joint.axis * position).tolist(), [0.0, 0.0, 0.0]
+    slides = joint.kind is JointKind.PRISMATIC
+    motion = pose_from_rotation_vector(*((moved, still) if slides else (still, moved)))
+    pose = joint.parent_from_joint @ motion
     return replace(joint, kind=JointKind.FIXED, mimic=None, parent_from_joint=pose)
-
-
-def _motion(joint: Joint, position: float) -> np.ndarray:
-    """(4, 4) pose of the child in the joint frame at `position`. Source: Rodrigues' formula."""
-    pose = np.eye(4)
-    if joint.kind is JointKind.PRISMATIC:
-        pose[:3, 3] = joint.axis * position
-        return pose
-    x, y, z = joint.axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    pose[:3, :3] += np.sin(position) * cross + (1 - np.cos(position)) * (cross @ cross)
-    return pose
