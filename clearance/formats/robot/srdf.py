@@ -6,24 +6,22 @@ Groups, end effectors and virtual joints are passed over. Not for: what an excus
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from clearance.errors import (
     BadRobot,
-    BadShape,
     BadSyntax,
     DuplicateName,
     MissingKey,
-    NotFinite,
     UnknownState,
     at,
     nearest_name,
 )
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.robot_element import robot_element
+from clearance.formats.text.numbers import finite_numbers
 from clearance.formats.text.unread import Format, Row, unread
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.names import checked_name
@@ -273,7 +271,8 @@ def _state(element: Element) -> GroupState:
         if name in positions:
             raise DuplicateName(f"joint {name!r} is there twice", valid="each joint once")
         with at(f"joint {name!r}"):
-            positions[name] = _numbers(joint.get("value"))
+            given = joint.get("value")
+            positions[name] = finite_numbers(given or "", f"value={given!r:.60} is given")
     group = checked_name(element.get("group") or "")
     return GroupState(group, _named(element, "name"), positions)
 
@@ -283,19 +282,6 @@ def _named(element: Element, attribute: str) -> str:
     if not name:
         raise MissingKey(f"<{element.tag}> has no {attribute}")
     return checked_name(name)
-
-
-def _numbers(text: str | None) -> tuple[float, ...]:
-    words = (text or "").split()
-    try:
-        values = tuple(float(word) for word in words if "_" not in word)
-    except ValueError:
-        values = ()
-    if not words or len(values) != len(words):
-        raise BadShape(f"value={text!r:.60} is given", valid="a number")
-    if not all(map(math.isfinite, values)):
-        raise NotFinite(f"value={text!r:.60} is given", valid="a finite number")
-    return values
 
 
 def _chosen(name: str, states: Sequence[GroupState]) -> GroupState:

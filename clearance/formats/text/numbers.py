@@ -1,4 +1,5 @@
-"""Numbers in text as mesh files write them: ASCII digits, a sign, a point, an exponent, and nothing else.
+"""Numbers in text as files of meshes, robots and scenes write them: ASCII digits, a sign, a point, an exponent,
+and nothing else.
 
 Python and numpy also take `1_0` for 10 and digits of other scripts; in a file either is damage. Not for:
 tables (`csv_table`).
@@ -6,12 +7,12 @@ tables (`csv_table`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import AnyStr
 
 import numpy as np
 
-from clearance.errors import BadSyntax
+from clearance.errors import BadShape, BadSyntax, NotFinite
 
 
 def floats(words: Sequence[AnyStr]) -> np.ndarray:
@@ -30,6 +31,27 @@ def integers(words: Sequence[AnyStr]) -> np.ndarray:
         BadSyntax: a word that is no whole number of 64 bits, with the word.
     """
     return _numbers(words, np.int64, "a whole number")
+
+
+def finite_numbers(text: str, given: str, counts: Collection[int] = ()) -> tuple[float, ...]:
+    """The finite numbers in a text, as many as one of `counts`; any number of them where that is empty.
+
+    Args:
+        given: what is given, for the errors.
+
+    Raises:
+        BadShape: other words, none, or another number of them. NotFinite: NaN or infinity.
+    """
+    try:
+        values = floats(text.split())
+    except BadSyntax:
+        values = np.empty(0)
+    if not len(values) or (counts and len(values) not in counts):
+        needed = f"{' or '.join(map(str, counts)) or 'a'} number"
+        raise BadShape(given, valid=f"{needed}{' is' if counts in ((), (1,)) else 's are'} needed")
+    if not np.isfinite(values).all():
+        raise NotFinite(given, valid="finite numbers are needed")
+    return tuple(values.tolist())
 
 
 def is_zero(word: str) -> bool:

@@ -212,7 +212,7 @@ def test_joints_that_cannot_be_set_are_left_out_with_a_note(tmp_path):
         ('<joint name="lift" value="x"/>', BadShape, "joint 'lift': value='x' is given; a number"),
         ('<joint name="lift" value="1_0"/>', BadShape, "value='1_0'"),
         ('<joint name="lift"/>', BadShape, "value=None is given"),
-        ('<joint name="lift" value="nan"/>', BadInput, "a finite number"),
+        ('<joint name="lift" value="nan"/>', BadInput, "finite numbers are needed"),
         ('<joint value="1"/>', MissingKey, "<joint> has no name"),
         ('<joint name="lift" value="1"/><joint name="lift" value="1"/>', BadInput, "there twice"),
     ],

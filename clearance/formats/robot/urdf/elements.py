@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadRobot, BadShape, MissingKey, NotFinite, at
+from clearance.errors import BadRobot, MissingKey, at
 from clearance.formats.plausibility import odd_angles
 from clearance.formats.robot.request import Geometry
 from clearance.formats.robot.robot_element import robot_element
 from clearance.formats.robot.shape_kinds import chosen_kind
-from clearance.formats.text.numbers import is_zero
+from clearance.formats.text.numbers import finite_numbers, is_zero
 from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
@@ -272,27 +272,13 @@ def _check(element: Element, where: str) -> None:
 
 
 def _check_numbers(element: Element, attribute: str, counts: tuple[int, ...], where: str) -> None:
-    text = element.get(attribute)
-    if text is None:
+    given = element.get(attribute)
+    if given is None:
         return
-    words = text.replace(",", " ").split()
-    try:
-        values = [float(word) for word in words if "_" not in word]
-    except ValueError:
-        values = []
-    if len(values) != len(words) or len(values) not in counts:
-        wanted = " or ".join(str(n) for n in counts)
-        plural = " is" if counts == (1,) else "s are"
-        raise BadShape(
-            f"{attribute}={text!r:.60} is given",
-            where=where,
-            valid=f"{wanted} number{plural} needed",
-        )
-    if not all(math.isfinite(value) for value in values):
-        raise NotFinite(
-            f"{attribute}={text!r:.60} is given", where=where, valid="finite numbers are needed"
-        )
-    element.set(attribute, " ".join(words))
+    text = given.replace(",", " ")
+    with at(where):
+        finite_numbers(text, f"{attribute}={given!r:.60} is given", counts)
+    element.set(attribute, text)
 
 
 def _check_quaternion(origin: Element, where: str) -> None:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadScene, BadShape, BadSyntax, MissingKey, NotFinite
+from clearance.errors import BadScene, BadSyntax, MissingKey
+from clearance.formats.text.numbers import finite_numbers
 from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
 from clearance.formats.text.xml_document import plain_root, with_entities
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
@@ -135,7 +136,7 @@ def numbers_of(element: Element, tag: str, n: int, default: str | None = None) -
     Raises:
         MissingKey, BadShape, NotFinite: there is no child, or not such numbers.
     """
-    return _numbers(text_of(element, tag, default), (n,), tag)
+    return _numbers(text_of(element, tag, default), n, tag)
 
 
 def pose_of(element: Element) -> np.ndarray:
@@ -150,7 +151,7 @@ def pose_of(element: Element) -> np.ndarray:
     kind = pose.get("rotation_format") or "euler_rpy"
     if kind not in ("euler_rpy", "quat_xyzw"):
         raise BadScene(f"rotation_format={kind!r:.60}", valid="euler_rpy or quat_xyzw")
-    values = _numbers(pose.text, (6,) if kind == "euler_rpy" else (7,), "pose")
+    values = _numbers(pose.text, 6 if kind == "euler_rpy" else 7, "pose")
     if kind == "quat_xyzw":
         return pose_from_quaternion(values[:3], of_unit_length(np.array([values[3:]]))[0][0])
     in_degrees = (pose.get("degrees") or "false").strip() in ("true", "1")
@@ -188,18 +189,8 @@ def base_of(element: Element) -> str:
     return "" if pose is None else pose.get("relative_to") or pose.get("frame") or ""
 
 
-def _numbers(text: str, counts: tuple[int, ...], tag: str) -> tuple[float, ...]:
-    words = text.split()
-    try:
-        values = tuple(float(word) for word in words if "_" not in word and word.isascii())
-    except ValueError:
-        values = ()
-    if len(values) != len(words) or len(values) not in counts:
-        needed = " or ".join(map(str, counts))
-        raise BadShape(f"<{tag}> is {text!r:.60}", valid=f"{needed} numbers are needed")
-    if not all(map(math.isfinite, values)):
-        raise NotFinite(f"<{tag}> is {text!r:.60}", valid="finite numbers are needed")
-    return values
+def _numbers(text: str, n: int, tag: str) -> tuple[float, ...]:
+    return finite_numbers(text, f"<{tag}> is {text!r:.60}", (n,))
 
 
 def _require_version(given: str) -> None:
