@@ -26,6 +26,7 @@ from clearance.formats.mesh.placing import MOST_COPIED_NODES, Z_FROM_Y_UP, CopyC
 from clearance.formats.mesh.request import MeshRequest, UpAxis
 from clearance.formats.mesh.triangles import Triangles
 from clearance.formats.text.numbers import floats
+from clearance.formats.text.xml_document import root_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -59,21 +60,9 @@ def read_collada(asked: MeshRequest) -> Triangles:
 
 def _geometry_only(data: bytes) -> Element:
     """The document without what has no shape, so that a missing texture is no fault."""
-    from lxml import etree
-
     if b"<!ENTITY" in data.replace(b"\0", b""):  # a few lines of them make gigabytes of text
         raise BadSyntax("the document declares entities", valid="a document without <!ENTITY>")
-    parser = etree.XMLParser(
-        remove_comments=True,
-        remove_pis=True,
-        resolve_entities=False,
-        huge_tree=True,
-        no_network=True,
-    )
-    try:
-        root = etree.fromstring(data, parser)
-    except (etree.XMLSyntaxError, ValueError) as error:
-        raise BadSyntax(f"not XML: {getattr(error, 'msg', None) or error}") from None
+    root = root_of(data, "a COLLADA file", is_huge=True)
     if local_name(root) != "COLLADA":
         raise BadSyntax(f"the root element is <{local_name(root)}>", valid="<COLLADA>")
     for element in list(root.iter(*(f"{{*}}{name}" for name in _IRRELEVANT))):

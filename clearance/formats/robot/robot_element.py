@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadSyntax
+from clearance.formats.text.xml_document import root_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -27,11 +28,7 @@ def robot_element(data: bytes, wanted: str) -> Element:
     """
     from lxml import etree
 
-    parser = etree.XMLParser(remove_comments=True, remove_pis=True, resolve_entities=False)
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as error:
-        raise BadSyntax(f"not XML: {error.msg}", valid=f"{wanted} is needed") from None
+    root = root_of(data, wanted)
     if etree.QName(root).localname != "robot":
         raise BadSyntax(
             f"the root element is <{etree.QName(root).localname}>", valid="<robot> is needed"

@@ -10,7 +10,7 @@ import numpy as np
 from clearance.errors import BadScene, BadSyntax, MissingKey
 from clearance.formats.text.numbers import finite_numbers
 from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
-from clearance.formats.text.xml_document import plain_root, with_entities
+from clearance.formats.text.xml_document import plain_root
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.names import checked_name
@@ -88,8 +88,6 @@ def sdf_element(data: bytes) -> tuple[Element, list[Unread]]:
     """
     if len(data) > MOST_BYTES:
         raise BadSyntax(f"{len(data)} bytes are given", valid=f"{MOST_BYTES} or fewer")
-    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        raise with_entities()
     root = plain_root(data, "an SDF file")
     if root.tag not in ("sdf", "gazebo"):
         raise BadSyntax(f"the root element is <{root.tag}>", valid="<sdf> is needed")
