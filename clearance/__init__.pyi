@@ -5,7 +5,6 @@ from .findings.finding import Finding
 from .formats.cloud.formats import read_points
 from .formats.mesh.mesh_file import read_mesh
 from .formats.robot.formats import load_robot
-from .formats.robot.urdf.robot import load_urdf
 from .gains.answer import gain
 from .gains.result import Gain
 from .gains.turn import Turn
@@ -115,7 +114,6 @@ __all__ = [
     "intersect",
     "load_case",
     "load_robot",
-    "load_urdf",
     "load_waivers",
     "minimum_distance",
     "penetration",

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import clearance as cl
+from clearance.formats.robot.formats import load_robot
 from clearance.formats.robot.srdf import load_srdf
-from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
@@ -101,7 +101,7 @@ def absent_robots() -> list[str]:
 
 def read(urdf: str, srdf: str) -> tuple[Robot, CollisionMatrix]:
     """A robot and its allowed collision matrix."""
-    robot = load_urdf(ROBOTS / urdf, package_dirs=[ROBOTS.parents[1]])
+    robot = load_robot(ROBOTS / urdf, package_dirs=[ROBOTS.parents[1]])
     return robot, load_srdf(ROBOTS / srdf, robot)
 
 

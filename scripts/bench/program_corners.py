@@ -120,7 +120,7 @@ KINDS: dict[str, Callable[[OwnArm, np.ndarray, np.random.Generator], Drawn]] = {
 
 def random_corners(kind: str, file: ArmFile, draw: np.random.Generator) -> Iterator[Corner]:
     """Motions of a kind that the arm can follow."""
-    robot, own = cl.load_urdf(file.path), OwnArm.read(file.path, file.link, TOOL)
+    robot, own = cl.load_robot(file.path), OwnArm.read(file.path, file.link, TOOL)
     names = [joint.name for joint in own.joints]
     while True:
         start = np.array(file.posture)[: len(names)] + draw.uniform(-0.2, 0.2, len(names))
@@ -164,7 +164,7 @@ def _among_boxes(
             away, pose = draw.normal(size=3), np.eye(4)
             pose[:3, 3] = middle + 0.15 * away / np.linalg.norm(away)
             boxes.append(cl.Obstacle(cl.Body(f"box {i}", cl.box([0.06, 0.06, 0.06])), pose))
-        placed = cl.PlacedRobot(cl.load_urdf(corner.file.path), trajectory=corner.made)
+        placed = cl.PlacedRobot(cl.load_robot(corner.file.path), trajectory=corner.made)
         case = cl.Case("zone", (placed,), tuple(boxes))
         yield case, _proven_in_zone(case), corner
 

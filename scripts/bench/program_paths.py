@@ -246,7 +246,7 @@ def random_motions_on(
 ) -> Iterator[Motion]:
     """Random lines and arcs on plates or belts that move meanwhile, in turns, that the arm can follow."""
     draw, found = np.random.default_rng(1), 0
-    robot, own = cl.load_urdf(file.path), OwnArm.read(file.path, file.link, TOOL)
+    robot, own = cl.load_robot(file.path), OwnArm.read(file.path, file.link, TOOL)
     while found < n:
         start = np.array(file.posture)[: len(own.joints)] + draw.uniform(-0.2, 0.2, len(own.joints))
         turn, origin = own.poses(start[None].astype(LONG))
@@ -266,7 +266,7 @@ def random_motions_on(
 def random_motions(file: ArmFile, n: int, seed: int = 0) -> Iterator[tuple[str, Motion]]:
     """Random lines, arcs, and lines with a corner zone between, in turns, that the arm can follow."""
     draw, found = np.random.default_rng(seed), 0
-    robot, own = cl.load_urdf(file.path), OwnArm.read(file.path, file.link, TOOL)
+    robot, own = cl.load_robot(file.path), OwnArm.read(file.path, file.link, TOOL)
     while found < n:
         kind = KINDS[found % len(KINDS)]
         start = np.array(file.posture)[: len(own.joints)] + draw.uniform(-0.2, 0.2, len(own.joints))

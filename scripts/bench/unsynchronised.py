@@ -113,7 +113,7 @@ def arm(
 ) -> PlacedRobot:
     """An arm that waves about its rest."""
     urdf, rest = ARMS[name]
-    robot = cl.load_urdf(folder / urdf, package_dirs=[(folder / urdf).parent])
+    robot = cl.load_robot(folder / urdf, package_dirs=[(folder / urdf).parent])
     joints = [joint.name for joint in robot.moving_joints][: len(rest)]
     times, n = np.linspace(0.0, 10.0, n_steps), len(rest)
     rate, phase = random.uniform(0.3, 1.5, n), random.uniform(0.0, 6.0, n)

@@ -11,7 +11,7 @@ import pytest
 from clearance.cli import run
 from clearance.errors import NothingToMeasure
 from clearance.formats.motion.trajectory_writer import written
-from clearance.formats.robot.urdf.robot import load_urdf
+from clearance.formats.robot.formats import load_robot
 from clearance.world.joint_positions import turns
 from clearance.world.trajectory import Trajectory
 
@@ -33,9 +33,9 @@ SCENE = """<?xml version="1.0"?>
 def motion_of(urdf: str) -> Trajectory:
     """Five positions about the middle of the limits of all joints that turn, a second apart."""
     try:
-        robot = load_urdf(urdf)
+        robot = load_robot(urdf)
     except NothingToMeasure:
-        robot = load_urdf(urdf, geometry="visual")
+        robot = load_robot(urdf, geometry="visual")
     joints = [joint for joint in robot.moving_joints if turns(joint)]  # grippers and lifts rest
     bounds = np.array([(max(one.lower, -np.pi), min(one.upper, np.pi)) for one in joints])
     middle, half = bounds.mean(axis=1), 0.5 * np.ptp(bounds, axis=1)

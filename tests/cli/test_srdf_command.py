@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import run
+from clearance.formats.robot.formats import load_robot
 from clearance.formats.robot.srdf import load_srdf
-from clearance.formats.robot.urdf.robot import load_urdf
 from tests.report.schemas import objections
 
 ROOT = Path(__file__).parents[2]
@@ -86,7 +86,7 @@ def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsy
         "3 pairs: 1 proven never to meet, 2 adjacent (not checked); "
         "to be measured: 0 can meet, 0 undecided"
     )
-    matrix = load_srdf(out, load_urdf(urdf))
+    matrix = load_srdf(out, load_robot(urdf))
     assert matrix.reason("base", "upper") == "Never"
     assert matrix.reason("upper", "lower") == "Adjacent"
     assert run(["srdf", "audit", urdf, str(out)]) == 0
@@ -98,7 +98,7 @@ def test_a_proposal_leaves_what_can_meet_to_be_measured(robot, tmp_path, capsys)
     told = capsys.readouterr().out
     assert "<!-- measured: base - upper: can meet at shoulder " in told
     (tmp_path / "made.srdf").write_text(told)
-    assert load_srdf(tmp_path / "made.srdf", load_urdf(urdf)).reason("base", "upper") is None
+    assert load_srdf(tmp_path / "made.srdf", load_robot(urdf)).reason("base", "upper") is None
 
 
 @pytest.mark.slow

@@ -18,8 +18,8 @@ import pytest
 import clearance as cl
 from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.triangles import triangle_soup
+from clearance.formats.robot.formats import load_robot
 from clearance.formats.robot.srdf import load_srdf
-from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
@@ -59,7 +59,7 @@ class Opinion(NamedTuple):
 def ours(name: str):
     """The robot and its allowed collision matrix."""
     urdf, srdf = FILES[name]
-    robot = load_urdf(ROBOTS / urdf, package_dirs=[ROBOTS.parents[1]])
+    robot = load_robot(ROBOTS / urdf, package_dirs=[ROBOTS.parents[1]])
     return robot, load_srdf(ROBOTS / srdf, robot)
 
 

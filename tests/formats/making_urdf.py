@@ -7,7 +7,7 @@ from clearance.formats.robot.request import RobotRequest
 from tests.formats.making import cube_stl
 
 
-def load_urdf(folder, urdf, package_dirs=(), geometry="collision"):
+def load_robot(folder, urdf, package_dirs=(), geometry="collision"):
     path = folder / "arm.urdf"
     path.write_bytes(urdf.encode() if isinstance(urdf, str) else urdf)
     if not (folder / "upper.stl").exists():

@@ -27,7 +27,7 @@ TOOLS = {"iiwa": "lbr_iiwa_link_7", "heron6": "tool_tip", "panda": "panda_hand"}
 @lru_cache
 def arm(name: str) -> Arm:
     """An arm with a tool that is off its flange."""
-    robot = cl.load_urdf(FILES[name])
+    robot = cl.load_robot(FILES[name])
     tool = np.eye(4)
     tool[:3, 3] = 0.02, -0.01, 0.1
     return Arm(robot, TOOLS[name], tool)

@@ -25,7 +25,7 @@ KUKA = "pybullet_data:kuka_iiwa/model.urdf"
 def kuka():
     from clearance.formats.files.input_files import resolved
 
-    return cl.load_urdf(resolved(KUKA, "."))
+    return cl.load_robot(resolved(KUKA, "."))
 
 
 @pytest.fixture(scope="module")

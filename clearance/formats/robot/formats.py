@@ -9,11 +9,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from clearance.formats.files.input_files import InputFiles
+from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.mesh.request import UpAxis
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.request import Geometry, RobotRequest, request_in_memory
+from clearance.formats.robot.request import Geometry, RobotRequest, checked_args
 from clearance.formats.robot.urdf.robot import read_urdf
 from clearance.world.robot import Robot
 
@@ -44,11 +44,19 @@ def load_robot(
     """The robot in a file of any format that is read, for cases that are made in memory.
 
     Args:
-        path: of a URDF or MJCF file; or the name of what a package brings, as in a case file.
+        path: of a URDF or MJCF file; or the name of what a package brings, as in a case file. Paths are relative
+            to the current folder.
         package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
-    request = request_in_memory(path, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
+    request = RobotRequest(
+        resolved(str(path), Path()),
+        tuple(map(Path, package_dirs)),
+        geometry,
+        collada_up_axis,
+        xacro,
+        checked_args(xacro_args),
+    )
     return read_robot(request, MeshStore(InputFiles(request.path.parent)))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from clearance.errors import BadRobot
-from clearance.formats.files.input_files import resolved
 from clearance.formats.mesh.request import UpAxis
 
 Geometry = Literal["collision", "visual", "collision_or_visual"]
@@ -33,26 +32,6 @@ class RobotRequest:
     collada_up_axis: UpAxis = "ros"
     xacro: bool = False
     xacro_args: tuple[tuple[str, str], ...] = ()
-
-
-def request_in_memory(
-    path: str | Path,
-    package_dirs: Sequence[str | Path],
-    geometry: Geometry,
-    collada_up_axis: UpAxis,
-    xacro: bool,
-    xacro_args: Mapping[str, str | bool | int | float],
-) -> RobotRequest:
-    """What a caller in Python asks; paths are relative to the current folder.
-
-    Raises:
-        BadInput: a name that no argument of xacro can have.
-    """
-    folders = tuple(map(Path, package_dirs))
-    args = checked_args(xacro_args)
-    return RobotRequest(
-        resolved(str(path), Path()), folders, geometry, collada_up_axis, xacro, args
-    )
 
 
 def checked_args(given: Mapping[str, str | bool | int | float]) -> tuple[tuple[str, str], ...]:

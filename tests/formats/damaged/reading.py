@@ -125,11 +125,11 @@ def controller(data: bytes, folder: Path, name: str) -> object:
 @lru_cache
 def programmed():
     """The arm that programs move."""
-    from clearance.formats.robot.urdf.robot import load_urdf
+    from clearance.formats.robot.formats import load_robot
     from clearance.world.placed_robot import PlacedRobot
 
     root = Path(__file__).parents[3]
-    return PlacedRobot(load_urdf(root / "robots" / "heron6" / "heron6.urdf"))
+    return PlacedRobot(load_robot(root / "robots" / "heron6" / "heron6.urdf"))
 
 
 def bag(path: Path) -> object:

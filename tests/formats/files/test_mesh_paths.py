@@ -7,7 +7,7 @@ from clearance.formats.files import mesh_paths
 from clearance.formats.files.input_files import InputFiles
 from clearance.world.notice import Severity
 from tests.formats.making import cube_stl
-from tests.formats.making_urdf import collision, link, load_urdf, robot
+from tests.formats.making_urdf import collision, link, load_robot, robot
 
 ASKED = robot(link(collision('<mesh filename="package://arms/meshes/part.stl"/>')))
 
@@ -33,7 +33,7 @@ def test_the_package_is_found_above_the_urdf_or_beside_folders_above_it(tmp_path
     folder = tmp_path / urdf_in
     folder.mkdir(parents=True)
     part(tmp_path / "arms" / "meshes" / "part.stl")
-    found = load_urdf(folder, ASKED)
+    found = load_robot(folder, ASKED)
     assert found.bodies[0].origin == origin
     assert found.notices == ()
 
@@ -43,7 +43,7 @@ def test_a_folder_of_another_name_is_the_package_that_its_manifest_names(tmp_pat
     folder.mkdir(parents=True)
     (tmp_path / "arms-2.1" / "package.xml").write_text("<package><name> arms </name></package>")
     part(tmp_path / "arms-2.1" / "meshes" / "part.stl")
-    found = load_urdf(folder, ASKED)
+    found = load_robot(folder, ASKED)
     assert found.bodies[0].origin == "../meshes/part.stl"
     assert found.notices == ()
 
@@ -63,7 +63,7 @@ def test_the_package_is_found_by_ros_variables(tmp_path, monkeypatch, variable, 
     folder = tmp_path / "case"
     folder.mkdir()
     part(tmp_path / place / "meshes" / "part.stl")
-    found = load_urdf(folder, ASKED)
+    found = load_robot(folder, ASKED)
     shown = f"../{place}/meshes/part.stl"
     assert found.bodies[0].origin == shown and found.notices == ()
     assert found.notes == (f"${variable} leads to package://arms/meshes/part.stl as {shown}",)
@@ -73,7 +73,7 @@ def test_a_file_of_the_same_name_stands_in_as_suspect_input_that_names_both(tmp_
     part(tmp_path / "meshes" / "part.stl", tmp_path / "meshes" / "end.stl")
     two = collision('<mesh filename="package://arms/meshes/part.stl"/>')
     two += collision('<mesh filename="package://arms/meshes/end.stl"/>')
-    (notice,) = load_urdf(tmp_path, robot(link(two))).notices
+    (notice,) = load_robot(tmp_path, robot(link(two))).notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
     assert notice.text == (
         "CHECK PACKAGE: package 'arms' was not found: package://arms/meshes/part.stl is taken from meshes/part.stl"
@@ -85,7 +85,7 @@ def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_PACKAGE_PATH", "/opt/ws/src")
     (tmp_path / "given").mkdir()
     with pytest.raises(MissingFile) as caught:
-        load_urdf(tmp_path, ASKED, [tmp_path / "given"])
+        load_robot(tmp_path, ASKED, [tmp_path / "given"])
     told = str(caught.value)
     n_above = len(tmp_path.parents)
     assert "there is no mesh 'package://arms/meshes/part.stl'" in told
@@ -113,7 +113,7 @@ def test_a_workspace_is_searched_all_the_way_down(tmp_path, given, place):
     package(tmp_path / place)
     part(tmp_path / "ws" / "build" / "arms" / "meshes" / "part.stl")
     (tmp_path / "ws" / "install" / "other").mkdir(parents=True, exist_ok=True)
-    found = load_urdf(tmp_path / "case", ASKED, [tmp_path / given])
+    found = load_robot(tmp_path / "case", ASKED, [tmp_path / given])
     assert found.bodies[0].origin == f"../{place}/meshes/part.stl" and found.notices == ()
     asked = "arms", tmp_path / "case", [tmp_path / given]
     assert mesh_paths.package_folder(*asked).path == tmp_path / place
@@ -128,12 +128,12 @@ def test_a_path_of_another_machine_is_looked_for_by_its_package(tmp_path, before
     folder = tmp_path / "case"
     folder.mkdir()
     with pytest.raises(MissingFile, match=r"there is no mesh .*; give the folder of its package"):
-        load_urdf(folder, asked)
+        load_robot(folder, asked)
     package(tmp_path / "here" / "arms-2")
     (tmp_path / "here" / "arms-2" / "package.xml").write_text(
         "<package><name>arms</name></package>"
     )
-    found = load_urdf(folder, asked, [tmp_path / "here"])
+    found = load_robot(folder, asked, [tmp_path / "here"])
     shown = "../here/arms-2/meshes/part.stl"
     assert found.bodies[0].origin == shown and found.notices == ()
     told = f"path of another machine, found in the same package here: {given} is read from {shown}"
@@ -143,7 +143,7 @@ def test_a_path_of_another_machine_is_looked_for_by_its_package(tmp_path, before
 def test_a_folder_that_is_only_called_as_on_another_machine_is_suspect(tmp_path):
     part(tmp_path / "meshes" / "part.stl")
     asked = robot(link(collision('<mesh filename="file:///home/jane/arms/meshes/part.stl"/>')))
-    (notice,) = load_urdf(tmp_path, asked).notices
+    (notice,) = load_robot(tmp_path, asked).notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
     assert "file:///home/jane/arms/meshes/part.stl is taken from meshes/part.stl" in notice.text
 
@@ -152,8 +152,8 @@ def test_a_folder_that_is_only_called_as_on_another_machine_is_suspect(tmp_path)
 def test_the_folder_that_a_suspect_path_asks_for_settles_it(tmp_path, given):
     part(tmp_path / "arms" / "meshes" / "part.stl")
     asked = robot(link(collision('<mesh filename="file:///home/jane/arms/meshes/part.stl"/>')))
-    assert load_urdf(tmp_path, asked).notices
-    assert load_urdf(tmp_path, asked, [tmp_path / given]).notices == ()
+    assert load_robot(tmp_path, asked).notices
+    assert load_robot(tmp_path, asked, [tmp_path / given]).notices == ()
 
 
 def test_a_pointer_of_git_lfs_is_named_as_such(tmp_path):
@@ -161,7 +161,7 @@ def test_a_pointer_of_git_lfs_is_named_as_such(tmp_path):
     pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
     (tmp_path / "arms" / "meshes" / "part.stl").write_bytes(pointer)
     with pytest.raises(MissingFile, match=r"part\.stl' is a pointer of git LFS.*; git lfs pull"):
-        load_urdf(tmp_path, ASKED)
+        load_robot(tmp_path, ASKED)
     (tmp_path / "path.csv").write_bytes(pointer)
     with pytest.raises(MissingFile, match=r"'path\.csv' is a pointer of git LFS"):
         InputFiles(tmp_path).unread(tmp_path / "path.csv")

@@ -8,7 +8,7 @@ from clearance.geometry.pose import pose_from_rpy
 from clearance.world.kinematics import link_poses
 from clearance.world.placed_robot import PlacedRobot
 from tests.formats.making_case import load_small
-from tests.formats.making_urdf import BOX, joint, link, load_urdf, robot
+from tests.formats.making_urdf import BOX, joint, link, load_robot, robot
 
 UP = '<axis xyz="0 0 1"/>'
 AT = '<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>'
@@ -25,14 +25,14 @@ def pose_of_body(loaded, *positions: float) -> np.ndarray:
 
 
 def test_a_planar_joint_slides_along_x_and_y_and_then_turns_about_z(tmp_path):
-    loaded = load_urdf(tmp_path, moving("planar", AT + UP))
+    loaded = load_robot(tmp_path, moving("planar", AT + UP))
     assert [one.name for one in loaded.moving_joints] == ["free/x", "free/y", "free/yaw"]
     expected = pose_from_rpy([1, 2, 3], [0.1, 0.2, 0.3]) @ pose_from_rpy([4, 5, 0], [0, 0, 0.7])
     np.testing.assert_allclose(pose_of_body(loaded, 4, 5, 0.7), expected, rtol=0, atol=1e-14)
 
 
 def test_a_floating_joint_is_a_place_and_roll_pitch_yaw(tmp_path):
-    loaded = load_urdf(tmp_path, moving("floating", AT))
+    loaded = load_robot(tmp_path, moving("floating", AT))
     positions = [4.0, 5.0, 6.0, 0.3, -0.2, 0.1]
     expected = pose_from_rpy([1, 2, 3], [0.1, 0.2, 0.3]) @ pose_from_rpy(
         [4, 5, 6], [0.1, -0.2, 0.3]
@@ -57,7 +57,7 @@ def test_a_floating_joint_is_a_place_and_roll_pitch_yaw(tmp_path):
 )  # fmt: skip
 def test_what_cannot_be_read_is_refused(tmp_path, urdf, fault, words):
     with pytest.raises(fault, match=words):
-        load_urdf(tmp_path, urdf)
+        load_robot(tmp_path, urdf)
 
 
 FREE = robot(

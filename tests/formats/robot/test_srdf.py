@@ -6,7 +6,7 @@ from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, UnknownS
 from clearance.formats.robot.srdf import load_srdf
 from clearance.world.collision_matrix import BY_DEFAULT
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
-from tests.formats.making_urdf import collision, joint, link, load_urdf, robot
+from tests.formats.making_urdf import collision, joint, link, load_robot, robot
 
 BOX = collision('<box size="1 1 1"/>')
 ARM = robot(
@@ -16,7 +16,7 @@ ARM = robot(
 
 @pytest.fixture
 def read(tmp_path):
-    arm = load_urdf(tmp_path, ARM)
+    arm = load_robot(tmp_path, ARM)
 
     def read_rows(*rows, name="arm", document=None):
         text = document or f'<robot name="{name}">{"".join(rows)}</robot>'

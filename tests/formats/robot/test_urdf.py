@@ -14,7 +14,7 @@ from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests.formats.making import ARM, cube_stl, signed_volume
 from tests.formats.making_case import changed, load_small
-from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, robot
+from tests.formats.making_urdf import BOX, collision, joint, link, load_robot, robot
 
 
 def world_from_link(robot, **positions):
@@ -26,7 +26,7 @@ def world_from_link(robot, **positions):
 
 
 def test_an_arm_has_its_links_joints_and_bodies(tmp_path):
-    arm = load_urdf(tmp_path, ARM)
+    arm = load_robot(tmp_path, ARM)
     assert arm.name == "arm"
     assert arm.link_names == ("base", "upper", "tip")
     assert [j.name for j in arm.joints] == ["shoulder", "flange"]
@@ -55,7 +55,7 @@ def test_an_arm_has_its_links_joints_and_bodies(tmp_path):
     ],
 )
 def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, size, volume):
-    body = load_urdf(tmp_path, robot(link(collision(shape)))).bodies[0]
+    body = load_robot(tmp_path, robot(link(collision(shape)))).bodies[0]
     extent = body.shape.bounds[1] - body.shape.bounds[0]
     assert (extent >= size).all()
     assert extent == pytest.approx(size, abs=2 * 1.01e-4)
@@ -69,7 +69,7 @@ def test_a_quaternion_turns_as_the_angles_do(tmp_path, version):
     for turn in ('rpy="0 0 1.5707963267948966"', f'quat_xyzw="0 0 {half} {half}"'):
         shape = collision('<box size="1 2 3"/>', f'<origin xyz="1 0 0" {turn}/>')
         text = robot(link(shape)).replace("<robot", f'<robot version="{version}"')
-        bounds = load_urdf(tmp_path, text).bodies[0].shape.bounds
+        bounds = load_robot(tmp_path, text).bodies[0].shape.bounds
         assert bounds == pytest.approx(np.array([[0, -0.5, -1.5], [2, 0.5, 1.5]]), abs=1e-15)
 
 
@@ -77,7 +77,7 @@ SLIDE = '<axis xyz="1 0 0"/><limit lower="0" upper="9"/>'
 
 
 def test_mimic_chains_follow_their_master(tmp_path):
-    arm = load_urdf(
+    arm = load_robot(
         tmp_path,
         robot(
             *(link("", name) for name in "abcd"),
@@ -100,7 +100,7 @@ def test_mimic_chains_follow_their_master(tmp_path):
 
 
 def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
-    arm = load_urdf(
+    arm = load_robot(
         tmp_path,
         robot(
             *(link("", name) for name in "abcd"),
@@ -134,7 +134,7 @@ def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
     ],
 )
 def test_limits(tmp_path, kind, inner, limits):
-    arm = load_urdf(
+    arm = load_robot(
         tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner))
     )
     assert (arm.joints[0].lower, arm.joints[0].upper) == limits
@@ -160,7 +160,7 @@ def test_meshes_are_found(tmp_path, given, place):
     (tmp_path / place).mkdir(parents=True, exist_ok=True)
     (tmp_path / place / "part.stl").write_bytes(cube_stl())
     mesh = f'<mesh filename="{given.format(folder=tmp_path)}"/>'
-    arm = load_urdf(tmp_path, robot(link(collision(mesh))), [tmp_path / "dirs"])
+    arm = load_robot(tmp_path, robot(link(collision(mesh))), [tmp_path / "dirs"])
     assert arm.bodies[0].origin == f"{place}/part.stl"
 
 
@@ -172,7 +172,7 @@ def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
     urdf = robot(
         link(extra), "<gazebo><x/></gazebo><transmission/><material name='m'/><!-- end -->"
     )
-    assert load_urdf(tmp_path, urdf).bodies[0].shape.n_faces == 6
+    assert load_robot(tmp_path, urdf).bodies[0].shape.n_faces == 6
 
 
 def test_what_is_not_read_stands_in_a_note_or_where_it_may_be_a_shape_in_a_warning(tmp_path):
@@ -181,7 +181,7 @@ def test_what_is_not_read_stands_in_a_note_or_where_it_may_be_a_shape_in_a_warni
     )
     contact = f"<contact>{BOX}</contact>"
     loop = '<loop_joint><link1 link="a" rpy="0 0 1"/></loop_joint>'
-    made = load_urdf(tmp_path, robot(link(BOX + contact), link(BOX, "b"), axis_free, loop))
+    made = load_robot(tmp_path, robot(link(BOX + contact), link(BOX, "b"), axis_free, loop))
     assert made.notes == (
         "arm.urdf: joints without <axis>, taken as x: 'j'",
         "arm.urdf: velocities that are no numbers, taken as unlimited: '2,5' of 'j'",
@@ -203,9 +203,9 @@ def test_a_default_namespace_changes_nothing(tmp_path):
         .replace("<u:/", "</u:")
         .replace("<u:robot ", '<u:robot xmlns:u="urn:u" ')
     )
-    expected = load_urdf(tmp_path, plain)
+    expected = load_robot(tmp_path, plain)
     for text in (named, prefixed):
-        found = load_urdf(tmp_path, text)
+        found = load_robot(tmp_path, text)
         assert found.link_names == expected.link_names
         assert [body.shape.n_faces for body in found.bodies] == [6, 6]
         assert [j.name for j in found.joints] == [j.name for j in expected.joints]
@@ -214,7 +214,7 @@ def test_a_default_namespace_changes_nothing(tmp_path):
 def test_elements_in_each_other_without_end_are_refused(tmp_path):
     deep = "<x>" * 100_000 + "</x>" * 100_000
     with pytest.raises(BadSyntax, match="not XML"):
-        load_urdf(tmp_path, robot(link(BOX), deep))
+        load_robot(tmp_path, robot(link(BOX), deep))
 
 
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_elements_in_each_other_without_end_are_refused(tmp_path):
     ],
 )
 def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, empty):
-    arm = load_urdf(tmp_path, robot(link(BOX + empty), link(empty, "b"), joint("j", "a", "b")))
+    arm = load_robot(tmp_path, robot(link(BOX + empty), link(empty, "b"), joint("j", "a", "b")))
     assert [body.name for body in arm.bodies] == ["a"]
     assert np.array_equal(arm.bodies[0].shape.vertices, cl.box((1.0, 1.0, 1.0)).vertices)
     (notice,) = arm.notices
@@ -243,7 +243,7 @@ def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):
         joint("l", "c", "d"),
         joint("m", "d", "e", "continuous", ""),
     ]
-    arm = load_urdf(tmp_path, robot(*(link(BOX, name) for name in "abcde"), *joints))
+    arm = load_robot(tmp_path, robot(*(link(BOX, name) for name in "abcde"), *joints))
     told = "arm.urdf: joints without <limit>, taken as unlimited: 'j', 'k'"
     assert [note for note in arm.notes if "without <limit>" in note] == [told]
 
@@ -266,7 +266,7 @@ URDF = """<robot name="r"><link name="a"/><link name="b"><collision><geometry><s
 )
 def test_a_speed_that_is_one_is_read_and_nothing_is_refused_for_it(tmp_path, given, velocity):
     (tmp_path / "r.urdf").write_text(URDF.format(limit=given))
-    (joint,) = cl.load_urdf(tmp_path / "r.urdf").joints
+    (joint,) = cl.load_robot(tmp_path / "r.urdf").joints
     assert joint.velocity == velocity and "velocity" not in repr(joint)
 
 
@@ -281,19 +281,19 @@ def arm(base: str, *others: str) -> str:
 
 
 def test_links_that_are_seen_but_not_measured_are_a_warning_of_their_own(tmp_path):
-    (notice,) = load_urdf(tmp_path, arm(BOX, VISUAL, "", VISUAL, BOX + VISUAL)).notices
+    (notice,) = load_robot(tmp_path, arm(BOX, VISUAL, "", VISUAL, BOX + VISUAL)).notices
     assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
     assert notice.text.startswith(
         "2 links have a visual but no collision shape and are not measured: 'link0', 'link2'; "
     )
     assert "geometry: collision_or_visual" in notice.text
-    (notice,) = load_urdf(tmp_path, arm(BOX, *([VISUAL] * 9))).notices
+    (notice,) = load_robot(tmp_path, arm(BOX, *([VISUAL] * 9))).notices
     assert "9 links have" in notice.text and "'link5' and 3 more" in notice.text
 
 
 def test_collision_or_visual_measures_all_that_has_a_shape(tmp_path):
     urdf = arm(BOX + VISUAL, VISUAL, "")
-    found = load_urdf(tmp_path, urdf, geometry="collision_or_visual")
+    found = load_robot(tmp_path, urdf, geometry="collision_or_visual")
     assert found.notices == ()
     sizes = {body.name: float(body.shape.bounds[1, 0]) for body in found.bodies}
     assert sizes == {"base": 0.5, "link0": 1.0}
@@ -307,7 +307,7 @@ def test_collision_or_visual_measures_all_that_has_a_shape(tmp_path):
 )
 def test_a_robot_of_the_other_kind_of_shapes_is_told_what_to_give(tmp_path, shape, asked, other):
     with pytest.raises(NothingToMeasure) as caught:
-        load_urdf(tmp_path, arm(shape, shape), geometry=asked)
+        load_robot(tmp_path, arm(shape, shape), geometry=asked)
     assert str(caught.value) == (
         f"arm.urdf: no link has a {asked} shape, 2 links have a {other} shape; "
         f"give robot: {{geometry: {other}}}"
@@ -325,7 +325,7 @@ def test_couplings_and_limits_of_a_controller_are_told(tmp_path):
         joint("bound", "c", "d", "prismatic", SLIDE + '<mimic joint="first"/>'),
     )
     links = [link(BOX, "a"), *(link("", name) for name in "bcd")]
-    made = load_urdf(
+    made = load_robot(
         tmp_path, robot(*links, *slides, coupled.format("free"), coupled.format("bound"))
     )
     (notice,) = made.notices

@@ -15,7 +15,7 @@ from clearance.errors import (
     UnknownJoint,
     UnknownLink,
 )
-from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, robot
+from tests.formats.making_urdf import BOX, collision, joint, link, load_robot, robot
 
 A_B = link("", "a") + link("", "b")
 
@@ -90,7 +90,7 @@ def in_joint(inner: str) -> str:
 )  # fmt: skip
 def test_each_fault_is_one_line_with_file_and_element(tmp_path, urdf, fault, says):
     with pytest.raises(fault) as caught:
-        load_urdf(tmp_path, urdf)
+        load_robot(tmp_path, urdf)
     assert says in str(caught.value)
     assert str(caught.value).startswith("arm.urdf: ")
 
@@ -98,4 +98,4 @@ def test_each_fault_is_one_line_with_file_and_element(tmp_path, urdf, fault, say
 def test_entities_among_the_elements_are_refused(tmp_path):
     text = "<!DOCTYPE robot [<!ENTITY b '<link name=\"a\"/>'>]>" + robot("&b;")
     with pytest.raises(BadSyntax, match="&b; stands for something among the elements"):
-        load_urdf(tmp_path, text)
+        load_robot(tmp_path, text)

@@ -11,9 +11,9 @@ from clearance import check, load_case
 from clearance.errors import BadInput, BadSyntax, MissingFile, UnknownKey
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot import request as robot_request
+from clearance.formats.robot.formats import load_robot
 from clearance.formats.robot.request import RobotRequest
 from clearance.formats.robot.urdf import xacro_file
-from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.formats.robot.urdf.xacro_file import expanded
 from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 
@@ -73,10 +73,10 @@ def test_it_is_never_evaluated_unasked(tmp_path):
         load_case(path)
     (tmp_path / "plain.xacro").write_text("<robot name='a'><link name='b'/></robot>")
     with pytest.raises(BadSyntax, match="this is a xacro file"):
-        load_urdf(tmp_path / "plain.xacro")
+        load_robot(tmp_path / "plain.xacro")
     (tmp_path / "arm.urdf").write_text(body("<xacro:property name='a' value='1'/><link name='b'/>"))
     with pytest.raises(BadSyntax, match="this is a xacro file, not a URDF file; xacro evaluates"):
-        load_urdf(tmp_path / "arm.urdf")
+        load_robot(tmp_path / "arm.urdf")
 
 
 def test_a_comment_makes_no_xacro_file(tmp_path):
@@ -84,7 +84,7 @@ def test_a_comment_makes_no_xacro_file(tmp_path):
     (tmp_path / "a.urdf").write_text(
         f"<robot name='a'><!-- <xacro:x/> --><link name='b'>{box}</link></robot>"
     )
-    assert load_urdf(tmp_path / "a.urdf").link_names == ("b",)
+    assert load_robot(tmp_path / "a.urdf").link_names == ("b",)
 
 
 def test_arguments(tmp_path):

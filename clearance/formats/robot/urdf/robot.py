@@ -6,19 +6,16 @@ loader (`shapes`). Not for: where the robot stands, or how it moves.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from types import MappingProxyType
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadSyntax, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind, refuse_foreign
-from clearance.formats.mesh.request import UpAxis
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.plausibility import angle_notices
 from clearance.formats.robot.compound_joints import frames_between
-from clearance.formats.robot.request import Geometry, RobotRequest, request_in_memory
+from clearance.formats.robot.request import RobotRequest
 from clearance.formats.robot.robot_element import ALLOW_XACRO, XACRO
 from clearance.formats.robot.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.formats.robot.tree import links_from_root
@@ -40,28 +37,6 @@ from clearance.world.robot import Joint, Robot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
-
-
-def load_urdf(
-    path: str | Path,
-    *,
-    package_dirs: Sequence[str | Path] = (),
-    geometry: Geometry = "collision",
-    collada_up_axis: UpAxis = "ros",
-    xacro: bool = False,
-    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
-) -> Robot:
-    """The robot in a URDF file, for cases that are made in memory.
-
-    Args:
-        path: or the name of what a package brings, `pybullet_data:…`, as in a case file.
-        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
-
-    Raises:
-        BadInput: with the file and the element.
-    """
-    request = request_in_memory(path, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
-    return read_urdf(request, MeshStore(InputFiles(request.path.parent)))
 
 
 def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
