@@ -115,7 +115,7 @@ _MESSAGE = (
     "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "
     ".yaml or .json"
 )
-_PROGRAM = "name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"
+_IS_MJCF = sniff.has_root("mujoco", "mujocoinclude")
 _MJCF = (
     "call it .xml and name it in a case file: robot: {{urdf: {name}}} for a robot, scene: {name} for what stands "
     "around one"
@@ -147,7 +147,15 @@ def _message(language: str, suffixes: tuple[str, ...]) -> Format:
         f"JointTrajectory in {language}",
     )
     return Format(
-        *(name, Kind.TRAJECTORY, suffixes, read, write, sniff.is_joint_trajectory, _MOTION_KEYS),
+        *(
+            name,
+            Kind.TRAJECTORY,
+            suffixes,
+            read,
+            write,
+            sniff.has_keys(b"joint_names", b"points"),
+            _MOTION_KEYS,
+        ),
         what="a ROS JointTrajectory",
         hint=_MESSAGE,
     )
@@ -185,14 +193,14 @@ FORMATS = (
     Format("xacro", Kind.ROBOT, (".xacro", ANY), "robot.urdf.robot:read_urdf", sniff=sniff.is_xacro, extra="ros",
            what="a xacro robot", hint="name it in a case file: robot: {{urdf: {name}, xacro: true}}, which "
            "evaluates the Python in it"),
-    Format("MJCF robot", Kind.ROBOT, (".mjcf", ".xml"), "robot.mjcf.robot:read_mjcf", sniff=sniff.is_mjcf,
+    Format("MJCF robot", Kind.ROBOT, (".mjcf", ".xml"), "robot.mjcf.robot:read_mjcf", sniff=_IS_MJCF,
            extra="mujoco", what="a MuJoCo model", hint=_MJCF),
     Format("SRDF", Kind.SRDF, (".srdf",), sniff=sniff.is_srdf, what="a MoveIt SRDF",
            hint="name it in a case file: robot: {{srdf: {name}, self_clearance: true}}, beside urdf"),
-    Format("SDF", Kind.SCENE, (".sdf", ".world"), "scene.sdf.scene:read_sdf", sniff=sniff.is_sdf,
+    Format("SDF", Kind.SCENE, (".sdf", ".world"), "scene.sdf.scene:read_sdf", sniff=sniff.has_root("sdf"),
            what="an SDF world or model", hint="call it .sdf and name it in a case file: scene: {name}, beside "
            "robot (as URDF) and trajectory"),
-    Format("MJCF", Kind.SCENE, (".mjcf", ".xml"), "scene.mjcf:read_mjcf_scene", sniff=sniff.is_mjcf,
+    Format("MJCF", Kind.SCENE, (".mjcf", ".xml"), "scene.mjcf:read_mjcf_scene", sniff=_IS_MJCF,
            extra="mujoco", what="a MuJoCo model", hint=_MJCF),
     Format("MoveIt .scene", Kind.SCENE, (".scene",), "scene.moveit.scene_file:read_moveit_scene",
            sniff=sniff.is_moveit_scene, what="a MoveIt scene",
@@ -209,12 +217,12 @@ FORMATS = (
     _stamped("JSON", (".json",)),
     _stamped("YAML", (".yaml", ".yml")),
     Format("MoveIt PlanningScene", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
-           sniff=sniff.is_planning_scene, keys=_SCENE_KEYS, what="a MoveIt planning scene",
+           sniff=sniff.has_keys(b"collision_objects"), keys=_SCENE_KEYS, what="a MoveIt planning scene",
            hint="name it in a case file: scene: {name}, beside robot and trajectory"),
     Format("YAML", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
            "conversion.scene:converted_scene", _unseen, ("obstacles",)),
     Format("robot program", Kind.PROGRAM, (".yaml", ".yml"), "program.program_yaml:read_yaml_program",
-           sniff=sniff.is_program, what="a robot program", hint=_PROGRAM),
+           sniff=sniff.has_keys(b"tool", b"moves"), what="a robot program", hint=_PROGRAM),
     _program("URScript", (".script", ".urscript"), "urscript:read_urscript"),
     _program("RAPID", (".mod", ".prg", ".sys", ".modx"), "rapid:read_rapid"),
     _program("KRL", (".src",), "krl:read_krl", along=(".dat", ".DAT")),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
@@ -72,14 +73,14 @@ def is_urdf(start: FileStart) -> bool:
     return start.root == "robot" and not is_xacro(start) and not is_srdf(start)
 
 
-def is_mjcf(start: FileStart) -> bool:
-    """True for a file whose root element is MuJoCo's."""
-    return start.root in ("mujoco", "mujocoinclude")
+def has_root(*names: str) -> Callable[[FileStart], bool]:
+    """Whether a file's root element has one of these names."""
+    return lambda start: start.root in names
 
 
-def is_sdf(start: FileStart) -> bool:
-    """True for a file whose root element is SDF's."""
-    return start.root == "sdf"
+def has_keys(*keys: bytes) -> Callable[[FileStart], bool]:
+    """Whether a file has all of these keys, at any depth."""
+    return lambda start: start.keys.issuperset(keys)
 
 
 def is_collada(start: FileStart) -> bool:
@@ -91,21 +92,6 @@ def is_moveit_scene(start: FileStart) -> bool:
     """True for the text that MoveIt's RViz plugin writes."""
     is_text = start.suffix == ".scene" or re.match(rb"[^\n:{]*\n\* \S", start.text)
     return not start.is_xml and bool(is_text)
-
-
-def is_joint_trajectory(start: FileStart) -> bool:
-    """True for a dump of a JointTrajectory."""
-    return {b"joint_names", b"points"} <= start.keys
-
-
-def is_planning_scene(start: FileStart) -> bool:
-    """True for a dump of a PlanningScene."""
-    return b"collision_objects" in start.keys
-
-
-def is_program(start: FileStart) -> bool:
-    """True for a robot program in YAML."""
-    return {b"tool", b"moves"} <= start.keys
 
 
 def is_table(start: FileStart) -> bool:
