@@ -16,7 +16,7 @@ from clearance.errors import BadMotion, BadTime, UnknownRobot, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.timed import TrajectoryFile
-from clearance.formats.schema.tolerance import MOST_ANGLE, MOST_OFFSET
+from clearance.formats.schema.tolerance import MOST
 from clearance.formats.timed_files import trajectory_of
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.case import Case, index_of_robot
@@ -28,9 +28,6 @@ from clearance.world.recording import Recording, motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN
 from clearance.world.trajectory import Trajectory
 from clearance.world.wrap import wrapping_joints
-
-MOST = {"rad": MOST_ANGLE, "m": MOST_OFFSET}
-"""What a joint may be off, or move where nothing is recorded."""
 
 
 def with_recorded(

@@ -10,8 +10,7 @@ a controllers file (`limit_files`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from pathlib import Path
 
 from clearance.case.tolerance.targets import (
@@ -29,12 +28,9 @@ from clearance.formats.robot.limit_files import parse_controllers, widest
 from clearance.formats.schema.strict_model import StrictModel, validated
 from clearance.formats.schema.tolerance import (
     FOLDER,
-    ObstacleRow,
-    Placement,
     Tolerance,
     Tracking,
-    checked_angle,
-    checked_offset,
+    checked_error,
 )
 from clearance.plain_yaml import parse_yaml
 from clearance.world.budget import (
@@ -58,146 +54,106 @@ def budget_of(given: Tolerance, case: Case, folder: Path, files: InputFiles) -> 
     Raises:
         BadInput: with the field; a row of nothing that the case has, with the nearest name.
     """
-    found, presets = _Numbers(case), []
-    for name in given.presets or ():
-        presets.append(preset(name))
-        found.take(presets[-1].tolerance)
-    found.take(given)
-    tracked = tracking_of(given.tracking, case, folder, files)
-    found.tracking = tracked.errors
+    presets = {name: preset(name) for name in given.presets or ()}
+    found: _Errors = {}
+    for block in (*(one.tolerance for one in presets.values()), given):
+        found |= _errors_in(block, case)
+    tracking, on_tracking = _tracking_of(given.tracking, case, folder, files)
+    found |= {("tracking", *key): error for key, error in tracking.items()}
     return Budget(
-        robots={one.robot.name: found.robot(one.robot.name) for one in case.robots},
-        obstacles={one.name: found.obstacle(one.name) for one in case.obstacles},
+        robots={one.robot.name: _of_robot(found, one.robot.name) for one in case.robots},
+        obstacles={one.name: _of_obstacle(found, one.name) for one in case.obstacles},
         coverage=given.coverage,
         is_normal=given.distributions == "normal",
         unproven_ok=given.unproven_ok,
-        sources=(*map(_described, presets), *tracked.sources),
+        sources=(*(f"preset {name}: {one.line}" for name, one in presets.items()), *on_tracking),
     )
 
 
-def _described(one: Preset) -> str:
-    return f"preset {one.name}: {one.source}"
-
-
 _Key = tuple[str, str]
-"""Owner and part."""
+"""Owner, and the joint or link of it; empty for the whole."""
+
+_Errors = dict[tuple[str, str, str], float]
+"""[m, rad or s] by kind (position, tracking, xyz, angle, surface, timing), owner, and part."""
+
+_ROWS = {
+    "joints": joints_of,
+    "kinematics": frames_of,
+    "base": robots_of,
+    "links": links_of,
+    "obstacles": obstacles_of,
+    "timing": clocks_of,
+}
+"""Keys of a block, and what their rows are of."""
 
 
-@dataclass
-class _Numbers:
-    """The number that holds of each thing so far, by owner and part."""
-
-    case: Case
-    positions: dict[_Key, float] = field(default_factory=dict)
-    tracking: Mapping[_Key, float] = field(default_factory=dict)
-    frames: dict[_Key, PlacementTolerance] = field(default_factory=dict)
-    places: dict[_Key, PlacementTolerance] = field(default_factory=dict)
-    surfaces: dict[_Key, float] = field(default_factory=dict)
-    timing: dict[_Key, float] = field(default_factory=dict)
-
-    def take(self, given: Tolerance) -> None:
-        """Replaces the errors that the rows of a block name."""
-        self._take_of_robots(given)
-        if given.obstacles:
-            with at("obstacles"):
-                for target, row in obstacles_of(self.case).rows(given.obstacles):
-                    self._place(self.places, target, row)
-                    self._surface(target, row)
-        if given.timing:
-            with at("timing"):
-                for target, seconds in clocks_of(self.case).rows(given.timing):
-                    self.timing[_key(target)] = seconds
-
-    def _take_of_robots(self, given: Tolerance) -> None:
-        if given.joints:
-            with at("joints"):
-                for target, error in joints_of(self.case).rows(given.joints):
-                    self.positions[_key(target)] = checked_size(error, target)
-        if given.kinematics:
-            with at("kinematics"):
-                for target, row in frames_of(self.case).rows(given.kinematics):
-                    self._place(self.frames, target, row)
-        if given.base:
-            with at("base"):
-                for target, row in robots_of(self.case).rows(given.base.rows):
-                    self._place(self.places, target, row)
-        if given.links:
-            with at("links"):
-                for target, link in links_of(self.case).rows(given.links):
-                    self.surfaces[_key(target)] = link.surface
-
-    def _place(self, known: dict[_Key, PlacementTolerance], target: Target, row: Placement) -> None:
-        before = known.get(_key(target), PlacementTolerance())
-        xyz = before.xyz if row.xyz is None else row.xyz
-        angle = before.angle if row.angle is None else row.angle
-        known[_key(target)] = PlacementTolerance(xyz, angle)
-
-    def _surface(self, target: Target, row: ObstacleRow) -> None:
-        if row.surface is not None:
-            self.surfaces[_key(target)] = row.surface
-
-    def robot(self, name: str) -> RobotTolerance:
-        """What holds of a robot."""
-        return RobotTolerance(
-            joints=dict(self._joints(name)),
-            base=self.places.get((name, ""), PlacementTolerance()),
-            surfaces={
-                part: s for (owner, part), s in self.surfaces.items() if owner == name and part
-            },
-            timing=self.timing.get((name, ""), 0.0),
-        )
-
-    def _joints(self, robot: str) -> Iterator[tuple[str, JointTolerance]]:
-        known = [self.positions, self.tracking, self.frames]
-        keys = dict.fromkeys(key for one in known for key in one if key[0] == robot)
-        for key in keys:
-            frame = self.frames.get(key, PlacementTolerance())
-            position, tracking = self.positions.get(key, 0.0), self.tracking.get(key, 0.0)
-            yield key[1], JointTolerance(position, tracking, frame)
-
-    def obstacle(self, name: str) -> ObstacleTolerance:
-        """What holds of an obstacle."""
-        place = self.places.get((name, ""), PlacementTolerance())
-        key = (name, "")
-        return ObstacleTolerance(place, self.surfaces.get(key, 0.0), self.timing.get(key, 0.0))
+def _errors_in(given: Tolerance, case: Case) -> _Errors:
+    """The errors that the rows of a block name; of several rows of one thing the last holds, number by number."""
+    found: _Errors = {}
+    for key, targets in _ROWS.items():
+        rows = getattr(given, key) or {}
+        with at(key):
+            for target, row in targets(case).rows(getattr(rows, "rows", rows)):
+                if isinstance(row, StrictModel):
+                    errors = row.model_dump(exclude_none=True)
+                else:
+                    errors = {"timing": row} if key == "timing" else {"position": row}
+                    _require_believable(row, target)
+                found |= {(kind, target.owner, target.part): e for kind, e in errors.items()}
+    return found
 
 
-def _key(target: Target) -> _Key:
-    return target.owner, target.part
+def _placement(found: _Errors, owner: str, part: str = "") -> PlacementTolerance:
+    xyz, angle = (found.get((kind, owner, part), 0.0) for kind in ("xyz", "angle"))
+    return PlacementTolerance(xyz, angle)
 
 
-class _File(StrictModel):
+def _of_robot(found: _Errors, name: str) -> RobotTolerance:
+    own = {(kind, part): error for (kind, owner, part), error in found.items() if owner == name}
+    joints = dict.fromkeys(part for kind, part in own if part and kind != "surface")
+    return RobotTolerance(
+        joints={
+            joint: JointTolerance(
+                own.get(("position", joint), 0.0),
+                own.get(("tracking", joint), 0.0),
+                _placement(found, name, joint),
+            )
+            for joint in joints
+        },
+        base=_placement(found, name),
+        surfaces={part: e for (kind, part), e in own.items() if kind == "surface" and part},
+        timing=own.get(("timing", ""), 0.0),
+    )
+
+
+def _of_obstacle(found: _Errors, name: str) -> ObstacleTolerance:
+    surface, timing = (found.get((kind, name, ""), 0.0) for kind in ("surface", "timing"))
+    return ObstacleTolerance(_placement(found, name), surface, timing)
+
+
+class Preset(StrictModel):
+    """Tolerances, and where their numbers come from."""
+
     source: str
     tolerance: Tolerance
 
-
-@dataclass(frozen=True)
-class Preset:
-    """Tolerances, and where their numbers come from, in one line."""
-
-    name: str
-    source: str
-    tolerance: Tolerance
+    @property
+    def line(self) -> str:
+        """The source on one line."""
+        return " ".join(self.source.split())
 
 
 def preset(name: str) -> Preset:
     """The preset of a name, which is there."""
     path = FOLDER / f"{name}.yaml"
-    read = validated(_File, parse_yaml(path.read_bytes(), path.name), path.name)
-    return Preset(name, " ".join(read.source.split()), read.tolerance)
+    return validated(Preset, parse_yaml(path.read_bytes(), path.name), path.name)
 
 
-@dataclass(frozen=True)
-class TrackingErrors:
-    """Errors by robot and joint [rad] or [m], and a line on where they are from."""
-
-    errors: Mapping[_Key, float] = field(default_factory=dict)
-    sources: tuple[str, ...] = ()
+_Tracking = tuple[dict[_Key, float], tuple[str, ...]]
+"""Errors [rad or m] by robot and joint, and lines on where they are from."""
 
 
-def tracking_of(
-    given: Tracking | None, case: Case, folder: Path, files: InputFiles
-) -> TrackingErrors:
+def _tracking_of(given: Tracking | None, case: Case, folder: Path, files: InputFiles) -> _Tracking:
     """What a block says of tracking.
 
     Raises:
@@ -205,14 +161,17 @@ def tracking_of(
         BadInput: a joint that they leave without a bound and nothing else gives one.
     """
     if given is None:
-        return TrackingErrors()
+        return {}, ()
     with at("tracking"):
-        numbers = _numbers(given, case)
+        numbers = {}
+        for target, error in joints_of(case).rows(given.rows):
+            _require_believable(error, target)
+            numbers[target.owner, target.part] = error
         if given.of_case:
             bounds = _of_case(case)
             return _joined(numbers, bounds, case, "path tolerances of the robots' controllers")
         if given.file is None:
-            return TrackingErrors(numbers)
+            return numbers, ()
         path = resolved(given.file, folder)
         with at("file"), at(files.shown(path)):
             bounds = _of_file(files.read(path), case)
@@ -220,21 +179,15 @@ def tracking_of(
             return _joined(numbers, bounds, case, source)
 
 
-def _numbers(given: Tracking, case: Case) -> dict[_Key, float]:
-    found = {}
-    for target, error in joints_of(case).rows(given.rows):
-        found[target.owner, target.part] = checked_size(error, target)
-    return found
-
-
-def checked_size(error: float, target: Target) -> float:
-    """The error of a joint, if its size is believable in the joint's unit.
+def _require_believable(error: float, target: Target) -> None:
+    """Nothing, if the error of a joint is of a believable size in the joint's unit.
 
     Raises:
         BadDimension: it is too great.
     """
-    with at(target.names[0]):
-        return checked_angle(error) if target.unit == "rad" else checked_offset(error)
+    if target.unit:
+        with at(target.names[0]):
+            checked_error(error, target.unit)
 
 
 def _of_file(data: bytes, case: Case) -> dict[_Key, PathTolerance]:
@@ -261,7 +214,7 @@ def _of_case(case: Case) -> dict[_Key, PathTolerance]:
 
 def _joined(
     numbers: Mapping[_Key, float], bounds: Mapping[_Key, PathTolerance], case: Case, source: str
-) -> TrackingErrors:
+) -> _Tracking:
     """Numbers before bounds.
 
     Raises:
@@ -281,7 +234,8 @@ def _joined(
                     f"controllers let joint {target.names[0]!r} as far off the path as it goes",
                     valid=f"tracking: {{file: …, {target.part}: 0.01}}",
                 )
-            errors[key] = checked_size(bounds[key].trajectory, target)
+            _require_believable(bounds[key].trajectory, target)
+            errors[key] = bounds[key].trajectory
     leaders = {joint.name for one in case.robots for joint in one.robot.moving_joints}
     free = [
         one.names[0]
@@ -289,4 +243,4 @@ def _joined(
         if (one.owner, one.part) not in errors and one.part in leaders
     ]
     source += f"; none of joints {listed(free, 8)}" if free else ""
-    return TrackingErrors(errors, (source,))
+    return errors, (source,)

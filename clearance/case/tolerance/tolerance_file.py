@@ -27,7 +27,7 @@ from clearance.errors import (
 )
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema.strict_model import validated
-from clearance.formats.schema.tolerance import Tolerance, checked_angle, checked_offset
+from clearance.formats.schema.tolerance import Tolerance, checked_error
 from clearance.plain_yaml import parse_yaml
 from clearance.world.budget import Budget, PlacementTolerance
 from clearance.world.case import Case
@@ -152,7 +152,7 @@ def require_numbers(budget: Budget, case: Case) -> None:
             if not 0.0 <= value < math.inf:
                 raise BadDimension(f"{value:g} {unit} is given", valid="0 or more")
             if unit != "s":
-                (checked_angle if unit == "rad" else checked_offset)(value)
+                checked_error(value, unit)
 
 
 def _numbers(budget: Budget, units: dict[tuple[str, str], str]) -> Iterator[tuple[str, float, str]]:

@@ -7,6 +7,7 @@ are of one thing (`tolerance.block`).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -24,48 +25,25 @@ from clearance.errors import BadDimension, BadTolerance, nearest_name
 from clearance.formats.schema.strict_model import Name, StrictModel
 from clearance.world.budget import COVERAGE
 
-MOST_OFFSET = 0.5
-"""[m] Greatest offset that is taken for one: more is a number in millimetres."""
+MOST = {"m": 0.5, "rad": 0.2, "s": 60.0}
+"""By unit the greatest error that is taken for one: more is in millimetres or degrees, or of clocks that are not
+tied, which `clock` says."""
 
-MOST_ANGLE = 0.2
-"""[rad] Greatest angle that is taken for one: more is a number in degrees."""
-
-MOST_TIME = 60.0
-"""[s] Greatest offset of a clock; beyond it clocks are not tied, which `clock` says."""
+_REMEDIES = {"m": "in metres", "rad": "in radians", "s": "or clock: unsynchronised"}
 
 CONTROLLERS = "controllers"
 """The word for the controllers that the case's robots name."""
 
 
-def checked_offset(given: float) -> float:
-    """An offset [m] of a believable size.
+def checked_error(given: float, unit: str) -> float:
+    """An error [m, rad or s] of a believable size.
 
     Raises:
-        BadDimension: it is greater than `MOST_OFFSET`.
+        BadDimension: it is greater than `MOST`.
     """
-    if given > MOST_OFFSET:
-        raise BadDimension(f"{given:g} m is given", valid=f"at most {MOST_OFFSET:g} m, in metres")
-    return given
-
-
-def checked_angle(given: float) -> float:
-    """An angle [rad] of a believable size.
-
-    Raises:
-        BadDimension: it is greater than `MOST_ANGLE`.
-    """
-    if given > MOST_ANGLE:
-        raise BadDimension(
-            f"{given:g} rad is given", valid=f"at most {MOST_ANGLE:g} rad, in radians"
-        )
-    return given
-
-
-def _checked_time(given: float) -> float:
-    if given > MOST_TIME:
-        raise BadDimension(
-            f"{given:g} s is given", valid=f"at most {MOST_TIME:g} s, or clock: unsynchronised"
-        )
+    most = f"{MOST[unit]:g} {unit}"
+    if given > MOST[unit]:
+        raise BadDimension(f"{given:g} {unit} is given", valid=f"at most {most}, {_REMEDIES[unit]}")
     return given
 
 
@@ -83,9 +61,9 @@ def _known_preset(name: str) -> str:
 
 
 Magnitude = Annotated[float, Field(ge=0)]
-Offset = Annotated[float, _up_to(MOST_OFFSET), AfterValidator(checked_offset)]
-Angle = Annotated[float, _up_to(MOST_ANGLE), AfterValidator(checked_angle)]
-Seconds = Annotated[float, _up_to(MOST_TIME), AfterValidator(_checked_time)]
+Offset = Annotated[float, _up_to(MOST["m"]), AfterValidator(partial(checked_error, unit="m"))]
+Angle = Annotated[float, _up_to(MOST["rad"]), AfterValidator(partial(checked_error, unit="rad"))]
+Seconds = Annotated[float, _up_to(MOST["s"]), AfterValidator(partial(checked_error, unit="s"))]
 
 
 class NumberRow(StrictModel):

@@ -159,7 +159,7 @@ def test_joints_of_which_no_tracking_is_given_are_told(tmp_path):
 def test_presets_come_before_numbers_and_are_named_with_their_source(tmp_path):
     found = budget(tmp_path, "{presets: [uncalibrated_arm], links: {upper: {surface: 0.004}}}")
     assert found.robots["arm"].surfaces == {"base": 0.002, "upper": 0.004}
-    assert found.sources == (f"preset uncalibrated_arm: {preset('uncalibrated_arm').source}",)
+    assert found.sources == (f"preset uncalibrated_arm: {preset('uncalibrated_arm').line}",)
 
 
 @pytest.mark.parametrize("name", preset_names())
