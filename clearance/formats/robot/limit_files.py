@@ -18,6 +18,7 @@ from typing import NamedTuple, TypeVar
 from clearance.errors import (
     BadDimension,
     BadRobot,
+    BadSyntax,
     MissingKey,
     UnknownJoint,
     at,
@@ -25,14 +26,8 @@ from clearance.errors import (
     nearest_name,
 )
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.message.documents import Fields, described
-from clearance.formats.message.parameter_values import (
-    mapping,
-    number,
-    parameters,
-    require_keys,
-    truth,
-)
+from clearance.formats.message.documents import Fields, described, yaml_documents
+from clearance.formats.message.values import number, require_fields
 from clearance.formats.schema import case as schema
 from clearance.world.joint_positions import turns
 from clearance.world.motion_limits import NO_LIMIT, MotionLimit, PathTolerance
@@ -208,6 +203,33 @@ def _notes_on_tolerances(
         yield f"joints that the robot cannot move are left out: {listed(joints, 8)}"
 
 
+_FACTORS = {"!degrees": math.pi / 180.0, "!radians": 1.0}
+"""Units that xacro knows as tags, and files of limits use."""
+
+
+def _parameters(data: bytes) -> Fields:
+    """The one mapping in a file of parameters."""
+    documents = yaml_documents(data, _FACTORS)
+    if len(documents) != 1:
+        raise BadSyntax(f"{len(documents)} documents are given", valid="one mapping")
+    return _mapping(documents[0])
+
+
+def _mapping(value: object) -> Fields:
+    if not isinstance(value, Fields):
+        raise BadRobot(f"{described(value)} is given", valid="a mapping")
+    return value
+
+
+def _truth(given: Fields, key: str) -> bool:
+    """Whether true stands at a key; not where the key is not there."""
+    value = given.get(key, "false")
+    word = value.lower() if isinstance(value, str) else ""
+    if word not in ("true", "false"):
+        raise BadRobot(f"{described(value)} is given", where=key, valid="true or false")
+    return word == "true"
+
+
 _WRAPPED_IN = ("robot_description_planning", "ros__parameters")
 
 _USED = {
@@ -245,15 +267,15 @@ def parse_joint_limits(data: bytes) -> dict[str, FileLimits]:
     Raises:
         BadInput: with the joint and the key.
     """
-    found = list(_blocks(parameters(data)))
+    found = list(_blocks(_parameters(data)))
     if not found:
         raise MissingKey("'joint_limits' is missing", valid="MoveIt's file of that name")
     if len(found) > 1:
         raise BadRobot(f"there are {len(found)} mappings 'joint_limits'", valid="one")
     limits = {}
-    for name, given in mapping(found[0]).items():
+    for name, given in _mapping(found[0]).items():
         with at(f"joint_limits.{name:.60}"):
-            limits[checked_name(name)] = _limits(mapping(given))
+            limits[checked_name(name)] = _limits(_mapping(given))
     return limits
 
 
@@ -268,17 +290,17 @@ def _blocks(given: Fields, depth: int = 0) -> Iterator[object]:
 
 
 def _limits(given: Fields) -> FileLimits:
-    require_keys(given, _KEYS)
+    require_fields(given, *_KEYS)
     unused = [key for key in _UNUSED if key in given]
     values: dict[str, float] = {}
     for has, keys in _USED.items():
-        if not truth(given, has):
+        if not _truth(given, has):
             unused += [key for key in keys if key in given]
             continue
         for key in keys:
             if key not in given:
                 raise MissingKey(f"{has} is true, but {key!r} is missing")
-            values[key] = number(given, key)
+            values[key] = number(given[key], key)
     lower, upper = values.get("min_position", -math.inf), values.get("max_position", math.inf)
     if lower > upper:
         raise BadRobot(f"min_position {lower:g} is above max_position {upper:g}")
@@ -314,7 +336,7 @@ def parse_controllers(data: bytes) -> list[Controller]:
     Raises:
         MissingKey: none has. BadInput: with the controller and the key.
     """
-    found = list(_controllers(parameters(data)))
+    found = list(_controllers(_parameters(data)))
     if not found:
         raise MissingKey("no controller in it has 'joints' or 'constraints'")
     return found
@@ -341,21 +363,21 @@ def _tolerances(body: Fields) -> dict[str, PathTolerance]:
         raise BadRobot(f"{described(joints)} is given", where="joints", valid="a list of names")
     found = {checked_name(joint): PathTolerance() for joint in joints}
     with at("constraints"):
-        for name, given in mapping(body.get("constraints", Fields())).items():
+        for name, given in _mapping(body.get("constraints", Fields())).items():
             if name in _OF_ALL:
                 continue
             with at(f"{name:.60}"):
-                found[checked_name(name)] = _tolerance(mapping(given))
+                found[checked_name(name)] = _tolerance(_mapping(given))
     return found
 
 
 def _tolerance(given: Fields) -> PathTolerance:
-    require_keys(given, _TOLERANCES)
+    require_fields(given, *_TOLERANCES)
     return PathTolerance(*(_length(given, key) for key in _TOLERANCES))
 
 
 def _length(given: Fields, key: str) -> float:
-    value = number(given, key) if key in given else 0.0
+    value = number(given[key], key) if key in given else 0.0
     if value < 0.0:
         raise BadDimension(f"{value:g} is given", where=key, valid="0 or more")
     return value or math.inf

@@ -188,8 +188,8 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "fault", "says"),
     [
-        ("max_velocity: 0.4", "max_velocty: 0.4", UnknownKey, "shoulder: unknown key 'max_velocty'; did you mean"),
-        ("max_velocity: 0.4", "max_velocity: fast", BadInput, "max_velocity: 'fast' is given; a finite number"),
+        ("max_velocity: 0.4", "max_velocty: 0.4", UnknownKey, "unknown field 'max_velocty'; did you mean"),
+        ("max_velocity: 0.4", "max_velocity: fast", BadInput, "max_velocity: 'fast' is given; a number"),
         ("max_velocity: 0.4", "max_velocity: 0", BadInput, "max_velocity is 0; above 0"),
         ("    max_velocity: 0.4\n", "", MissingKey, "has_velocity_limits is true, but 'max_velocity' is missing"),
         ("max_position: 2", "max_position: -1", BadInput, "min_position -0.5 is above max_position -1"),
@@ -197,7 +197,7 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
         ("has_position_limits: true", "has_position_limits: yes", BadInput, "'yes' is given; true or false"),
         ("joint_limits:", "limits:", MissingKey, "'joint_limits' is missing; MoveIt's file"),
         ("max_velocity: 0.4", "max_velocity: !feet 20", BadInput, "line 9: the tag '!feet'"),
-        ("max_velocity: 0.4", "max_velocity: !degrees x", BadInput, "max_velocity: 'x' is given; a finite number"),
+        ("max_velocity: 0.4", "max_velocity: !degrees x", BadInput, "max_velocity: 'x' is given; a number"),
     ],
 )  # fmt: skip
 def test_bad_limits_are_one_line(tmp_path, old, new, fault, says):
@@ -210,7 +210,7 @@ def test_bad_limits_are_one_line(tmp_path, old, new, fault, says):
 @pytest.mark.parametrize(
     ("old", "new", "fault", "says"),
     [
-        ("trajectory: 0.2", "trajectry: 0.2", UnknownKey, "arm: constraints: shoulder: unknown key 'trajectry'"),
+        ("trajectory: 0.2", "trajectry: 0.2", UnknownKey, "arm: constraints: shoulder: unknown field 'trajectry'"),
         ("trajectory: 0.2", "trajectory: -1", BadInput, "trajectory: -1 is given; 0 or more"),
         ("[shoulder, lift]", "shoulder", BadInput, "joints: 'shoulder' is given; a list of names"),
         ("shoulder: {", "elbow: {", None, ""),
