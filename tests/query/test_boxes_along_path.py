@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from clearance.kernels.search.boxes_along_path import ROUNDING, CarriedBoxes, steps_together
+from clearance.kernels.motion.boxes_along_path import ROUNDING, CarriedBoxes, steps_together
 
 N_STEPS = 40
 

@@ -13,9 +13,12 @@ import numpy as np
 
 from clearance.compile.calls import Written
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.motion.boxes_at_positions import overlaps_at_positions
+from clearance.kernels.motion.boxes_along_path import (
+    CarriedBoxes,
+    overlaps_at_positions,
+    steps_together,
+)
 from clearance.kernels.motion.kinematics import Links
-from clearance.kernels.search.boxes_along_path import CarriedBoxes, steps_together
 from clearance.query.distance import distance
 from clearance.query.inside import PossibleContainment, doubt_of
 from clearance.simulate.measure.sections import Section, SectionPlan
