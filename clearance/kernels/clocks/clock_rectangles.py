@@ -28,18 +28,22 @@ class Band(NamedTuple):
     rounding: float
 
 
+class Span(NamedTuple):
+    """A span of one clock's time: a node, or for a leaf the part from `low` to `high`, 0 to 1."""
+
+    node: int
+    low: float
+    high: float
+
+
 class Rectangle(NamedTuple):
-    """A span of each clock's time: a node, or for a leaf the part from `low` to `high`, 0 to 1."""
+    """A span of each clock's time."""
 
-    node_a: int
-    node_b: int
-    low_a: float
-    high_a: float
-    low_b: float
-    high_b: float
+    a: Span
+    b: Span
 
 
-ALL_TIMES = Rectangle(0, 0, 0.0, 1.0, 0.0, 1.0)
+ALL_TIMES = Rectangle(Span(0, 0.0, 1.0), Span(0, 0.0, 1.0))
 """All of both clocks' times."""
 
 
@@ -70,10 +74,10 @@ def new_rectangle_stack(n_pairs):
 @inline
 def put_rectangle(rectangle, count, waiting, place):
     """Queues a rectangle at a place, with the first `count` of the listed pairs."""
-    r = rectangle
-    waiting.nodes[place, 0], waiting.nodes[place, 1] = r.node_a, r.node_b
+    a, b = rectangle.a, rectangle.b
+    waiting.nodes[place, 0], waiting.nodes[place, 1] = a.node, b.node
     shares = waiting.shares[place]
-    shares[0], shares[1], shares[2], shares[3] = r.low_a, r.high_a, r.low_b, r.high_b
+    shares[0], shares[1], shares[2], shares[3] = a.low, a.high, b.low, b.high
     waiting.counts[place] = count
     for k in range(count):
         waiting.pairs[place, k] = waiting.listed[k]
@@ -86,7 +90,7 @@ def read_rectangle(waiting, place):
     for k in range(count):
         waiting.listed[k] = waiting.pairs[place, k]
     nodes, s = waiting.nodes[place], waiting.shares[place]
-    return Rectangle(nodes[0], nodes[1], s[0], s[1], s[2], s[3]), count
+    return Rectangle(Span(nodes[0], s[0], s[1]), Span(nodes[1], s[2], s[3])), count
 
 
 class OpenRectangle(NamedTuple):
@@ -106,17 +110,32 @@ class OpenRectangle(NamedTuple):
 @inline
 def put_open(tree_a, tree_b, part, waiting, place):
     """Queues both halves of an `OpenRectangle` at a place and the next."""
-    earlier, later = halves_of(tree_a, tree_b, part.rectangle, part.in_a)
-    if part.seen > middle_of_side(tree_a, tree_b, part.rectangle, part.in_a):
-        earlier, later = later, earlier
-    put_rectangle(later, part.count, waiting, place)
-    put_rectangle(earlier, part.count, waiting, place + 1)
+    a, b = part.rectangle
+    tree, span = (tree_a, a) if part.in_a else (tree_b, b)
+    first, last = _halves(tree, span)
+    if not part.seen > 0.5 * (begin_of(tree, span) + end_of(tree, span)):
+        first, last = last, first
+    for half in (first, last):
+        put_rectangle(
+            Rectangle(half, b) if part.in_a else Rectangle(a, half), part.count, waiting, place
+        )
+        place += 1
+
+
+@inline
+def _halves(tree, span):
+    """The earlier and the later half of a span."""
+    if is_leaf_of_clock(tree, span.node):
+        at = 0.5 * (span.low + span.high)
+        return Span(span.node, span.low, at), Span(span.node, at, span.high)
+    earlier = tree.earlier[span.node]
+    return Span(earlier, 0.0, 1.0), Span(earlier + 1, 0.0, 1.0)
 
 
 @inline(force=True)
-def is_whole(low, high):
+def is_whole(span):
     """True for all of a node."""
-    return low == 0.0 and high == 1.0
+    return span.low == 0.0 and span.high == 1.0
 
 
 @inline(force=True)
@@ -127,36 +146,51 @@ def _time(tree, node, share):
 
 
 @inline(force=True)
-def _middle(tree, node, low, high):
-    """[s] the time of the pose that represents a node or its part."""
-    if is_whole(low, high):
-        return tree.middle[node]
-    return _time(tree, node, 0.5 * (low + high))
+def begin_of(tree, span):
+    """[s] the first time of a span."""
+    return _time(tree, span.node, span.low)
+
+
+@inline(force=True)
+def end_of(tree, span):
+    """[s] the last time of a span."""
+    return _time(tree, span.node, span.high)
+
+
+@inline(force=True)
+def _middle(tree, span):
+    """[s] the time of the pose that represents a span."""
+    if is_whole(span):
+        return tree.middle[span.node]
+    return _time(tree, span.node, 0.5 * (span.low + span.high))
 
 
 @inline
 def meets_band(tree_a, tree_b, rectangle, band):
     """False if no two times of the rectangle occur together."""
-    r, reach = rectangle, band.slack + 2.0 * band.rounding
+    a, b, reach = rectangle.a, rectangle.b, band.slack + 2.0 * band.rounding
     return (
-        _time(tree_a, r.node_a, r.low_a) - _time(tree_b, r.node_b, r.high_b) <= reach
-        and _time(tree_b, r.node_b, r.low_b) - _time(tree_a, r.node_a, r.high_a) <= reach
+        begin_of(tree_a, a) - end_of(tree_b, b) <= reach
+        and begin_of(tree_b, b) - end_of(tree_a, a) <= reach
     )
 
 
 @inline
 def middle_occurs(tree_a, tree_b, rectangle, band):
     """True if the two times that represent a rectangle occur together."""
-    r = rectangle
-    t_a = _middle(tree_a, r.node_a, r.low_a, r.high_a)
-    t_b = _middle(tree_b, r.node_b, r.low_b, r.high_b)
-    return abs(t_a - t_b) <= band.slack + 2.0 * band.rounding
+    between = abs(_middle(tree_a, rectangle.a) - _middle(tree_b, rectangle.b))
+    return between <= band.slack + 2.0 * band.rounding
 
 
 @inline(force=True)
-def _share(tree, node, time):
-    low, high = tree.low[node], tree.high[node]
-    return (time - low) / (high - low)
+def _within(tree, span, begin, end):
+    """The part of a span that is not before `begin` [s] nor after `end`; never less than a time."""
+    low, high, first, last = span.low, span.high, tree.low[span.node], tree.high[span.node]
+    if begin > begin_of(tree, span):
+        low = min(high, max(low, (begin - first) / (last - first)))
+    if end < end_of(tree, span):
+        high = max(low, min(high, (end - first) / (last - first)))
+    return Span(span.node, low, high)
 
 
 @inline
@@ -167,63 +201,8 @@ def clipped(tree_a, tree_b, rectangle, band):
     occurs together with some time of the other part, so a1 <= b1 + slack and a0 <= b0 + slack. Half their sum is
     the same for the middles, and so with a and b exchanged.
     """
-    r, reach = rectangle, band.slack + band.rounding
-    a0, a1 = _time(tree_a, r.node_a, r.low_a), _time(tree_a, r.node_a, r.high_a)
-    b0, b1 = _time(tree_b, r.node_b, r.low_b), _time(tree_b, r.node_b, r.high_b)
-    low_a, high_a, low_b, high_b = r.low_a, r.high_a, r.low_b, r.high_b
-    if b0 - reach > a0:
-        low_a = min(high_a, max(low_a, _share(tree_a, r.node_a, b0 - reach)))
-    if b1 + reach < a1:
-        high_a = max(low_a, min(high_a, _share(tree_a, r.node_a, b1 + reach)))
-    if a0 - reach > b0:
-        low_b = min(high_b, max(low_b, _share(tree_b, r.node_b, a0 - reach)))
-    if a1 + reach < b1:
-        high_b = max(low_b, min(high_b, _share(tree_b, r.node_b, a1 + reach)))
-    return Rectangle(r.node_a, r.node_b, low_a, high_a, low_b, high_b)
-
-
-@inline
-def _halves_in_a(tree, r):
-    if is_leaf_of_clock(tree, r.node_a):
-        at = 0.5 * (r.low_a + r.high_a)
-        return (
-            Rectangle(r.node_a, r.node_b, r.low_a, at, r.low_b, r.high_b),
-            Rectangle(r.node_a, r.node_b, at, r.high_a, r.low_b, r.high_b),
-        )
-    earlier = tree.earlier[r.node_a]
-    return (
-        Rectangle(earlier, r.node_b, 0.0, 1.0, r.low_b, r.high_b),
-        Rectangle(earlier + 1, r.node_b, 0.0, 1.0, r.low_b, r.high_b),
+    a, b, reach = rectangle.a, rectangle.b, band.slack + band.rounding
+    return Rectangle(
+        _within(tree_a, a, begin_of(tree_b, b) - reach, end_of(tree_b, b) + reach),
+        _within(tree_b, b, begin_of(tree_a, a) - reach, end_of(tree_a, a) + reach),
     )
-
-
-@inline
-def _halves_in_b(tree, r):
-    if is_leaf_of_clock(tree, r.node_b):
-        at = 0.5 * (r.low_b + r.high_b)
-        return (
-            Rectangle(r.node_a, r.node_b, r.low_a, r.high_a, r.low_b, at),
-            Rectangle(r.node_a, r.node_b, r.low_a, r.high_a, at, r.high_b),
-        )
-    earlier = tree.earlier[r.node_b]
-    return (
-        Rectangle(r.node_a, earlier, r.low_a, r.high_a, 0.0, 1.0),
-        Rectangle(r.node_a, earlier + 1, r.low_a, r.high_a, 0.0, 1.0),
-    )
-
-
-@inline
-def halves_of(tree_a, tree_b, rectangle, in_a):
-    """The earlier and the later half of a rectangle, halved in a's time or in b's."""
-    if in_a:
-        return _halves_in_a(tree_a, rectangle)
-    return _halves_in_b(tree_b, rectangle)
-
-
-@inline
-def middle_of_side(tree_a, tree_b, rectangle, of_a):
-    """[s] the middle of a rectangle in the time of one clock."""
-    r = rectangle
-    if of_a:
-        return 0.5 * (_time(tree_a, r.node_a, r.low_a) + _time(tree_a, r.node_a, r.high_a))
-    return 0.5 * (_time(tree_b, r.node_b, r.low_b) + _time(tree_b, r.node_b, r.high_b))

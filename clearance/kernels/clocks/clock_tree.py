@@ -27,7 +27,7 @@ from clearance.kernels.motion.interval_middle import (
 )
 from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
 from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.kinematics import copy_pose, place_by_link
+from clearance.kernels.motion.kinematics import copy_pose
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 
@@ -126,18 +126,6 @@ def _halve(tree, n_leaves):
 
 
 @inline
-def _fill_leaf(surface, world, bodies, leaf, middle, tree):
-    """Writes the poses and boxes of the bodies in the middle of a leaf."""
-    for column in range(len(bodies)):
-        body = bodies[column]
-        row = leaf * len(bodies) + column
-        frame = world.frames[body]
-        copy_pose(middle.poses[frame] if frame >= 0 else world.standing[body], tree.poses[row])
-        root = surface.roots[world.solids[body]]
-        place_box(surface, root, row, rigid(tree.poses[row]), tree.boxes)
-
-
-@inline
 def _fill_moved(surface, world, bodies, tree):
     """Fills the motion of each body from the middle of each node: to the middle of a leaf, and within it."""
     k = len(bodies)
@@ -157,48 +145,41 @@ def _fill_moved(surface, world, bodies, tree):
 
 
 @kernel
-def fill_steps_tree(
-    surface: Surface, world: World, path: JointPath, bodies: Integers, tree: ClockTree
+def fill_clock_tree(
+    surface: Surface,
+    world: World,
+    path: JointPath,
+    bodies: Integers,
+    of_steps: bool,
+    tree: ClockTree,
 ):
-    """Fills a tree whose leaves are steps.
+    """Fills a tree whose leaves are steps, or the intervals between steps.
 
     Args:
         world: with links of its own, since ball joints are overwritten.
-        path: a `JointPath` of all steps, and one more, so that the last has an arc. bodies: (k,) of the clock;
-            a part that is not carried stands still.
+        path: a `JointPath` of all steps, and for a tree of steps one more, so that the last has an arc.
+        bodies: (k,) of the clock; a part that is not carried stands still.
     """
-    n_leaves = len(tree.poses) // len(bodies)
-    middle = new_middle(len(world.links.parents))
-    _halve(tree, n_leaves)
-    for leaf in range(n_leaves):
+    k = len(bodies)
+    middle, high = new_middle(len(world.links.parents)), 0.0 if of_steps else 1.0
+    _halve(tree, len(tree.poses) // k)
+    for leaf in range(len(tree.poses) // k):
         begin_arcs(world.links, path.balls, tree.start + leaf)
-        place_by_link(world.links, path.positions[tree.start + leaf], middle.poses)
-        _fill_leaf(surface, world, bodies, leaf, middle, tree)
+        go_to_middle(world.links, path, tree.start + leaf, 0.0, high, middle)
+        for column in range(k):
+            body, row = bodies[column], leaf * k + column
+            frame = world.frames[body]
+            copy_pose(middle.poses[frame] if frame >= 0 else world.standing[body], tree.poses[row])
+            root = surface.roots[world.solids[body]]
+            place_box(surface, root, row, rigid(tree.poses[row]), tree.boxes)
+            if not of_steps:
+                bound = loosened_motion_bound_in(surface, world, path.balls, body, middle)
+                note_motion_bound(bound, tree.motion_bounds[row])
     _fill_moved(surface, world, bodies, tree)
     for node in range(len(tree.first)):
+        leaf, last = tree.start + middle_leaf(tree, node), tree.start + tree.last[node]
         tree.low[node] = path.times[tree.start + tree.first[node]]
-        tree.high[node] = path.times[tree.start + tree.last[node] - 1]
-        tree.middle[node] = path.times[tree.start + middle_leaf(tree, node)]
-
-
-@kernel
-def fill_intervals_tree(
-    surface: Surface, world: World, path: JointPath, bodies: Integers, tree: ClockTree
-):
-    """Fills a tree whose leaves are the intervals between steps; arguments as above."""
-    n_leaves = len(tree.poses) // len(bodies)
-    middle = new_middle(len(world.links.parents))
-    _halve(tree, n_leaves)
-    for leaf in range(n_leaves):
-        begin_arcs(world.links, path.balls, tree.start + leaf)
-        go_to_middle(world.links, path, tree.start + leaf, 0.0, 1.0, middle)
-        _fill_leaf(surface, world, bodies, leaf, middle, tree)
-        for column in range(len(bodies)):
-            bound = loosened_motion_bound_in(surface, world, path.balls, bodies[column], middle)
-            note_motion_bound(bound, tree.motion_bounds[leaf * len(bodies) + column])
-    _fill_moved(surface, world, bodies, tree)
-    for node in range(len(tree.first)):
-        tree.low[node] = path.times[tree.start + tree.first[node]]
-        tree.high[node] = path.times[tree.start + tree.last[node]]
-        leaf = tree.start + middle_leaf(tree, node)
-        tree.middle[node] = 0.5 * (path.times[leaf] + path.times[leaf + 1])
+        tree.high[node] = path.times[last - 1 if of_steps else last]
+        tree.middle[node] = path.times[leaf]
+        if not of_steps:
+            tree.middle[node] = 0.5 * (path.times[leaf] + path.times[leaf + 1])

@@ -14,7 +14,7 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.clocks.clock_rectangles import RectangleStack, is_whole
 from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, motion_of_node, row_in_middle
-from clearance.kernels.clocks.two_clocks import bound_by_planes, corner_distance
+from clearance.kernels.clocks.two_clocks import bound_coarsely
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.body_boxes import bound_between
@@ -88,10 +88,10 @@ class PairInRectangle(NamedTuple):
 
 
 @inline
-def _side_of(surface, clocks, tree, body, node, whole, part):
+def _side_of(surface, clocks, tree, body, span, part):
     """(the pose of a body in the middle of a side of a rectangle, its motion bound, [m] its greatest motion)."""
-    world, column = clocks.world, clocks.columns[body]
-    if whole:
+    world, column, node = clocks.world, clocks.columns[body], span.node
+    if is_whole(span):
         pose = rigid(tree.poses[row_in_middle(tree, node, column)])
         return pose, motion_of_node(tree, node, column), tree.moved[node, column]
     balls = clocks.path.balls
@@ -108,28 +108,11 @@ def _bound_by_boxes(clocks, rectangle, pair, target):
     """[m] a lower bound on the distance of a pair over a rectangle of whole nodes; `target` is enough."""
     tree_a, tree_b, pairs = clocks.tree_a, clocks.tree_b, clocks.world.pairs
     column_a, column_b = clocks.columns[pairs[pair, 0]], clocks.columns[pairs[pair, 1]]
-    row_a = row_in_middle(tree_a, rectangle.node_a, column_a)
-    row_b = row_in_middle(tree_b, rectangle.node_b, column_b)
-    moved = tree_a.moved[rectangle.node_a, column_a] + tree_b.moved[rectangle.node_b, column_b]
+    node_a, node_b = rectangle.a.node, rectangle.b.node
+    row_a, row_b = row_in_middle(tree_a, node_a, column_a), row_in_middle(tree_b, node_b, column_b)
+    moved = tree_a.moved[node_a, column_a] + tree_b.moved[node_b, column_b]
     moved += CHAIN_SLACK * (tree_a.boxes.slacks[row_a] + tree_b.boxes.slacks[row_b])
     return bound_between(tree_a.boxes, row_a, tree_b.boxes, row_b, target + moved) - moved
-
-
-@inline
-def _settled_coarsely(surface, bodies, faces, moved, target, scratch):
-    """(a bound [m], True if it is enough or no bound can be) for a pair over spans of several intervals.
-
-    Args:
-        moved: [m] the motion of both bodies from their poses.
-    """
-    limit = (target + moved) * OUTWARD
-    a, b = bodies.frames.a, bodies.frames.b
-    if corner_distance(surface, faces, a, b) < limit:
-        return 0.0, True
-    planes = bound_by_planes(surface, bodies, faces, limit, scratch)
-    if planes > limit:
-        return planes - moved, True
-    return 0.0, corner_distance(surface, faces, a, b) < limit
 
 
 @inline
@@ -137,28 +120,24 @@ def prove_in_rectangle(surface, clocks, rectangle, pair, goal, state):
     """The `PairInRectangle` of a pair; `surface` is lent."""
     r, world, tally = rectangle, clocks.world, state.tally
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    whole_a, whole_b = is_whole(r.low_a, r.high_a), is_whole(r.low_b, r.high_b)
-    if whole_a and whole_b:
+    if is_whole(r.a) and is_whole(r.b):
         bound = _bound_by_boxes(clocks, r, pair, goal.target)
         if bound >= goal.target:
             tally[1] += 1
             return PairInRectangle(bound, goal.least, True, 0.0, 0.0)
-    pose_a, motion_a, moved_a = _side_of(
-        surface, clocks, clocks.tree_a, body_a, r.node_a, whole_a, state.part_a
-    )
-    pose_b, motion_b, moved_b = _side_of(
-        surface, clocks, clocks.tree_b, body_b, r.node_b, whole_b, state.part_b
-    )
+    pose_a, motion_a, moved_a = _side_of(surface, clocks, clocks.tree_a, body_a, r.a, state.part_a)
+    pose_b, motion_b, moved_b = _side_of(surface, clocks, clocks.tree_b, body_b, r.b, state.part_b)
     bodies = PosedPair(
         surface, world.solids[body_a], surface, world.solids[body_b], frames_of(pose_a, pose_b)
     )
     faces = state.carried.faces[pair]
-    one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)
+    one_a = is_leaf_of_clock(clocks.tree_a, r.a.node)
     if not goal.is_fine and (moved_b > moved_a or not one_a):  # else halving might never end
-        bound, settled = _settled_coarsely(
-            surface, bodies, faces, moved_a + moved_b, goal.target, state.scratch
-        )
-        if settled:
+        moved = moved_a + moved_b
+        limit = (goal.target + moved) * OUTWARD
+        planes, is_near = bound_coarsely(surface, bodies, faces, limit, -1.0, state.scratch)
+        if planes > limit or is_near:  # no bound beyond the distance of corners can be
+            bound = 0.0 if is_near else planes - moved
             return PairInRectangle(bound, goal.least, bound >= goal.target, moved_a, moved_b)
     tally[2] += 1
     motion = PairMotion(motion_a, motion_b, True)

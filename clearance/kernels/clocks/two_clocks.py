@@ -18,6 +18,7 @@ from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
 from clearance.kernels.search.proof import CHAIN_SLACK
@@ -47,13 +48,26 @@ class TwoClocks(NamedTuple):
 
 
 @inline
-def corner_distance(surface, faces, pose_a, pose_b):
+def bound_coarsely(surface, bodies, faces, limit, known, scratch):
+    """([m] a lower bound on a pair beyond `limit`, or -inf, True if it is nearer than that), without a search.
+
+    Args:
+        bodies: a `PosedPair`. faces: (2,) where to begin, or -1; overwritten by those that touch the planes.
+        known: [m] a pair that may be as near as this needs a search, so it is not said to be within the limit.
+    """
+    planes, is_near = -math.inf, known < _corner_distance(surface, faces, bodies.frames) < limit
+    if not is_near:
+        planes = _bound_by_planes(surface, bodies, faces, limit, scratch)
+        if not planes > limit:
+            is_near = known < _corner_distance(surface, faces, bodies.frames) < limit
+    return planes, is_near
+
+
+@inline
+def _corner_distance(surface, faces, frames):
     """[m] the distance of two faces' nearest corners, of the first few of each; infinite without faces.
 
     The distance of the bodies is no greater, so a bound beyond it needs no search.
-
-    Args:
-        faces: (2,) or -1. pose_a, pose_b: `RigidMotion` of their bodies.
     """
     if faces[0] < 0:
         return math.inf
@@ -63,21 +77,18 @@ def corner_distance(surface, faces, pose_a, pose_b):
     end_b = min(first_b + FEW, starts[faces[1] + 1])
     least_sq = math.inf
     for i in range(first_a, end_a):
-        x = move(pose_a, row(vertices, corners[i]))
+        x = move(frames.a, row(vertices, corners[i]))
         for k in range(first_b, end_b):
-            d = sub(x, move(pose_b, row(vertices, corners[k])))
+            d = sub(x, move(frames.b, row(vertices, corners[k])))
             least_sq = min(least_sq, dot(d, d))
-    return math.sqrt(least_sq)
+    return math.sqrt(least_sq) * NOT_LESS
 
 
 @inline
-def bound_by_planes(surface, bodies, faces, limit, scratch):
+def _bound_by_planes(surface, bodies, faces, limit, scratch):
     """[m] a lower bound beyond `limit` by two planes between the bodies' hulls, or -inf if there are none.
 
     Each tree is searched by itself: a few dozen nodes, where pairs of nodes take hundreds to thousands.
-
-    Args:
-        bodies: a `PosedPair`. faces: (2,) where to begin, or -1; overwritten by those that touch the planes.
     """
     roots = parts(bodies, surface.roots[bodies.a], surface.roots[bodies.b])
     m = bodies.frames.m

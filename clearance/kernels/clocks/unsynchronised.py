@@ -83,20 +83,20 @@ class StepsOfClock(NamedTuple):
 
 
 @inline
-def _bring(clocks, tree, node, low, high, at, part):
+def _bring(clocks, tree, span, at, part):
     """Puts `part` in the middle of a part of an interval, unless the node is whole or `part` is there already."""
-    leaf = tree.start + tree.first[node]
-    if is_whole(low, high) or (at[0] == leaf and at[1] == low and at[2] == high):
+    leaf = tree.start + tree.first[span.node]
+    if is_whole(span) or (at[0] == leaf and at[1] == span.low and at[2] == span.high):
         return
     begin_arcs(clocks.world.links, clocks.path.balls, leaf)
-    go_to_middle(clocks.world.links, clocks.path, leaf, low, high, part)
-    at[0], at[1], at[2] = leaf, low, high
+    go_to_middle(clocks.world.links, clocks.path, leaf, span.low, span.high, part)
+    at[0], at[1], at[2] = leaf, span.low, span.high
 
 
 @inline
 def _goal_of(clocks, rectangle, aim, bounds, state):
     """The bound to prove in a rectangle; the target is 0 where there is nothing to prove."""
-    tree, node = clocks.tree_a, rectangle.node_a
+    tree, node = clocks.tree_a, rectangle.a.node
     least, target, gap = 0.0, 0.0, aim.gap
     for row in range(tree.first[node], tree.last[node]):
         upper = bounds.upper[row]
@@ -105,7 +105,7 @@ def _goal_of(clocks, rectangle, aim, bounds, state):
         gap = state.gaps[row]
     one = is_leaf_of_clock(tree, node)
     counts = one and middle_occurs(tree, clocks.tree_b, rectangle, clocks.band)
-    is_fine = one and is_leaf_of_clock(clocks.tree_b, rectangle.node_b)
+    is_fine = one and is_leaf_of_clock(clocks.tree_b, rectangle.b.node)
     allowed = CertificateGoal(gap if one else aim.gap, aim.fail, aim.most_parts)
     return RectangleGoal(least, target, allowed, is_fine, counts)
 
@@ -113,12 +113,12 @@ def _goal_of(clocks, rectangle, aim, bounds, state):
 @inline
 def _note_seen(clocks, rectangle, pair, distance, bounds):
     """Notes a distance that occurs in the middle of a rectangle [m], the least in its interval so far."""
-    r, tree_b = rectangle, clocks.tree_b
-    row = clocks.tree_a.first[r.node_a]
+    a, b, tree_b = rectangle.a, rectangle.b, clocks.tree_b
+    row = clocks.tree_a.first[a.node]
     bounds.upper[row], bounds.pair[row] = distance, pair
-    bounds.share_a[row] = 0.5 * (r.low_a + r.high_a)
-    bounds.step_b[row] = tree_b.start + middle_leaf(tree_b, r.node_b)
-    bounds.share_b[row] = 0.5 * (r.low_b + r.high_b) if is_leaf_of_clock(tree_b, r.node_b) else 0.5
+    bounds.share_a[row] = 0.5 * (a.low + a.high)
+    bounds.step_b[row] = tree_b.start + middle_leaf(tree_b, b.node)
+    bounds.share_b[row] = 0.5 * (b.low + b.high) if is_leaf_of_clock(tree_b, b.node) else 0.5
 
 
 @inline
@@ -129,20 +129,20 @@ def _visit_pairs(surface, clocks, rectangle, count, aim, bounds, state):
 
     Many arguments: they are grouped in tuples already.
     """
-    r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
-    one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)
+    r, listed, lower_bounds = rectangle, state.waiting.listed, state.lower_bounds
+    one_a = is_leaf_of_clock(clocks.tree_a, r.a.node)
+    one_b = is_leaf_of_clock(clocks.tree_b, r.b.node)
     goal = _goal_of(clocks, r, aim, bounds, state)
     most_a, most_b = 0.0, 0.0
     n_open = 0
     for place in range(count):
         if goal.target <= 0.0:
-            state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
+            lower_bounds[r.a.node] = min(lower_bounds[r.a.node], 0.0)
             return 0, True
         pair = listed[place]
         seen = prove_in_rectangle(surface, clocks, r, pair, goal, state)
         if seen.is_done:
-            bound = seen.lower_bound
-            state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)
+            lower_bounds[r.a.node] = min(lower_bounds[r.a.node], seen.lower_bound)
         else:
             listed[n_open] = pair
             n_open += 1
@@ -161,7 +161,7 @@ def _visit_pairs(surface, clocks, rectangle, count, aim, bounds, state):
 @inline
 def _seen_at(clocks, rectangle, in_a, bounds):
     """[s] the time by one clock at which the least distance of a rectangle's intervals was seen."""
-    row = middle_leaf(clocks.tree_a, rectangle.node_a)
+    row = middle_leaf(clocks.tree_a, rectangle.a.node)
     step, share = bounds.step_b[row], bounds.share_b[row]
     if in_a:
         step, share = clocks.tree_a.start + row, bounds.share_a[row]
@@ -250,15 +250,15 @@ def _(search: RectangleProofs, place):
     if not meets_band(tree_a, tree_b, r, clocks.band):
         return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
     state.tally[0] += 1
-    if is_leaf_of_clock(tree_a, r.node_a):
-        row = tree_a.first[r.node_a]
+    if is_leaf_of_clock(tree_a, r.a.node):
+        row = tree_a.first[r.a.node]
         state.n_visits[row] += 1
         if state.n_visits[row] % aim.most_parts == 0:
             state.gaps[row] *= WIDER
-        if is_leaf_of_clock(tree_b, r.node_b):
+        if is_leaf_of_clock(tree_b, r.b.node):
             r = clipped(tree_a, tree_b, r, clocks.band)
-    _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
-    _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
+    _bring(clocks, tree_a, r.a, state.at[0], state.part_a)
+    _bring(clocks, tree_b, r.b, state.at[1], state.part_b)
     n_open, in_a = _visit_pairs(search.surface, clocks, r, count, aim, bounds, state)
     seen = _seen_at(clocks, r, in_a, bounds)
     return Visit(search, OpenRectangle(r, in_a, n_open, seen), n_open > 0)
@@ -266,7 +266,7 @@ def _(search: RectangleProofs, place):
 
 @without_part.register
 def _(search: RectangleProofs, part):
-    search.state.lower_bounds[part.rectangle.node_a] = 0.0
+    search.state.lower_bounds[part.rectangle.a.node] = 0.0
     return search
 
 

@@ -28,7 +28,7 @@ from clearance.kernels.clocks.clock_rectangles import (
     read_rectangle,
 )
 from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
-from clearance.kernels.clocks.two_clocks import TwoClocks, bound_by_planes, corner_distance
+from clearance.kernels.clocks.two_clocks import TwoClocks, bound_coarsely
 from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface
@@ -221,10 +221,10 @@ def _walk(lent, clocks, row, state, found, tally):
 @inline
 def _is_settled(clocks, rectangle, pair, found):
     """True if a known contact at the only step of clock a comes before every contact of a pair here."""
-    row = clocks.tree_a.first[rectangle.node_a]
-    if found.gaps_sq[row] > 0.0 or not is_leaf_of_clock(clocks.tree_a, rectangle.node_a):
+    row = clocks.tree_a.first[rectangle.a.node]
+    if found.gaps_sq[row] > 0.0 or not is_leaf_of_clock(clocks.tree_a, rectangle.a.node):
         return False
-    first = clocks.tree_b.first[rectangle.node_b]
+    first = clocks.tree_b.first[rectangle.b.node]
     return pair > found.pair[row] or (pair == found.pair[row] and first >= found.step_b[row])
 
 
@@ -245,17 +245,11 @@ def _measure_in_middle(surface, asked, seen_enough, state, tally):
         seen_enough: [m] a pair that may be nearer is measured; for others it is enough to know that they are
             within.
     """
-    faces, bodies = state.carried.faces[asked.pair], asked.bodies
-    a, b = bodies.frames.a, bodies.frames.b
-    seen = corner_distance(surface, faces, a, b) * NOT_LESS
-    if seen_enough < seen < asked.within:
-        return NOTHING_MEASURED, False
-    planes = bound_by_planes(surface, bodies, faces, asked.within, state.scratch)
-    if planes > asked.within:
-        return NOTHING_MEASURED, True
-    seen = corner_distance(surface, faces, a, b) * NOT_LESS
-    if seen_enough < seen < asked.within:
-        return NOTHING_MEASURED, False
+    planes, is_near = bound_coarsely(
+        surface, asked.bodies, state.carried.faces[asked.pair], asked.within, seen_enough, state.scratch
+    )  # fmt: skip
+    if is_near or planes > asked.within:
+        return NOTHING_MEASURED, not is_near
     near = _measured(asked, state, tally)
     return near, near.lower_bound > asked.within
 
@@ -268,8 +262,8 @@ def _visit_pairs(surface, clocks, rectangle, count, state, found, tally):
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     pairs, columns = clocks.world.pairs, clocks.columns
-    leaf_a, leaf_b = middle_leaf(tree_a, r.node_a), middle_leaf(tree_b, r.node_b)
-    one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)
+    leaf_a, leaf_b = middle_leaf(tree_a, r.a.node), middle_leaf(tree_b, r.b.node)
+    one_a, one_b = is_leaf_of_clock(tree_a, r.a.node), is_leaf_of_clock(tree_b, r.b.node)
     occurs = middle_occurs(tree_a, tree_b, r, clocks.band)
     most_a, most_b = 0.0, 0.0
     n_open = 0
@@ -277,11 +271,11 @@ def _visit_pairs(surface, clocks, rectangle, count, state, found, tally):
         pair = listed[place]
         if _is_settled(clocks, r, pair, found):
             continue
-        moved_a = tree_a.moved[r.node_a, columns[pairs[pair, 0]]]
-        moved_b = tree_b.moved[r.node_b, columns[pairs[pair, 1]]]
+        moved_a = tree_a.moved[r.a.node, columns[pairs[pair, 0]]]
+        moved_b = tree_b.moved[r.b.node, columns[pairs[pair, 1]]]
         row_a, row_b = _rows_of(clocks, pair, leaf_a, leaf_b)
         slack = CHAIN_SLACK * (tree_a.boxes.slacks[row_a] + tree_b.boxes.slacks[row_b])
-        within = (_within(clocks, r.node_a, found) + moved_a + moved_b) * NOT_LESS + slack
+        within = (_within(clocks, r.a.node, found) + moved_a + moved_b) * NOT_LESS + slack
         bound = bound_between(tree_a.boxes, row_a, tree_b.boxes, row_b, within)
         if bound > within:
             tally[1] += 1
@@ -376,7 +370,7 @@ def _(search: RectanglesOfSteps, place):
         return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
     tally[0] += 1
     n_open, in_a = _visit_pairs(search.surface, clocks, r, count, state, found, tally)
-    row = middle_leaf(tree_a, r.node_a)
+    row = middle_leaf(tree_a, r.a.node)
     step = tree_a.start + row if in_a else found.step_b[row]
     seen = clocks.path.times[step] if step >= 0 else -np.inf
     return Visit(search, OpenRectangle(r, in_a, n_open, seen), n_open > 0)

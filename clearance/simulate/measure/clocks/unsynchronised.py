@@ -17,8 +17,7 @@ from clearance.errors import BadInput, BadTime
 from clearance.kernels.clocks.clock_rectangles import Band
 from clearance.kernels.clocks.clock_tree import (
     ClockTree,
-    fill_intervals_tree,
-    fill_steps_tree,
+    fill_clock_tree,
     new_clock_tree,
 )
 from clearance.kernels.clocks.two_clocks import TwoClocks
@@ -224,11 +223,11 @@ class _Work:
             np.empty((n, 2, 3)),
             np.empty(n),
         )
-        tree_b = self._tree(fill_steps_tree, slice(0, self.n_b), 1)
+        tree_b = self._tree(slice(0, self.n_b), 1, of_steps=True)
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
-            clocks = self._clocks(self._tree(fill_steps_tree, self._of_a(span), 0), tree_b)
+            clocks = self._clocks(self._tree(self._of_a(span), 0, of_steps=True), tree_b)
             own = StepMinima(*(column[span] for column in found))
             least_of_unsynchronised_steps(self.surface, clocks, least_only, own, counts)
             return span.stop, counts
@@ -250,11 +249,11 @@ class _Work:
         tally = dict.fromkeys(COUNTERS, 0)
         if n > 0 and self.n_b > 1:
             surface = with_whole_faces(self.surface)
-            tree_b = self._tree(fill_intervals_tree, slice(0, self.n_b - 1), 1)
+            tree_b = self._tree(slice(0, self.n_b - 1), 1, of_steps=False)
 
             def run_part(span: slice) -> tuple[int, np.ndarray]:
                 counts = np.zeros(len(COUNTERS), dtype=np.int64)
-                tree_a = self._tree(fill_intervals_tree, self._of_a(span), 0)
+                tree_a = self._tree(self._of_a(span), 0, of_steps=False)
                 own = TwoClockBounds(*(column[span] for column in bounds))
                 ends = slice(span.start, span.stop + 1)
                 known = StepsOfClock(steps.clearance[ends], steps.step_b[ends], steps.pair[ends])
@@ -272,10 +271,11 @@ class _Work:
         """The rows of the path at some steps or intervals of clock a."""
         return slice(self.n_b + span.start, self.n_b + span.stop)
 
-    def _tree(self, fill: Callable[..., None], span: slice, i_clock: int) -> ClockTree:
+    def _tree(self, span: slice, i_clock: int, *, of_steps: bool) -> ClockTree:
         bodies = self.bodies[i_clock]
         tree = new_clock_tree(span.start, span.stop - span.start, len(bodies))
-        fill(self.surface, with_turning_balls(self.world), self.path, bodies, tree)
+        world = with_turning_balls(self.world)
+        fill_clock_tree(self.surface, world, self.path, bodies, of_steps, tree)
         return tree
 
     def _clocks(self, tree_a: ClockTree, tree_b: ClockTree) -> TwoClocks:
