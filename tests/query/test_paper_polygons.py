@@ -10,7 +10,7 @@ import pytest
 
 from clearance.errors import BadPolygon
 from clearance.kernels.arithmetic.vec3 import Vec3
-from clearance.kernels.paper.segments import lumelsky
+from clearance.kernels.paper.polygons import lumelsky
 from clearance.query.paper import polygon_distance_paper
 from tests import oracle
 from tests.examples import some_slow
