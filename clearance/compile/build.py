@@ -32,15 +32,7 @@ from clearance.compile.in_process import set_up_compiler
 from clearance.compile.library import library_file, processor_level
 from clearance.compile.linking import NotLinked, link, linker, pack
 from clearance.compile.manifest import FOLDER, Manifest, is_current, say
-from clearance.compile.sources import PACKAGE, digest_of, digest_of_sources, modules
-
-LARGEST_FIRST = (
-    "budget_intervals", "budget_moments", "search", "sweep", "certify_unsynchronised",
-    "least_of_unsynchronised_steps", "certify", "nearest_at_positions", "prove_pair", "prove_while_moving",
-    "nearest_polygons", "nearest_at_poses",
-)  # fmt: skip
-"""What takes longest is begun first."""
-
+from clearance.compile.sources import PACKAGE, closure, digest_of, digest_of_sources, modules
 
 LONGEST = 1800
 """[s] After which another process that builds is no longer waited for: it may be stopped."""
@@ -55,10 +47,9 @@ MEMORY_OF_A_WORKER = 3e9
 
 
 class Unit(NamedTuple):
-    """A kernel to compile: its module, its name, its symbol, the hash of what it depends on."""
+    """A kernel to compile: its module, its symbol, the hash of what it depends on."""
 
     module: str
-    name: str
     symbol: str
     digest: str
 
@@ -76,7 +67,7 @@ def all_levels() -> tuple[str, ...]:
 
 
 def units() -> list[Unit]:
-    """All kernels of the package, those first that take longest."""
+    """All kernels of the package, those first that are made of most: they take longest."""
     from clearance.compile import registered
 
     for module in modules():
@@ -84,15 +75,13 @@ def units() -> list[Unit]:
     found = [
         Unit(
             kernel.function.__module__,
-            kernel.function.__name__,
             kernel.symbol,
             digest_of(kernel.function.__module__),
         )
         for kernel in registered.kernels
         if kernel.function.__module__.startswith("clearance.kernels.")
     ]
-    order = {name: i for i, name in enumerate(LARGEST_FIRST)}
-    return sorted(found, key=lambda unit: (order.get(unit.name, len(order)), unit))
+    return sorted(found, key=lambda unit: (-len(closure(unit.module)), unit))
 
 
 def build(levels: Sequence[str]) -> None:

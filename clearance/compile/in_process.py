@@ -11,15 +11,15 @@ import functools
 import os
 import sys
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 from clearance.compile import registered
+from clearance.compile.linking import linked
 from clearance.compile.memory import OF_MEMORY
 from clearance.compile.registered import Declaration
 
 _lock = threading.RLock()
 _addresses: dict[Declaration, int] = {}
-_linked: list[object] = []
 
 
 def set_up_compiler() -> None:
@@ -73,7 +73,7 @@ def _compiled(
     for symbol in made.called:
         called = next(each for each in reversed(registered.kernels) if each.symbol == symbol)
         imported[symbol] = address_of(called)
-    return _link(made.content, [kernel.symbol], imported)[kernel.symbol]
+    return linked([made.content], [kernel.symbol], imported)[kernel.symbol]
 
 
 @functools.cache
@@ -81,23 +81,6 @@ def memory(level: str) -> Mapping[str, int]:
     """What kernels call for memory, where there is no library that has it."""
     from clearance.compile.objects import memory_object
 
-    found = _link(memory_object(level), OF_MEMORY, {})
+    found = linked([memory_object(level)], OF_MEMORY, {})
     ctypes.CFUNCTYPE(None)(found["clearance_open_memory"])()
     return found
-
-
-def _link(content: bytes, symbols: Sequence[str], imported: Mapping[str, int]) -> dict[str, int]:
-    """Where the symbols of an object lie, linked in this process for as long as it runs."""
-    import llvmlite.binding as llvm
-
-    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
-        reloc="pic", codemodel="small"
-    )
-    builder = llvm.JITLibraryBuilder().add_current_process().add_object_img(content)
-    for symbol, address in imported.items():
-        builder.import_symbol(symbol, address)
-    for symbol in symbols:
-        builder.export_symbol(symbol)
-    linked = builder.link(llvm.create_lljit_compiler(machine), "clearance")
-    _linked.append(linked)
-    return {symbol: linked[symbol] for symbol in symbols}

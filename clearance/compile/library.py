@@ -13,6 +13,7 @@ import os
 import platform
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -42,7 +43,7 @@ def address_of(kernel: Declaration) -> int:
 
 def built_address(symbol: str) -> int | None:
     """Where a symbol of the library lies; None if it has none of that name, or is not to be used."""
-    return None if KERNELS == "jit" else opened().address_of(symbol)
+    return None if KERNELS == "jit" else opened()(symbol)
 
 
 def free_memory() -> None:
@@ -65,25 +66,24 @@ def address_of_memory(symbol: str) -> int:
     return found
 
 
-class _Shared:
-    """A shared library, as the system loads it."""
+def _opened_shared(file: Path) -> Callable[[str], int | None]:
+    """Where a symbol of a shared library lies, as the system loads it; None if there is none of that name."""
+    library = ctypes.CDLL(str(file))
 
-    def __init__(self, file: Path) -> None:
-        self._library = ctypes.CDLL(str(file))
-
-    def address_of(self, symbol: str) -> int | None:
-        """Where a symbol lies; None if there is none of that name."""
+    def address_of(symbol: str) -> int | None:
         try:
-            return ctypes.cast(self._library[symbol], ctypes.c_void_p).value
+            return ctypes.cast(library[symbol], ctypes.c_void_p).value
         except AttributeError:
             return None
+
+    return address_of
 
 
 _opening = threading.Lock()
 
 
-def opened() -> Any:
-    """The library for this processor; built first where it does not fit the sources.
+def opened() -> Callable[[str], int | None]:
+    """Where a symbol of the library for this processor lies; it is built first if it does not fit the sources.
 
     Raises:
         Unavailable: it has to be built, and that cannot be.
@@ -93,19 +93,19 @@ def opened() -> Any:
 
 
 @functools.cache
-def _opened() -> Any:
+def _opened() -> Callable[[str], int | None]:
     if KERNELS not in ("built", "jit", "python"):
         raise BadInput(f"CLEARANCE_KERNELS is {KERNELS!r}", valid="built, jit or python is needed")
     if not is_current(digest_of_imported, [processor_level()]):
         _rebuild()
     manifest = read_manifest()
     assert manifest is not None
-    library = _loaded(library_file(processor_level(), manifest.is_linked), manifest)
-    ctypes.CFUNCTYPE(None)(library.address_of("clearance_open_memory"))()
-    return library
+    address_of = _loaded(library_file(processor_level(), manifest.is_linked), manifest)
+    ctypes.CFUNCTYPE(None)(address_of("clearance_open_memory"))()
+    return address_of
 
 
-def _loaded(file: Path, manifest: Manifest) -> Any:
+def _loaded(file: Path, manifest: Manifest) -> Callable[[str], int | None]:
     """The library in a file.
 
     Raises:
@@ -115,10 +115,10 @@ def _loaded(file: Path, manifest: Manifest) -> Any:
         if not manifest.has_whole(file.name):
             raise OSError(f"{file} is missing or cut off")
         if manifest.is_linked:
-            return _Shared(file)
-        from clearance.compile.linking import PackedObjects
+            return _opened_shared(file)
+        from clearance.compile.linking import opened_pack
 
-        return PackedObjects(file)
+        return opened_pack(file)
     except (OSError, BadZipFile, ImportError, RuntimeError) as error:
         raise Unavailable(
             f"the compiled kernels cannot be loaded: {error}",

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from clearance.compile.memory import OF_MEMORY
@@ -50,28 +50,40 @@ def pack(objects: Sequence[Path], packed: Path) -> None:
             archive.write(file, file.name)
 
 
-class PackedObjects:
-    """Packed object files, linked in this process."""
+def opened_pack(packed: Path) -> Callable[[str], int | None]:
+    """Where a symbol of packed objects lies, linked in this process; None if there is none of that name."""
+    with zipfile.ZipFile(packed) as archive:
+        names = archive.namelist()
+        contents = [archive.read(name) for name in names]
+    of_kernels = [name.rpartition("-")[0] for name in names if "-" in name]
+    return linked(contents, [*of_kernels, *OF_MEMORY], {}).get
 
-    def __init__(self, packed: Path) -> None:
-        import llvmlite.binding as llvm
 
-        llvm.initialize_native_target()
-        llvm.initialize_native_asmprinter()
-        machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
-            reloc="pic", codemodel="small"
-        )
-        builder = llvm.JITLibraryBuilder().add_current_process()
-        with zipfile.ZipFile(packed) as archive:
-            for name in archive.namelist():
-                builder.add_object_img(archive.read(name))
-                for symbol in [name.rpartition("-")[0]] if "-" in name else OF_MEMORY:
-                    builder.export_symbol(symbol)
-        self._library = builder.link(llvm.create_lljit_compiler(machine), "clearance")
+_linked: list[object] = []
 
-    def address_of(self, symbol: str) -> int | None:
-        """Where a symbol lies; None if there is none of that name."""
-        try:
-            return self._library[symbol]
-        except KeyError:
-            return None
+
+def linked(
+    objects: Iterable[bytes], symbols: Iterable[str], imported: Mapping[str, int]
+) -> dict[str, int]:
+    """Where the symbols of objects lie, linked by llvmlite in this process for as long as it runs.
+
+    Args:
+        imported: where other symbols lie that the objects need.
+    """
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+        reloc="pic", codemodel="small"
+    )
+    builder = llvm.JITLibraryBuilder().add_current_process()
+    for content in objects:
+        builder.add_object_img(content)
+    for symbol, address in imported.items():
+        builder.import_symbol(symbol, address)
+    for symbol in symbols:
+        builder.export_symbol(symbol)
+    library = builder.link(llvm.create_lljit_compiler(machine), "clearance")
+    _linked.append(library)
+    return {symbol: library[symbol] for symbol in symbols}

@@ -19,7 +19,7 @@ PACKAGE = Path(__file__).parents[1]
 def digest_of(module: str) -> str:
     """The hash of a module of kernels with all that it imports of kernels, and of what compiles it."""
     digest = hashlib.sha256(_compilers().encode())
-    for name in sorted({*_closure(module), *_compiling_modules()}):
+    for name in sorted({*closure(module), *_compiling_modules()}):
         digest.update(name.encode() + b"\0" + _file(name).read_bytes() + b"\0")
     return digest.hexdigest()
 
@@ -77,7 +77,8 @@ def _compiling_modules() -> list[str]:
     return [f"clearance.compile.{name}" for name in names]
 
 
-def _closure(module: str) -> set[str]:
+def closure(module: str) -> set[str]:
+    """A module of kernels, and all of them that it imports."""
     seen: set[str] = set()
     waiting = [module]
     while waiting:
