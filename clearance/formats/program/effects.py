@@ -1,12 +1,14 @@
 """What statements may do, whether they are run or not: move the robot, leave a routine, give variables values.
 
+Values that a controller keeps between runs (PERS of RAPID, data lists of KRL) are followed here too.
+
 Not for: running them (`execution`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
 
@@ -15,6 +17,8 @@ from clearance.formats.program.expressions import Call, Expression, Unknown, cal
 from clearance.formats.program.statements import (
     STOP,
     Assign,
+    For,
+    If,
     Leave,
     Routine,
     Statement,
@@ -170,6 +174,48 @@ class Effects:
         for name_, line in self.changed_in([routine.body], entered):
             if name_ not in own:
                 yield name_, line
+
+
+@dataclass(eq=False)
+class PersistentValues:
+    """Which variables of a run rest on kept values.
+
+    Attributes:
+        frames: the run's variables of the whole program, then of each routine that is entered.
+        origins: for each of these, by variable, the kept value that it rests on.
+    """
+
+    effects: Effects
+    frames: list[dict[str, Any]]
+    origins: list[dict[str, str]] = field(default_factory=lambda: [{}])
+
+    def origin_of(self, parts: Iterable[Expression]) -> str:
+        """The kept value that expressions rest on; empty where none is."""
+        for name in self.effects.read_by(parts) if any(self.origins) else ():
+            origins = self.origins[-1 if name in self.frames[-1] else 0]
+            if name in origins:
+                return origins[name]
+        return ""
+
+    def put(self, name: str, origin: str, place: dict[str, Any], is_part: bool = False) -> None:
+        """Keeps what a variable rests on that is given a value, or a part of one."""
+        origins = self.origins[0 if place is self.frames[0] else -1]
+        if origin:
+            origins[name] = origin
+        elif not is_part:
+            origins.pop(name, None)
+
+    def doubts_on(self, one: If | While | For, origin: str) -> dict[str, None]:
+        """A line on a branch or a loop that a kept value decided, if the robot moves; variables that it changes
+        rest on the value too.
+        """
+        bodies = [body for _, body in one.branches] if isinstance(one, If) else [one.body]
+        for name, _ in self.effects.changed_in(bodies):
+            self.origins[-1 if name in self.frames[-1] else 0][name] = origin
+        other = "the way not taken is" if isinstance(one, If) else "other numbers of passes are"
+        text = f"{one.line}: {other} not measured; {origin} decides"
+        moves = any(True for body in bodies for _ in self.effects.deciding(body))
+        return {f"{text}, which the controller keeps between runs": None} if moves else {}
 
 
 def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:

@@ -16,6 +16,7 @@ from clearance.errors import BadProgram, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait, end_of
 from clearance.formats.program.effects import (
     Effects,
+    PersistentValues,
     arguments_of,
     require_repeating,
     undecided,
@@ -36,7 +37,6 @@ from clearance.formats.program.expressions import (
     with_passed,
 )
 from clearance.formats.program.language import Language
-from clearance.formats.program.persistent import PersistentValues
 from clearance.formats.program.remarks import ENDLESS, LEFT_OUT, STILL, UNSAID, WAITS, Remarks
 from clearance.formats.program.statements import (
     BREAK,

@@ -27,8 +27,7 @@ from clearance.formats.program.controller_program import (
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Constant, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
-from clearance.formats.program.fanuc_text import Motion, listing_of
-from clearance.formats.program.fanuc_words import (
+from clearance.formats.program.fanuc_text import (
     DECIDING,
     LARGEST_SPEEDS,
     MOVES,
@@ -36,6 +35,8 @@ from clearance.formats.program.fanuc_words import (
     QUIET,
     WAIT,
     WAITING,
+    Motion,
+    listing_of,
 )
 from clearance.formats.program.given import not_in_files
 from clearance.formats.program.language import Language, entry_of

@@ -24,7 +24,6 @@ from clearance.formats.program.expressions import (
     numeric,
 )
 from clearance.formats.program.fanuc_positions import Position, positions_of
-from clearance.formats.program.fanuc_words import MOVES, QUIET, WAIT
 from clearance.formats.program.grammar import Grammar
 from clearance.formats.program.statements import (
     RETURN,
@@ -39,6 +38,29 @@ from clearance.formats.program.statements import (
     While,
 )
 from clearance.formats.program.tokens import END, Cursor, Line, Token, text_of, tokens_of
+
+MOVES = {"J": "ptp", "L": "lin", "C": "circ", "A": "", "S": ""}
+"""The motions, and the way of each that is read."""
+
+WAIT = "WAIT sec"
+
+OVERRIDE, LARGEST_SPEEDS = "OVERRIDE", ("JOINT_MAX_SPEED", "LINEAR_MAX_SPEED")
+"""Instructions that change speeds: all of them by a share [%], and those that are greater than a value."""
+
+WAITING = ("UALM", "ARC")
+"""Instructions that take time: until a person has reset an alarm, and until an arc burns."""
+
+QUIET = frozenset(
+    (
+        *("DO", "RO", "GO", "AO", "SO", "UO", "F", "M", "TIMER", "SR", "PR", "PAYLOAD", "MESSAGE"),
+        *("UALM", "SKIP", "OFFSET", "TOOL_OFFSET", "ARC", "COL", "LOCK", "UNLOCK", "TC_ONLINE"),
+        *(OVERRIDE, *LARGEST_SPEEDS),
+    )
+)
+"""Instructions that move nothing. Conditions of offsets and skips count only in motions that name them."""
+
+DECIDING = ("P", "R", "UFRAME", "UTOOL", "UFRAME_NUM", "UTOOL_NUM")
+"""What decides where motions go: a line that changes it is never left out. `$MNU…` are frames and tools too."""
 
 _WORD = re.compile(
     r"""(?P<skip>[ \t]+)

@@ -25,7 +25,22 @@ from clearance.formats.program.controller_program import (
 )
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Expression, Name, Unknown
-from clearance.formats.program.krl_expressions import AGGREGATE, MOVES, QUIET, SPLINE, SYSTEM, WAIT
+from clearance.formats.program.krl_expressions import (
+    AGGREGATE,
+    FRAME,
+    MM,
+    MOVES,
+    QUIET,
+    SPLINE,
+    SYSTEM,
+    WAIT,
+    Aggregate,
+    as_real,
+    frame_of,
+    is_number,
+    matrix_of,
+    why,
+)
 from clearance.formats.program.krl_files import files_of
 from clearance.formats.program.krl_settings import (
     FUNCTIONS,
@@ -35,16 +50,6 @@ from clearance.formats.program.krl_settings import (
     key_of,
 )
 from clearance.formats.program.krl_system import RobotRoot, not_followed, require_followed
-from clearance.formats.program.krl_values import (
-    FRAME,
-    MM,
-    Aggregate,
-    as_real,
-    frame_of,
-    is_number,
-    matrix_of,
-    why,
-)
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import Assign

@@ -18,7 +18,7 @@ from clearance.errors import BadProgram
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Expression, Name, Unknown
 from clearance.formats.program.given import not_in_files
-from clearance.formats.program.krl_values import (
+from clearance.formats.program.krl_expressions import (
     FRAME,
     MM,
     UNIT,

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadProgram, MissingKey
+from clearance.formats.program.krl_expressions import MM, frame_of, matrix_of, why
 from clearance.formats.program.krl_settings import FIRST, SAVED, Settings
-from clearance.formats.program.krl_values import MM, frame_of, matrix_of, why
 from clearance.formats.program.remarks import NOT_FOLLOWED, Remarks
 from clearance.formats.program.statements import Assign, Statement, assigned, within
 from clearance.formats.schema.program_file import ProgramFile

@@ -28,10 +28,11 @@ from clearance.formats.program.krl_expressions import (
     TYPES,
     WAIT,
     Expressions,
+    as_integer,
+    as_real,
     called_beside,
     parameters_of,
 )
-from clearance.formats.program.krl_values import as_integer, as_real
 from clearance.formats.program.statements import (
     BREAK,
     RETURN,

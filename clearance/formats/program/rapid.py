@@ -1,17 +1,20 @@
-"""Programs in RAPID: from files to moves. Not for: what instructions do (`rapid_instructions`).
+"""Programs in RAPID: from files to moves. Not for: its text (`rapid_text`), its data and its words.
 
 Source: ABB, Technical reference manual, RAPID instructions, functions and data types.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import islice
+from typing import Any
 
 import numpy as np
 
-from clearance.errors import at
+from clearance.errors import BadProgram, ClearanceError, at
+from clearance.formats.program import rapid_words as words
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -19,14 +22,44 @@ from clearance.formats.program.controller_program import (
     ControllerWait,
     PoseTarget,
     ProgramRequest,
+    Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.language import entry_of
-from clearance.formats.program.rapid_data import tool_record, work_object_record
-from clearance.formats.program.rapid_grammar import GRAMMAR
-from clearance.formats.program.rapid_instructions import Rapid
-from clearance.formats.program.rapid_text import Modules
-from clearance.formats.program.tokens import text_of
+from clearance.formats.program.expressions import (
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Part,
+    Unknown,
+    calls_in,
+    known,
+    number,
+)
+from clearance.formats.program.language import Language, entry_of
+from clearance.formats.program.rapid_data import (
+    NO_AXIS,
+    RECORDS,
+    STANDARD,
+    VALUES,
+    Work,
+    array_of,
+    configuration_of,
+    external_of,
+    flange_from_tool,
+    pose_of,
+    speed_of,
+    tool_record,
+    work_object_record,
+    work_of,
+    zone_of,
+)
+from clearance.formats.program.rapid_text import FIRST, Declaration, Modules
+from clearance.formats.program.rapid_words import GRAMMAR, MOVES, MoveRule
+from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
+from clearance.formats.program.remarks import WAITS as TAKES_TIME
+from clearance.formats.program.statements import assigned
+from clearance.formats.program.tokens import on, text_of
 from clearance.formats.schema.program_file import ProgramFile
 
 
@@ -56,6 +89,269 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         run.moves = _with_zones(run.moves, language.zones)
         notes = (*language.assumed, *_on_cycles(run.moves))
         return language.program_of(run, notes, _replaced(modules, given))
+
+
+@dataclass(eq=False)
+class Rapid(Language):
+    """What RAPID's instructions do.
+
+    Attributes:
+        known_data: tools and work objects that the case says. units: mechanical units of which it says the frame.
+        checks: whether joint moves keep to configurations. share: of all speeds, by `VelSet`. fastest: by it, the
+            greatest speed of the tool's point [mm/s].
+        zones: by the index of a move, the radii of its zone for point and orientation [m].
+    """
+
+    modules: Modules
+    known_data: dict[str, Any]
+    units: Mapping[str, str] = field(default_factory=dict)
+    checks: bool = True
+    share: float = 1.0
+    fastest: float = math.inf
+    zones: dict[int, tuple[float, float]] = field(default_factory=dict)
+    maker = "abb"
+    moving = frozenset((*MOVES, *words.OTHER_MOVES, "ConfJ"))
+    still = frozenset(words.WORDS.values())
+    timed = words.WAITS | words.PAUSES
+    retiming = words.LIMITS | words.WAITS | words.PAUSES | {"VelSet"}
+    values = VALUES
+
+    @property
+    def state(self) -> Any:
+        """Whether configurations are kept, and what limits speeds."""
+        return self.checks, self.share, self.fastest
+
+    @property
+    def assumed(self) -> list[str]:
+        """A line each on what was taken for granted."""
+        found = []
+        if any(one.kind == "PERS" for one in self.modules.declared.values()):
+            found.append("PERS data have the values that are in the file")
+        return found
+
+    def declare(self, run: Execution) -> None:
+        """Gives all data of modules their first values, and says which of them are kept between runs, unless the
+        case says them."""
+        for name, one in self.modules.declared.items():
+            if name not in run.variables:
+                run.value_of(Name(name, one.line))
+        for name, one in self.modules.declared.items():
+            if one.kind == "PERS" and name not in self.known_data:
+                run.persistent.put(name, f"{name} ({one.line})", run.variables)
+
+    def value_of(self, name: str, run: Execution) -> Any:
+        """The value of a datum of a module, of the case, or of the controller."""
+        one = self.modules.declared.get(name)
+        if name in self.known_data:
+            return self.known_data[name]
+        if one is None:
+            return STANDARD.get(name)
+        run.variables[name] = Unknown(f"{name!r} is declared by itself at {one.line}")
+        with on(one.line):
+            run.variables[name] = self._first_value(one, run)
+        return run.variables[name]
+
+    def _first_value(self, one: Declaration, run: Execution) -> Any:
+        if one.value is not None:
+            return run.evaluated(one.value)
+        usual = FIRST.get(one.type_name)
+        if one.sizes:
+            return array_of(usual, *(number(run.evaluated(size), "a size") for size in one.sizes))
+        return Unknown(f"{one.name!r} has no value at {one.line}") if usual is None else usual
+
+    def part_of(self, value: Any, by: Any) -> Any:
+        """A field of a record, or an item of an array."""
+        return value[self._place(value, by)]
+
+    def with_part(self, value: Any, by: Any, new: Any) -> None:
+        """Changes a field or an item."""
+        value[self._place(value, by)] = new
+
+    def _place(self, value: Any, by: Any) -> int:
+        if not isinstance(value, list):
+            raise TypeError
+        if isinstance(by, str):
+            own = [one for one in self.modules.records.values() if len(one) == len(value)]
+            (place,) = {one.index(by) for one in (*own, *RECORDS.get(len(value), [])) if by in one}
+            return place
+        if by != int(by) or by < 1:
+            raise IndexError(by)
+        return int(by) - 1
+
+    def instruct(self, call: Call, run: Execution) -> None:
+        """A move, a wait, a setting; all else moves nothing.
+
+        Raises:
+            BadProgram: a move of another kind, or a wait for a signal.
+        """
+        name = call.name
+        if name in MOVES:
+            self._move(call, MOVES[name], run)
+        elif name == "WaitTime":
+            self.wait(call, run, "inpos" not in call.named)
+        elif name in words.WAITS:
+            fault = f"{name} waits for what only the controller knows"
+            raise BadProgram(fault, valid=f"skip: [{name}] to leave such waits out")
+        elif name == "CONNECT":
+            trap = call.args[0].value if isinstance(call.args[0], Constant) else ""
+            run.run_concurrently("trap", trap)
+            run.note("traps that move nothing", f"{trap} ({call.line})")
+        elif name in ("SingArea", "CirPathMode") and {*call.named} <= {"off", "pathframe"}:
+            run.pass_over(call)
+        elif name in words.OTHER_MOVES:
+            off = "SingArea\\Off, so that the tool keeps its orientation"
+            valid = off if name == "SingArea" else "take it out of the program"
+            fault = f"{name} changes where the robot goes, in a way that is not read"
+            raise BadProgram(fault, valid=valid)
+        else:
+            self._set(call, run)
+
+    def _set(self, call: Call, run: Execution) -> None:
+        """What an instruction that moves nothing changes."""
+        run.pass_over(call)
+        if call.name in words.LIMITS and call.args:
+            run.note(NOT_FOLLOWED, f"{call.name} ({call.line})")
+        if call.name == "ConfJ":
+            self.checks = "off" not in call.named
+        elif call.name == "VelSet" and len(call.args) == 2:
+            share, fastest = (run.evaluated(one) for one in call.args)
+            self.share = run.share_of_speeds(share, call, 100.0)
+            is_known = not isinstance(fastest, Unknown)
+            self.fastest = number(fastest, call.name) if is_known else math.inf
+            if not is_known:
+                run.note(UNSAID, f"{call.name} ({call.line})")
+        run.forget_written(call)
+
+    def writes(self, call: Call) -> list[Expression]:
+        """The arguments of an instruction or a function that it gives a value; of one that is in no file all that
+        are no constants."""
+        if self.moves(call.name) is None:
+            found = ((one, assigned(one)) for one in (*call.args, *call.named.values()))
+            return [one for one, name in found if name is not None and not self._is_constant(name)]
+        if call.name in words.WRITES:
+            return [*call.args, *call.named.values()]
+        return [
+            *(call.args[i] for i in words.WRITES_ONE.get(call.name, ()) if i < len(call.args)),
+            *(one for key, one in call.named.items() if key in words.RESULTS),
+        ]
+
+    def _is_constant(self, name: Name) -> bool:
+        one = self.modules.declared.get(name.name)
+        return one is not None and one.kind == "CONST"
+
+    def result_of(self, call: Call, run: Execution) -> Any:
+        """The value of a function."""
+        if call.name == "Present":
+            (one,) = call.args
+            return isinstance(one, Name) and one.name in run.frames[-1]
+        return super().result_of(call, run)
+
+    def _move(self, call: Call, rule: MoveRule, run: Execution) -> None:
+        _require_plain(call, rule)
+        asked = {
+            "target": call.args[rule.to],
+            "speed": call.args[rule.speed],
+            "zone": call.args[rule.zone],
+            "tool": call.args[rule.tool],
+            "work object": call.named.get("wobj", Name("wobj0", call.line)),
+            **({"point on the arc": call.args[0]} if rule.to == 1 else {}),
+        }
+        given = {what: known(run.evaluated(one), f"the {what}") for what, one in asked.items()}
+        options = {
+            key: number(run.evaluated(call.named[key]), key.upper())
+            for key in ("v", "t", "z")
+            if key in call.named
+        }
+        try:
+            move, zone = self._made(call, rule, given, options, run)
+        except ClearanceError:
+            raise
+        except (LookupError, TypeError, ValueError):
+            fault, valid = (
+                "is given data of another kind",
+                "a target, speeddata, zonedata, tooldata",
+            )
+            raise BadProgram(f"{call.name} {fault}", valid=valid) from None
+        if call.name.startswith("Arc"):
+            run.note(UNSAID, f"{call.name} ({call.line})")
+        if "conc" in call.named or call.name.endswith("Sync"):  # something goes on beside the move
+            word = "\\Conc" if "conc" in call.named else call.name
+            run.note(TAKES_TIME, f"{word} ({call.line})")
+        if max(zone) > 0.0:
+            self.zones[len(run.moves)] = zone
+        run.add(move.slowed(self.share))
+
+    def _made(
+        self,
+        call: Call,
+        rule: MoveRule,
+        given: Mapping[str, Any],
+        options: Mapping[str, float],
+        run: Execution,
+    ) -> tuple[ControllerMove, tuple[float, float]]:
+        """The move of an instruction, and the radii of its zone."""
+        work = work_of(given["work object"], self.units)
+        speed, turn_speed, time = speed_of(given["speed"], options)
+        via = None
+        if rule.to == 1:
+            via = self._target(call, given["point on the arc"], call.args[0], work, run)
+        to = self._target(call, given["target"], call.args[rule.to], work, run)
+        zone = zone_of(given["zone"], options)
+        tool = flange_from_tool(given["tool"])
+        move = ControllerMove(call.line, rule.kind, to, tool, via, time=time)
+        if rule.kind != "ptp":
+            speed = min(speed, 1e-3 * self.fastest / self.share)
+            move = replace(move, speed=speed, turn_speed=turn_speed, orientation="path")
+        return move, zone
+
+    def _target(
+        self, call: Call, value: Any, one: Expression, work: Work, run: Execution
+    ) -> Target:
+        name = _shown(one, run)
+        if call.name == "MoveAbsJ":
+            axes, external = value
+            own = tuple(math.radians(one) for one in axes if abs(one) < NO_AXIS)
+            return AxisTarget(own, external_of(external), name)
+        trans, rot, flags, external = value
+        pose, more = work.pose @ pose_of([trans, rot]), external_of(external)
+        found = PoseTarget(pose, more, name=name, unit=work.unit)
+        if MOVES[call.name].kind != "ptp" or not self.checks:
+            return found
+        return replace(found, **configuration_of(flags, bool(more)))
+
+
+def _require_plain(call: Call, rule: MoveRule) -> None:
+    """Nothing, if a move has all its arguments, and none that changes its way.
+
+    Raises:
+        BadProgram: it has not.
+    """
+    for name in ("corr", "track", "weave", "sync"):
+        if name in call.named:
+            raise BadProgram(f"\\{name} changes the way", valid="take the argument out")
+    if len(call.args) <= rule.tool:
+        fault = f"{call.name} has {len(call.args)} of its arguments"
+        raise BadProgram(fault, valid="target, speed, zone and tool")
+
+
+def _shown(one: Expression, run: Execution) -> str:
+    """The name of a target: that of the datum that it is made of, within the functions that move it."""
+    if isinstance(one, Part):
+        return _shown(one.of, run)
+    if not isinstance(one, Call):
+        return str(one.name).rpartition(".")[2] if isinstance(one, Name) else ""
+    name = _shown(one.args[0], run) if one.args else ""
+    if not name or one.name not in ("Offs", "RelTool"):
+        return name
+    shown = [_number(part, run) for part in one.args[1:]]
+    turned = [f"\\{key.title()}:={_number(part, run)}" for key, part in one.named.items()]
+    return f"{one.name}({', '.join([name, *shown, *turned])})"
+
+
+def _number(one: Expression, run: Execution) -> str:
+    """A number in words; what a function says, which may change something, is left out."""
+    value = "…" if any(True for _ in calls_in(one)) else run.evaluated(one)
+    return f"{value:g}" if isinstance(value, int | float) else "…"
 
 
 def _replaced(modules: Modules, given: ProgramFile) -> Iterator[str]:

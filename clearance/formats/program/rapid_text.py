@@ -18,7 +18,7 @@ from clearance.formats.program.expressions import (
     Name,
     Operation,
 )
-from clearance.formats.program.rapid_grammar import GRAMMAR, WORDS, added
+from clearance.formats.program.rapid_words import GRAMMAR, WORD, added
 from clearance.formats.program.statements import (
     RETURN,
     STOP,
@@ -77,7 +77,7 @@ class Modules:
         Raises:
             BadSyntax: with the line. DuplicateName: two of a name.
         """
-        cursor = Cursor(_with_own_names(tokens_of(text, WORDS, file)), folds=True)
+        cursor = Cursor(_with_own_names(tokens_of(text, WORD, file)), folds=True)
         reader = _Reader(ExpressionReader(cursor, GRAMMAR))
         reader.into = self
         if cursor.next.kind == END:
