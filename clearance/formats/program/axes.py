@@ -11,6 +11,8 @@ import numpy as np
 from clearance.errors import BadProgram, UnknownJoint, at, nearest_name
 from clearance.formats.program.controller_program import AxisTarget, PoseTarget
 from clearance.formats.schema.program_file import Axis
+from clearance.geometry.pose import inverse
+from clearance.world.kinematic_chain import KinematicChain
 from clearance.world.robot import Joint, JointKind
 
 
@@ -108,6 +110,24 @@ class AxisMap:
                 ]
                 found[name] = [float(min(ends)), float(max(ends))]
         return found
+
+    def at_zero(
+        self, chain: KinematicChain, root_from_base: np.ndarray
+    ) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
+        """By the number of an axis, about what its joint turns, and where that is [m], when all axes are at 0.
+
+        Args:
+            root_from_base: (4, 4) from where they are seen.
+        """
+        offsets = [self.rules[joint.name].offset for joint in chain.masters]
+        frames = inverse(root_from_base) @ chain.frames(np.array([offsets]))[0]
+        ways, places = {}, {}
+        for joint, frame in reversed([*zip(chain.joints, frames[:-1], strict=True)]):
+            number = self.numbers.get(chain.masters[joint.column].name)
+            if number is not None:
+                ways[number] = np.sign(joint.factor) * frame[:3, :3] @ joint.axis
+                places[number] = frame[:3, 3]
+        return ways, places
 
     @cached_property
     def _linear(self) -> tuple[np.ndarray, np.ndarray]:

@@ -6,9 +6,9 @@ seconds. Not for: names, loops and calls, which a language's reader resolves.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import islice
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -30,11 +30,6 @@ class AxisTarget:
     external: Mapping[str, float] = field(default_factory=dict)
     name: str = ""
     unit: ClassVar[str] = ""
-
-    @property
-    def values(self) -> list[Any]:
-        """Where it is, as numbers."""
-        return [self.axes, dict(self.external)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,11 +55,6 @@ class PoseTarget:
     unchecked: str = ""
     name: str = ""
     unit: str = ""
-
-    @property
-    def values(self) -> list[Any]:
-        """Where it is, as numbers."""
-        return [self.pose.tolist(), dict(self.external), self.unit]
 
 
 Target = AxisTarget | PoseTarget
@@ -130,10 +120,15 @@ class ControllerWait:
     reads_on: bool = False
 
 
-def end_of(moves: Sequence[ControllerMove | ControllerWait]) -> list[Any]:
-    """Where the robot is after moves, as numbers; none where there are none."""
-    last = (one for one in reversed(moves) if isinstance(one, ControllerMove))
-    return [(one.to.values, one.tool.tolist()) for one in islice(last, 1)]
+def digits_of(*values: Any) -> str:
+    """Moves and targets to their last digit: the same for what is the same."""
+    return json.dumps([asdict(one) for one in values], default=np.ndarray.tolist)
+
+
+def end_of(moves: Sequence[ControllerMove | ControllerWait]) -> tuple[str, list[Any]]:
+    """Where the robot is after moves; nowhere where there are none."""
+    last = next((one for one in reversed(moves) if isinstance(one, ControllerMove)), None)
+    return ("", []) if last is None else (digits_of(last.to), last.tool.tolist())
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,11 +42,11 @@ class Convention:
 
     def misfit(self, chain: KinematicChain, axes: AxisMap, root_from_base: np.ndarray) -> str:
         """Which joints of six are not where these axes are at 0, or turn otherwise; empty if none does."""
-        ways, places = _at_zero(chain, axes, root_from_base)
+        ways, places = axes.at_zero(chain, root_from_base)
         names = {number: name for name, number in axes.numbers.items()}
         found = []
         for number, turn in enumerate(self.turns.split(), 1):
-            along = float(ways[number] @ _WAYS[turn])
+            along = axes.rules[names[number]].sign * float(ways[number] @ _WAYS[turn])
             if along < -ALONG:
                 found.append(f"{names[number]} turns against axis {number}")
             elif along < ALONG:
@@ -68,7 +68,7 @@ class Convention:
         names = {number: name for name, number in axes.numbers.items()}
         now = replace(axes, rules=dict.fromkeys(axes.rules, Axis()), third=self.third)
         for number, turn in enumerate(self.turns.split(), 1):
-            ways, places = _at_zero(chain, now, root_from_base)
+            ways, places = now.at_zero(chain, root_from_base)
             rule = Axis(sign=1 if ways[number] @ _WAYS[turn] > 0.0 else -1)
             if number < 6:
                 after, next_turn = ways[number + 1], self.turns.split()[number]
@@ -92,22 +92,6 @@ def _across(vector: np.ndarray, way: np.ndarray) -> np.ndarray:
 def _turn_to(vector: np.ndarray, other: np.ndarray, about: np.ndarray) -> float:
     """[rad] From a vector to another one about a direction, to both of which it is at right angles."""
     return float(np.arctan2(about @ np.cross(vector, other), vector @ other))
-
-
-def _at_zero(
-    chain: KinematicChain, axes: AxisMap, root_from_base: np.ndarray
-) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
-    """By its number, about what each axis turns and where it is when all are at 0, seen from the base."""
-    rules = [axes.rules[joint.name] for joint in chain.masters]
-    frames = chain.frames(np.array([[rule.offset for rule in rules]]))[0]
-    ways, places = {}, {}
-    for joint, frame in reversed([*zip(chain.joints, frames[:-1], strict=True)]):
-        number = axes.numbers.get(chain.masters[joint.column].name)
-        if number is not None:
-            turn = np.sign(joint.factor) * rules[joint.column].sign * joint.axis
-            ways[number] = root_from_base[:3, :3].T @ frame[:3, :3] @ turn
-            places[number] = root_from_base[:3, :3].T @ frame[:3, 3]
-    return ways, places
 
 
 _ABB = ("ABB robots", "+z +y +y +x +y +x", "+z")

@@ -7,13 +7,14 @@ Not for: running them (`execution`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
 
 from clearance.errors import BadProgram
 from clearance.formats.program.expressions import Call, Expression, Unknown, calls_in, names_in
+from clearance.formats.program.language import Language
 from clearance.formats.program.statements import (
     STOP,
     Assign,
@@ -41,14 +42,10 @@ class Effects:
     """What the statements of a program may do.
 
     Attributes:
-        moves: whether a word of the language decides where the robot goes; None where it is not known.
-        writes: the arguments of a call that the language gives a value. waits: whether a call takes time.
         skip: words that are left out.
     """
 
-    moves: Callable[[str], bool | None]
-    writes: Callable[[Call], Iterable[Expression]]
-    waits: Callable[[Call], bool]
+    language: Language
     routines: Mapping[str, Routine]
     skip: frozenset[str]
 
@@ -64,7 +61,7 @@ class Effects:
                 if call.name in self.routines:
                     inner = self.routines[call.name].body
                     yield from self.deciding(inner, (*entered, call.name))
-                elif self.moves(call.name) is not False:
+                elif self.language.moves(call.name) is not False:
                     yield f"{call.name} at {one.line}"
 
     def leaves_out(self, one: Unreadable) -> bool:
@@ -73,11 +70,10 @@ class Effects:
 
     def moving(self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()) -> Iterator[Call]:
         """The calls in a body that move the robot or change how it moves, or may do so."""
-        for one in self._run_in(body, entered):
-            for call in _calls_of(one):
-                own = call.name in self.routines or call.name in self.skip
-                if not own and self.moves(call.name) is not False:
-                    yield call
+        for call in self._calls_in(body, entered):
+            own = call.name in self.routines or call.name in self.skip
+            if not own and self.language.moves(call.name) is not False:
+                yield call
 
     def waiting(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
         """What in bodies takes a time, or is left out whatever time it takes, and where."""
@@ -85,7 +81,7 @@ class Effects:
             if isinstance(one, While):
                 yield f"{one.word} ({one.line})"
             for call in _calls_of(one):
-                if call.name in self.skip or self.waits(call):
+                if call.name in self.skip or self.language.waits(call):
                     yield f"{call.name} ({call.line})"
 
     def _run_in(
@@ -98,12 +94,15 @@ class Effects:
                 if name in self.routines and name not in self.skip and name not in entered:
                     yield from self._run_in(self.routines[name].body, (*entered, name))
 
+    def _calls_in(self, body: tuple[Statement, ...], entered: tuple[str, ...]) -> Iterator[Call]:
+        return (call for one in self._run_in(body, entered) for call in _calls_of(one))
+
     def moving_in(self, name: str) -> str | None:
         """Where an instruction or a routine moves the robot; None where it does not, or nobody knows."""
         if name not in self.routines:
-            return "" if self.moves(name) else None
+            return "" if self.language.moves(name) else None
         calls = self.moving(self.routines[name].body, (name,))
-        found = (f": {one.name} at {one.line}" for one in calls if self.moves(one.name))
+        found = (f": {one.name} at {one.line}" for one in calls if self.language.moves(one.name))
         return next(found, None)
 
     def doubts_on_handlers(self, routine: Routine) -> dict[str, None]:
@@ -130,9 +129,7 @@ class Effects:
 
     def calls_of(self, name: str) -> Iterator[Call]:
         """The calls in a routine, and in those that it calls."""
-        body = self.routines[name].body if name in self.routines else ()
-        for one in self._run_in(body, (name,)):
-            yield from _calls_of(one)
+        return self._calls_in(self.routines[name].body if name in self.routines else (), (name,))
 
     def read_by(self, parts: Iterable[Expression], entered: tuple[str, ...] = ()) -> Iterator[str]:
         """The variables that expressions may read, in routines that they call too."""
@@ -146,7 +143,7 @@ class Effects:
 
     def changed_concurrently(self, what: str, name: str) -> dict[str, Unknown]:
         """The variables that a routine which runs beside the program may change at any time."""
-        changed = self._changed_by(self.routines[name], (name,)) if name in self.routines else ()
+        changed = self.changed_by(self.routines[name], (name,)) if name in self.routines else ()
         why = f"{what} {name!r} may change it at any time"
         return {one: Unknown(f"{why}: {one!r} at {at}") for one, at in changed}
 
@@ -156,24 +153,27 @@ class Effects:
         """The variables that bodies may give a value, and where; of routines those that they do not have alone."""
         for one in (one for body in bodies for one in within(body)):
             targets = [one.target] if isinstance(one, Assign) else []
+            if isinstance(one, For) and not one.is_own:
+                targets.append(one.name)
             for call in _calls_of(one):
                 if call.name not in self.routines:
-                    targets += self.writes(call)
+                    targets += self.language.writes(call)
                 elif call.name not in entered:
                     targets += given_back(self.routines[call.name], call)
-                    yield from self._changed_by(self.routines[call.name], (*entered, call.name))
+                    yield from self.changed_by(self.routines[call.name], (*entered, call.name))
             for name in (assigned(target) for target in targets):
                 if name is not None:
                     yield name.name, one.line
 
-    def _changed_by(self, routine: Routine, entered: tuple[str, ...]) -> Iterator[tuple[str, Line]]:
-        own = {*routine.parameters}
-        for one in within(routine.body):
-            if isinstance(one, Assign) and one.is_own and (name := assigned(one.target)):
-                own.add(name.name)
-        for name_, line in self.changed_in([routine.body], entered):
-            if name_ not in own:
-                yield name_, line
+    def changed_by(
+        self, routine: Routine, entered: tuple[str, ...] = ()
+    ) -> Iterator[tuple[str, Line]]:
+        """The variables that a routine may change and does not have alone, and where."""
+        declared = (one for one in within(routine.body) if isinstance(one, Assign) and one.is_own)
+        names = (assigned(one.target) for one in declared)
+        own = {*routine.parameters, *(one.name for one in names if one is not None)}
+        changed = self.changed_in([routine.body], entered)
+        return ((name, line) for name, line in changed if name not in own)
 
 
 @dataclass(eq=False)

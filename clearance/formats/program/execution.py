@@ -86,8 +86,7 @@ class Execution(Remarks):
     @cached_property
     def effects(self) -> Effects:
         """What statements may do."""
-        language = self.language
-        return Effects(language.moves, language.writes, language.waits, self.routines, self.skip)
+        return Effects(self.language, self.routines, self.skip)
 
     @cached_property
     def persistent(self) -> PersistentValues:

@@ -141,18 +141,25 @@ def applied(act: Callable[..., Any], values: Sequence[Any], line: Line, name: st
     """What an operator or a function of a name makes of values; `Unknown` where one of them is.
 
     Raises:
+        BadInput: as `valued`.
+    """
+    unknown = (value for value in values if isinstance(value, Unknown))
+    return next(unknown, None) or valued(act, values, line, name)
+
+
+def valued(act: Callable[..., Any], values: Sequence[Any], line: Line, name: str) -> Any:
+    """What a function of a name makes of values.
+
+    Raises:
         BadInput: with the line: values that it does not take.
     """
-    for value in values:
-        if isinstance(value, Unknown):
-            return value
     with on(line):
         try:
             return act(*values)
         except ClearanceError:
             raise
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
-            given = " and ".join(f"{value!r:.40}" for value in values)
+            given = " and ".join(f"{value!r:.40}" for value in values) or "nothing"
             raise BadProgram(f"{name} has no value for {given}") from None
 
 
@@ -257,7 +264,8 @@ class ExpressionReader:
         return n_parts + 1
 
     def arguments(self, *ends: str) -> tuple[tuple[Expression, ...], dict[str, Expression]]:
-        """The arguments up to one of some words, which is not taken: in their order, and by name.
+        """The arguments up to one of some words, which is not taken: in their order, and by name. One that is left
+        out is not known.
 
         Raises:
             BadSyntax: the text ends before.
@@ -278,6 +286,8 @@ class ExpressionReader:
                 name = cursor.take().text
                 cursor.take()
                 named[name] = self.expression()
+            elif self.grammar.leaves_out and cursor.is_at(","):
+                args.append(Constant(Unknown("it is left out")))
             else:
                 args.append(self.expression())
             if not cursor.accept(",") and not cursor.is_at(*ends, *([mark] if mark else [])):

@@ -7,10 +7,9 @@ Not for: what the program does with it (each language).
 from __future__ import annotations
 
 import difflib
-import json
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from clearance.formats.program.controller_program import (
     ControllerMove,
     ControllerProgram,
     ProgramRequest,
+    digits_of,
 )
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.program_file import ProgramFile
@@ -150,4 +150,4 @@ def _plain(program: ControllerProgram) -> str:
         else one
         for one in program.moves
     )
-    return json.dumps([asdict(one) for one in moves], default=np.ndarray.tolist)
+    return digits_of(*moves)

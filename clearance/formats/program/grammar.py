@@ -35,6 +35,7 @@ class Grammar:
         binary, unary: operators, how firmly each binds, and what it does.
         constants: words for values. index: the brackets of an index. before_items: words before a bracket of
             values. optional: what is before the name of an argument (then `:=`); empty where `=` behind it is.
+        leaves_out: whether nothing may stand where an argument is expected.
         fold: a name as it is compared, where capital letters mean the same as small ones; else None.
     """
 
@@ -44,6 +45,7 @@ class Grammar:
     index: str = "[]"
     optional: str = ""
     before_items: tuple[str, ...] = ()
+    leaves_out: bool = False
     fold: Callable[[str], str] | None = None
 
     def folded(self, name: str) -> str:

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from clearance.formats.program.controller_program import (
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Expression, Name, Unknown
+from clearance.formats.program.expressions import Call, Expression, Name, Unknown, valued
 from clearance.formats.program.krl_expressions import (
     AGGREGATE,
     FRAME,
@@ -41,7 +42,6 @@ from clearance.formats.program.krl_expressions import (
     matrix_of,
     why,
 )
-from clearance.formats.program.krl_files import files_of
 from clearance.formats.program.krl_settings import (
     FUNCTIONS,
     SAVED,
@@ -50,6 +50,7 @@ from clearance.formats.program.krl_settings import (
     key_of,
 )
 from clearance.formats.program.krl_system import RobotRoot, not_followed, require_followed
+from clearance.formats.program.krl_text import files_of
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import Assign
@@ -78,8 +79,8 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         files = files_of(asked)
         language = _Krl(asked.asked)
         skip = frozenset(name.upper() for name in asked.asked.skip)
-        variables = first_variables(asked.asked, files.routines)
-        run = Execution(language, files.routines, skip, variables)
+        run = Execution(language, files.routines, skip)
+        run.variables |= first_variables(asked.asked, run)
         run.run(files.declared)
         for one in files.declared:
             if isinstance(one, Assign) and isinstance(one.target, Name):
@@ -87,7 +88,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                     one.target.name, f"{one.target.name} ({one.line})", run.variables
                 )
         entry = asked.asked.entry
-        entry = entry_of("procedure", files.entries, entry, (entry or "").upper(), files.entries[0])
+        entry = entry_of("procedure", files.public, entry, (entry or "").upper(), files.public[0])
         run.run(files.routines[entry].body)
         bodies = [routine.body for routine in files.routines.values()]
         unread = [*not_followed(bodies, run)]
@@ -158,7 +159,8 @@ class _Krl(Language):
         if call.name not in FUNCTIONS:
             return Unknown(f"{call.name}() at {call.line}")
         args = [run.evaluated(one) for one in call.args]
-        return FUNCTIONS[call.name](Settings(run, call.line), *args)
+        act = partial(FUNCTIONS[call.name], Settings(run, call.line))
+        return valued(act, args, call.line, call.name)
 
     def instruct(self, call: Call, run: Execution) -> None:
         """A move, a wait, or a setting; all else moves nothing.

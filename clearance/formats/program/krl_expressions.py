@@ -182,12 +182,13 @@ GRAMMAR = Grammar(
         "+": (8, operator.pos),
     },
     constants={"TRUE": True, "FALSE": False},
+    leaves_out=True,
     fold=str.upper,
 )
 
 
 class Expressions(ExpressionReader):
-    """Expressions of KRL: aggregates, members of enumerations, and arguments that are left out."""
+    """Expressions of KRL: aggregates, and members of enumerations."""
 
     def _atom(self) -> Expression:
         word = self.cursor.next
@@ -198,16 +199,6 @@ class Expressions(ExpressionReader):
         if word.kind == "number":
             return Constant(_number(self.cursor.take().text))
         return super()._atom()
-
-    def arguments(self, *ends: str) -> tuple[tuple[Expression, ...], dict[str, Expression]]:
-        """The arguments up to one of some words; one that is left out is not known."""
-        args = list[Expression]()
-        while not self.cursor.is_at(*ends):
-            is_out = self.cursor.is_at(",")
-            args.append(Constant(Unknown("it is left out")) if is_out else self.expression())
-            if not self.cursor.accept(",") and not self.cursor.is_at(*ends):
-                self.cursor.refuse(" or ".join(repr(one) for one in (",", *ends)))
-        return tuple(args), {}
 
     def _aggregate(self, line: Line) -> Call:
         """The parts in braces, the first of which is taken; `{E6POS: X 1}` may name its type."""

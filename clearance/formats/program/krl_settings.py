@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -28,7 +28,6 @@ from clearance.formats.program.krl_expressions import (
     matrix_of,
     why,
 )
-from clearance.formats.program.statements import Assign, For, Routine, assigned, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 
@@ -311,11 +310,12 @@ def _part(data: Any, key: Any) -> Any:
     return data.get(key, Unknown(f"no {key} is given"))
 
 
-def first_variables(asked: ProgramFile, routines: Mapping[str, Routine]) -> dict[str, Any]:
-    """The variables that a program begins with: those of the controller, and tools and frames of the case."""
-    shared = _shared_names([*routines.values()])
+def first_variables(asked: ProgramFile, run: Execution) -> dict[str, Any]:
+    """The variables that a program begins with: those of the controller, tools and frames of the case, and those
+    that routines give values to and do not declare, which all have in common."""
+    changed = (one for own in run.routines.values() for one in run.effects.changed_by(own))
     found: dict[str, Any] = {
-        name: Unknown(f"{name} is in no file that is given") for name in shared
+        name: Unknown(f"{name} is in no file that is given") for name, _ in changed
     }
     found |= {name: copy.deepcopy(one) for name, one in FIRST.items()}
     for name, pose in (*asked.tools.items(), *asked.frames.items()):
@@ -324,22 +324,4 @@ def first_variables(asked: ProgramFile, routines: Mapping[str, Routine]) -> dict
             found.setdefault(root, {})[int(index)] = frame_of(pose.matrix())
         else:
             found[root] = frame_of(pose.matrix())
-    return found
-
-
-def _shared_names(routines: Sequence[Routine]) -> set[str]:
-    """Variables that routines give values to and do not declare: all have them in common."""
-    found = set[str]()
-    for routine in routines:
-        statements = list(within(routine.body))
-        own = {
-            one.target.name
-            for one in statements
-            if isinstance(one, Assign) and one.is_own and isinstance(one.target, Name)
-        }
-        for one in statements:
-            name = assigned(one.target) if isinstance(one, Assign) else None
-            name = one.name if isinstance(one, For) else name
-            if name is not None and name.name not in own and name.name not in routine.parameters:
-                found.add(name.name)
     return found

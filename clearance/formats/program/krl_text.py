@@ -1,16 +1,18 @@
-"""KRL, the language of KUKA's controllers: from the text of `.src` and `.dat` files to statements.
+"""KRL, the language of KUKA's controllers: from `.src` and `.dat` files to statements.
 
 Not for: what instructions do (`krl`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
 from typing import Any
 
-from clearance.errors import BadSyntax
+from clearance.errors import BadProgram, BadSyntax
 from clearance.formats.program.blocks import BlockReader
+from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.expressions import (
     Call,
     Constant,
@@ -27,6 +29,7 @@ from clearance.formats.program.krl_expressions import (
     SPLINE,
     TYPES,
     WAIT,
+    WORD,
     Expressions,
     as_integer,
     as_real,
@@ -45,7 +48,7 @@ from clearance.formats.program.statements import (
     While,
     assigned,
 )
-from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token
+from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token, text_of, tokens_of
 
 _JUMPS = ("RETURN", "EXIT", "GOTO", "BRAKE", "RESUME")  # decide which lines run
 
@@ -68,11 +71,11 @@ class Module:
     """
 
     routines: dict[str, Routine]
-    public: frozenset[str]
+    public: tuple[str, ...]
     declared: tuple[Statement, ...]
 
 
-def module_of(rows: Iterable[list[Token]], types: dict[str, str]) -> Module:
+def _module_of(rows: Iterable[list[Token]], types: dict[str, str]) -> Module:
     """The statements of a file.
 
     Args:
@@ -114,7 +117,7 @@ class _Reader(BlockReader):
                 routine = self._routine()
                 routines.setdefault(routine.name.upper(), routine)
                 public.update([routine.name.upper()] if is_public else [])
-        return Module(routines, frozenset((*public, *[*routines][:1])), tuple(declared))
+        return Module(routines, (*public, *[*routines][:1]), tuple(declared))
 
     def _routine(self) -> Routine:
         """A procedure or a function, at whose head this is."""
@@ -302,3 +305,67 @@ def _declared(one: Statement) -> str:
 def _require_end(cursor: Cursor) -> None:
     if cursor.next.kind != NEWLINE:
         cursor.refuse("the end of the line")
+
+
+def files_of(asked: ProgramRequest) -> Module:
+    """The routines and declarations of a program and of the files beside it; those of its own file are public.
+
+    Each module, a `.src` with its `.dat`, has points and procedures of its own.
+
+    Raises:
+        BadProgram: the program is none. BadSyntax: as of a `_Reader`.
+    """
+    groups, types = dict[str, list[list[list[Token]]]](), dict[str, str]()
+    for file, data in (*asked.beside.items(), ("", asked.data)):
+        stem = PurePosixPath(file or asked.shown).stem.upper()
+        groups.setdefault(stem, []).append([*_rows(data, file)])
+    own = groups.pop(PurePosixPath(asked.shown).stem.upper())
+    modules = [one for name, group in groups.items() for one in _modules(name, group, types)]
+    mine = [_module_of(rows, types) for rows in own]
+    if not mine[-1].routines:
+        raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
+    every = (*modules, *mine)
+    routines = {name: one for module in every for name, one in module.routines.items()}
+    declared = tuple(one for module in every for one in module.declared)
+    return Module(routines, tuple(mine[-1].routines), declared)
+
+
+def _modules(name: str, group: list[list[list[Token]]], types: dict[str, str]) -> list[Module]:
+    """The files of a module beside the program; names that are its own have the module's behind them.
+
+    Data without procedures (`$config.dat`) are for all.
+    """
+    plain = [_module_of(rows, {}) for rows in group]
+    own = set[str]()
+    if any(module.routines for module in plain):
+        own = {one for module in plain for one in _own_names(module)}
+    return [_module_of([_named(row, own, name) for row in rows], types) for rows in group]
+
+
+def _own_names(module: Module) -> set[str]:
+    """The variables and procedures of a file that only its module knows."""
+    statements = [one for one in module.declared if isinstance(one, Assign) and not one.is_of_all]
+    names = [assigned(one.target) for one in statements]
+    private = module.routines.keys() - {*module.public}
+    return {one.name for one in names if one is not None} | private
+
+
+def _rows(data: bytes, file: str) -> Iterator[list[Token]]:
+    """The words of each line that has any, and its end; heads (`&ACCESS`) are left out."""
+    for number, row in enumerate(text_of(data, file).split("\n"), 1):
+        words = [] if row.lstrip().startswith("&") else tokens_of(row, WORD)[:-1]
+        line = Line(number, file)
+        if words:
+            yield [*(Token(one.kind, one.text, line) for one in words), Token(NEWLINE, "\n", line)]
+
+
+def _named(words: list[Token], own: set[str], module: str) -> list[Token]:
+    """Words, in which a module's own names have its name behind them; parts of aggregates are no such names."""
+    found, depth = list[Token](), 0
+    for i, one in enumerate(words):
+        depth += (one.text == "{") - (one.text == "}")
+        before = words[i - 1].text if i else ""
+        is_part = before == "." or (depth > 0 and before in ("{", ","))
+        is_own = one.kind == "name" and not is_part and one.text.upper() in own
+        found.append(one._replace(text=f"{one.text} of {module}") if is_own else one)
+    return found

@@ -76,19 +76,11 @@ def wrist_of(chain: KinematicChain, axes: AxisMap, up: np.ndarray) -> Wrist | No
     Args:
         up: (3,) along axis 1, away from the foot, seen from the root.
     """
-    zero = np.array([[axes.rules[joint.name].offset for joint in chain.masters]])
-    frames, names = chain.frames(zero)[0], {number: name for name, number in axes.numbers.items()}
-    columns = {joint.name: i for i, joint in enumerate(chain.masters)}
-    first = {one.column: i for i, one in reversed([*enumerate(chain.joints)])}
-    own = [first[columns[names[number]]] for number in range(1, 7)]
-    signs = [np.sign(chain.joints[i].factor) for i in own]
-    ways = np.array(
-        [
-            sign * frames[i, :3, :3] @ chain.joints[i].axis
-            for i, sign in zip(own, signs, strict=True)
-        ]
-    )
-    places = frames[own, :3, 3]
+    by_number = axes.at_zero(chain, np.eye(4))
+    ways, places = (np.array([one[number] for number in range(1, 7)]) for one in by_number)
+    names = {number: name for name, number in axes.numbers.items()}
+    zero = {name: rule.offset for name, rule in axes.rules.items()}
+    flange = chain.frames(np.array([[zero[joint.name] for joint in chain.masters]]))[0, -1]
     level = ways[1]
     skew = max(abs(ways[0] @ level), float(np.linalg.norm(np.cross(level, ways[2]))))
     centre = _meeting(places[3:], ways[3:])
@@ -105,16 +97,15 @@ def wrist_of(chain: KinematicChain, axes: AxisMap, up: np.ndarray) -> Wrist | No
     aside = np.cross(ways[0], ahead)
     left = np.cross(up, ahead)
     bent = float(np.arctan2(np.cross(upper, fore) @ ways[2], upper @ fore))
-    at_zero = [float(zero[0, columns[names[number]]]) for number in (1, 3)]
     return Wrist(
         names=(names[1], names[3]),
-        at_zero=at_zero[0],
-        flange_from_wrist=frames[-1, :3, :3].T @ (centre - frames[-1, :3, 3]),
+        at_zero=zero[names[1]],
+        flange_from_wrist=flange[:3, :3].T @ (centre - flange[:3, 3]),
         axis=np.array([places[0], ways[0]]),
         ahead=ahead,
         aside=aside,
         beside=float((centre - places[0]) @ aside),
-        straight=at_zero[1] - bent,
+        straight=zero[names[3]] - bent,
         bends=1 if left @ ways[2] > 0.0 else -1,
     )
 

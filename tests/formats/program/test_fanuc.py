@@ -125,6 +125,8 @@ def test_other_groups_and_axes_are_external():
 SKIP = ["JMP", "LBL", "IF", "TIMEOUT"]
 """No statement that decides which lines run is left out, even if asked."""
 
+COUNT = "FOR R[1]=1 TO 2 ;\nENDFOR ;\n"
+
 L2 = FRAMES + "L P[2] 100mm/sec FINE"
 
 
@@ -177,6 +179,10 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
         (FRAMES + "L P[2] 100mm/se", "line 8: 'L P[2] 100mm/se' has no end; ';', in a whole file"),
         (FRAMES + "L P[2] 100mm/sec ;", "line 8: 'L P[2] 100mm/sec' has no speed and end"),
         ("FOR R[1]=1 TO 2 ;\n" + L2 + " ;", "line 6: FOR has no ENDFOR; a whole file"),
+        (
+            f"R[1]=5 ;\nIF (DI[1]=ON) THEN ;\n{COUNT}ENDIF ;\nIF (R[1]=5) THEN ;\n{L2} ;\nENDIF ;",
+            "line 11: IF decides on L at line 14, and is not known: 'R[1]' is given a value at line 8",
+        ),
     ],
 )
 def test_what_a_listing_does_not_decide_is_refused_with_its_line(body, told):

@@ -263,6 +263,8 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "line 7: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.src]}",
         ),
         ("HALT", "line 7: 'HALT' is not understood"),
+        ("n=SQRT(-1)", "line 7: SQRT has no value for -1"),
+        ("n=STOOL2()", "line 7: STOOL2 has no value"),
         ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
         ("PTP XHOME\nEND\nDEF half()\nPTP XHOME\nEN", "line 9: half has no END; a whole file"),
         ("FOR I=1 TO 3\nPTP XHOME", "line 7: FOR has no ENDFOR before 'END' at line 9"),
