@@ -1,14 +1,12 @@
 """The robots that installed packages bring: what to call each, and what is in its file.
 
-A robot is a URDF file with a joint that moves. Triangles of meshes are counted as their files state them, and no
-mesh is loaded. Not for: reading a robot (`urdf.robot`), nor where packages are (`files.brought`).
+A robot is a URDF file with a joint that moves. Not for: reading a robot (`urdf.robot`), nor where packages are
+(`files.brought`).
 """
 
 from __future__ import annotations
 
-import re
-import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -17,6 +15,7 @@ from typing import TYPE_CHECKING
 from clearance.errors import ClearanceError
 from clearance.formats.files.brought import PROVIDERS, Provider, robot_names
 from clearance.formats.files.mesh_paths import mesh_path
+from clearance.formats.mesh.mesh_file import triangles_from_bytes
 from clearance.formats.robot.robot_element import robot_element
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ class BroughtRobot:
 
     Attributes:
         given: what `--robot` and `urdf:` call it. n_shapes: round and box-shaped collision shapes.
-        n_triangles: of its collision meshes, None where a file does not tell. n_missing: those that are not there.
+        n_triangles: of its collision meshes, None where one cannot be read. n_missing: those that are not there.
     """
 
     given: str
@@ -85,34 +84,9 @@ def _mesh_file(mesh: Element, folder: Path) -> Path | None:
         return None
 
 
-def _of_stl(data: bytes) -> int:
-    """A binary file states how many there are, in as many bytes as that takes."""
-    stated = struct.unpack_from("<I", data, 80)[0] if len(data) >= 84 else 0
-    return stated if len(data) == 84 + 50 * stated else data.count(b"endfacet")
-
-
-def _of_obj(data: bytes) -> int:
-    """A face of n corners is n - 2 triangles."""
-    faces = (line.split() for line in data.splitlines() if line.startswith((b"f ", b"f\t")))
-    return sum(max(0, len(words) - 3) for words in faces)
-
-
-def _of_collada(data: bytes) -> int | None:
-    if re.search(rb"<(polygons|tristrips|trifans)\b", data):
-        return None
-    stated = re.findall(rb'<triangles\b[^>]*\bcount="(\d+)"', data)
-    cut = re.findall(rb"<vcount>([\d\s]*)</vcount>", data)
-    return sum(map(int, stated)) + sum(int(n) - 2 for words in cut for n in words.split())
-
-
-_COUNTS: dict[str, Callable[[bytes], int | None]] = {
-    ".stl": _of_stl,
-    ".obj": _of_obj,
-    ".dae": _of_collada,
-}
-
-
 @cache
 def _n_triangles(path: Path) -> int | None:
-    count = _COUNTS.get(path.suffix.lower())
-    return None if count is None else count(path.read_bytes())
+    try:
+        return len(triangles_from_bytes(path.read_bytes(), path.name).corners)
+    except (ClearanceError, OSError):
+        return None
