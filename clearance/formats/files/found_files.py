@@ -45,6 +45,22 @@ class FoundFiles:
         if found.package:
             self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
 
+    def mesh(
+        self, given: str, folder: Path, package_dirs: Sequence[Path], files: InputFiles
+    ) -> Path:
+        """The mesh file that a name means, kept with where it was found.
+
+        Args:
+            folder: of the file that names it.
+
+        Raises:
+            BadInput: as `mesh_path`.
+        """
+        found = mesh_path(given, folder, package_dirs)
+        note_lookup(files, MESH, given, folder, package_dirs, found.path)
+        self.add(given, found, files.shown(found.path))
+        return found.path
+
     def notes(self) -> list[str]:
         """A line for each variable of the environment that led to files, and on paths of another machine."""
         notes = notes_on_variables(self._by_variable)

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
-from clearance.formats.files.mesh_paths import mesh_path
+from clearance.formats.files.found_files import FoundFiles
 from clearance.formats.mesh_store import MeshStore, Scale
 from clearance.formats.plausibility import scale_notices
 from clearance.formats.robot.request import RobotRequest
@@ -49,15 +48,11 @@ class ShapeReader:
 
     def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
         """Where a mesh element's file lies, and its scale."""
-        given = mesh.get("filename")
-        asked = given, self.request.path.parent, self.request.package_dirs
-        found = mesh_path(*asked)
-        note_lookup(self.meshes.files, MESH, *asked, found.path)
-        shown = self.meshes.files.shown(found.path)
-        self._found.add(given, found, shown)
+        asked, files = self.request, self.meshes.files
+        path = self._found.mesh(mesh.get("filename"), asked.path.parent, asked.package_dirs, files)
         scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())
-        self._scales[short(shown)] = scale
-        return found.path, scale
+        self._scales[short(files.shown(path))] = scale
+        return path, scale
 
     def notes(self) -> list[str]:
         """What was mended in the files, a line for each kind of fault."""

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadDimension, BadScene, BadShape, at, nearest_name
-from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
-from clearance.formats.files.mesh_paths import mesh_path
+from clearance.formats.files.found_files import FoundFiles
 from clearance.formats.mesh.octree_file import file_of_message, octree_of
 from clearance.formats.mesh.off_file import off_text
 from clearance.formats.message.values import (
@@ -222,11 +221,7 @@ class SceneMeshes:
         """
         if 0.0 in scale:
             raise BadDimension(f"scale {scale}", valid="a scale is not zero")
-        place = uri, self._asked.path.parent, self._asked.package_dirs
-        found = mesh_path(*place)
-        note_lookup(self._asked.files, MESH, *place, found.path)
-        shown = self._asked.files.shown(found.path)
-        self.found.add(uri, found, shown)
+        folder = self._asked.path.parent
+        path = self.found.mesh(uri, folder, self._asked.package_dirs, self._asked.files)
         axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}
-        file = os.path.relpath(found.path, self._asked.path.parent)
-        return {"mesh": {"file": file, "scale": scale} | axis}
+        return {"mesh": {"file": os.path.relpath(path, folder), "scale": scale} | axis}

@@ -14,6 +14,7 @@ from clearance.errors import BadDimension, BadScene, at, nearest_name
 from clearance.formats.robot.shape_kinds import PLANE_DEPTH, PLANE_SIDE
 from clearance.formats.scene.sdf.document import numbers_of, text_of
 from clearance.formats.text.numbers import is_zero
+from clearance.geometry.shapes import SHAPES, Measure
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -80,21 +81,13 @@ def _valid() -> str:
     return f"one of {', '.join(_READERS)}, or a mesh of the same shape"
 
 
-def _box(element: Element) -> Geometry:
-    return Geometry({"box": {"size": list(_lengths(element, "size", 3))}})
-
-
-def _sphere(element: Element) -> Geometry:
-    return Geometry({"sphere": {"radius": _lengths(element, "radius", 1)[0]}})
-
-
-def _ellipsoid(element: Element) -> Geometry:
-    return Geometry({"ellipsoid": {"radii": list(_lengths(element, "radii", 3))}})
-
-
-def _along_z(element: Element) -> Geometry:
-    radius, length = _lengths(element, "radius", 1)[0], _lengths(element, "length", 1)[0]
-    return Geometry({str(element.tag): {"radius": radius, "length": length}})
+def _of_table(element: Element) -> Geometry:
+    """A shape whose dimensions are called as in the table of shapes."""
+    row: dict[str, Any] = {}
+    for key, measure in SHAPES[str(element.tag)].dimensions.items():
+        values = list(_lengths(element, key, 3 if measure is Measure.SIZES else 1))
+        row[key] = values if measure is Measure.SIZES else values[0]
+    return Geometry({str(element.tag): row})
 
 
 def _plane(element: Element) -> Geometry:
@@ -123,11 +116,7 @@ def _mesh(element: Element) -> Geometry:
 
 
 _READERS: dict[str, Callable[[Element], Geometry]] = {
-    "box": _box,
-    "sphere": _sphere,
-    "cylinder": _along_z,
-    "capsule": _along_z,
-    "ellipsoid": _ellipsoid,
+    **dict.fromkeys(("box", "sphere", "cylinder", "capsule", "ellipsoid"), _of_table),
     "plane": _plane,
     "mesh": _mesh,
 }

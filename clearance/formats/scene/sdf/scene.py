@@ -8,12 +8,10 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadScene, at
-from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
-from clearance.formats.files.mesh_paths import mesh_path
+from clearance.formats.files.found_files import FoundFiles
 from clearance.formats.plausibility import angle_notices, odd_angles
 from clearance.formats.robot.shape_kinds import PLANE_DEPTH, PLANE_SIDE
 from clearance.formats.scene.request import SceneContent, SceneRequest, pose_row
@@ -41,8 +39,7 @@ def read_sdf(asked: SceneRequest) -> SceneContent:
         root = reader.root(asked.path)
         scope = Scope(asked.path.parent, reader.include, (asked.shown,))
         shapes = [shape for place in _places(root) for shape in _shapes(place, scope)]
-        files = _Files(asked, reader.found)
-        obstacles = [files.obstacle(shape) for shape in shapes]
+        obstacles = [_row(shape, asked, reader.found) for shape in shapes]
         renamed, said = _make_unique(obstacles), reader.notices()
     notes = [*notes_on(reader.documents, reader.missing_suns, shapes), *renamed]
     notes += notes_on_unread(reader.unread)
@@ -77,26 +74,15 @@ def _shapes(place: tuple[str, Element], scope: Scope) -> list[SdfShape]:
     return shapes
 
 
-class _Files:
-    """Finds meshes, and keeps what is to be reported of them."""
-
-    def __init__(self, asked: SceneRequest, known: FoundFiles) -> None:
-        self._asked, self._known = asked, known
-
-    def obstacle(self, shape: SdfShape) -> dict[str, Any]:
-        """The row of a YAML scene for a collision."""
-        row = {"name": shape.name, **shape.row, "pose": pose_row(shape.pose)}
-        if "mesh" in row:
-            with at(shape.name):
-                row["mesh"] = row["mesh"] | {"file": self._file(row["mesh"]["file"], shape.folder)}
-        return row
-
-    def _file(self, uri: str, folder: Path) -> str:
-        found = mesh_path(uri, folder, self._asked.package_dirs)
-        note_lookup(self._asked.files, MESH, uri, folder, self._asked.package_dirs, found.path)
-        shown = self._asked.files.shown(found.path)
-        self._known.add(uri, found, shown)
-        return os.path.relpath(found.path, self._asked.path.parent)
+def _row(shape: SdfShape, asked: SceneRequest, known: FoundFiles) -> dict[str, Any]:
+    """The row of a YAML scene for a collision."""
+    row = {"name": shape.name, **shape.row, "pose": pose_row(shape.pose)}
+    if "mesh" in row:
+        with at(shape.name):
+            uri = row["mesh"]["file"]
+            path = known.mesh(uri, shape.folder, asked.package_dirs, asked.files)
+            row["mesh"] = row["mesh"] | {"file": os.path.relpath(path, asked.path.parent)}
+    return row
 
 
 def _make_unique(obstacles: list[dict[str, Any]]) -> list[str]:
