@@ -20,7 +20,7 @@ def robots(words: tuple[str, ...]) -> int:
     With WORDs, only robots with each of them in their name.
 
     Use a name in a case file (`urdf: example-robot-data:ur5`) or after --robot. Triangles are
-    counted in collision meshes, as their files state them; a file without a moving joint is no robot.
+    counted in collision meshes; a file without a moving joint is no robot.
     Packages that bring robots: pybullet_data, example-robot-data, robot_descriptions. Nothing is
     fetched: robot_descriptions shows what its own loader has fetched before.
     """
@@ -46,7 +46,7 @@ def _collision(one: BroughtRobot) -> str:
 
     parts = []
     if one.n_triangles is None:
-        parts.append("meshes that do not state their triangles")
+        parts.append("meshes that cannot be read")
     elif one.n_triangles:
         parts.append(count(one.n_triangles, "triangle"))
     if one.n_shapes:
