@@ -28,7 +28,7 @@ from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.packed import refuse_zip, require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
-from clearance.case.robots_in_motion import rider, robots_in_motion
+from clearance.case.robots_in_motion import robots_in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
@@ -138,7 +138,8 @@ def with_trajectory_file(
         driven = (one.trajectory.drives for one in others if one.trajectory is not None)
         around = Surroundings(
             tuple(others),
-            tuple(rider(one, cell.case.carries) for one in cell.case.obstacles),
+            cell.case.obstacles,
+            cell.case.carries,
             frozenset(chain.from_iterable(driven)),
         )
         moved = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files, around)

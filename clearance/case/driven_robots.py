@@ -13,10 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.case.places import IN_WORLD, Places, Rider
+from clearance.case.places import IN_WORLD, Places
 from clearance.errors import BadProgram
 from clearance.formats.schema import program as schema
 from clearance.geometry.pose import inverse
+from clearance.world.body import Obstacle
+from clearance.world.carry import Carry
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
@@ -39,7 +41,8 @@ class Surroundings:
     """
 
     robots: tuple[PlacedRobot, ...] = ()
-    obstacles: tuple[Rider, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
+    carries: tuple[Carry, ...] = ()
     driven: frozenset[str] = frozenset()
 
 
@@ -60,7 +63,7 @@ class ProgramCell:
         """(4, 4) `world_from_base` of the robots whose base stands, whatever the program drives, by name [m]."""
         others = self.around.robots
         moving = [one for one in others if one.trajectory is not None]
-        places, found = Places(moving, self.around.obstacles, {}), {}
+        places, found = Places(moving, self.around.obstacles, self.around.carries, {}), {}
         for one in (self.own, *others):
             known = one.mount is None or one.mount.on in places.names
             below = IN_WORLD if one.mount is None else places.of(one.mount.on) if known else ""
@@ -199,7 +202,7 @@ def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> Places:
             links |= {name: name for name in names}
         else:
             others.append(one)
-    return Places(others, around.obstacles, links)
+    return Places(others, around.obstacles, around.carries, links)
 
 
 def _of(made: Trajectory, robot: str, driven: Sequence[str]) -> Trajectory:

@@ -22,27 +22,13 @@ from clearance.programs.carriage import (
     steps_of_joint,
     steps_of_poses,
 )
+from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.knots import knots_of_motion, knots_of_poses
 from clearance.world.motion import kinematic_motion
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.pose_table import PoseTable
-
-
-class Rider(NamedTuple):
-    """An obstacle: its pose (4, 4) [m] in the world, or on what it is on. moves: its own motion there.
-
-    Attributes:
-        carries: who carries it, and when, the first first.
-    """
-
-    name: str
-    on: str | None
-    pose: np.ndarray
-    moves: PoseTable | None = None
-    carries: tuple[Carry, ...] = ()
 
 
 class Place(NamedTuple):
@@ -71,7 +57,7 @@ class NotThere(str):
 class _Mover(NamedTuple):
     """What moves by itself: an obstacle, or a link of a robot, and what it is on."""
 
-    of: Rider | PlacedRobot
+    of: Obstacle | PlacedRobot
     base: Place
     link: str = ""
 
@@ -82,11 +68,13 @@ class Places:
 
     Args:
         robots: as the links of several robots are called, without that of the program and what it drives.
-        obstacles: all. moved: the links that the program may move, by all names that they have.
+        obstacles: all. carries: who carries them, and when.
+        moved: the links that the program may move, by all names that they have.
     """
 
     robots: Sequence[PlacedRobot]
-    obstacles: Sequence[Rider]
+    obstacles: Sequence[Obstacle]
+    carries: Sequence[Carry]
     moved: Mapping[str, str]
 
     @property
@@ -109,18 +97,26 @@ class Places:
         base = self._steps_to(mover.base, within)
         if isinstance(mover.of, PlacedRobot):
             return (*base, *_steps_of_link(mover.of, mover.link))
-        found = (*base, *_steps_of_rider(mover.of))
-        return (self._handed(mover.of, found, within),) if mover.of.carries else found
+        found = (*base, *_steps_of_obstacle(mover.of))
+        carries = self._carries_of(name)
+        return (self._handed(name, carries, found, within),) if carries else found
 
     def _steps_to(self, place: Place, within: tuple[str, ...]) -> tuple[Step, ...]:
         return (*(self._steps(place.on, within) if place.on else ()), place.pose)
 
-    def _handed(self, part: Rider, first: tuple[Step, ...], within: tuple[str, ...]) -> Handed:
+    def _carries_of(self, part: str) -> list[Carry]:
+        """Who carries an obstacle, the first first."""
+        own = (one for one in self.carries if one.part == part)
+        return sorted(own, key=lambda one: one.window.start)
+
+    def _handed(
+        self, part: str, carries: list[Carry], first: tuple[Step, ...], within: tuple[str, ...]
+    ) -> Handed:
         """A part that changes hands, which goes by some steps at first."""
-        within = (*within, part.name)
+        within = (*within, part)
         starts, ways = list[float](), [first]
-        ends = [*(one.window.start for one in part.carries[1:]), np.inf]
-        for carry, following in zip(part.carries, ends, strict=True):
+        ends = [*(one.window.start for one in carries[1:]), np.inf]
+        for carry, following in zip(carries, ends, strict=True):
             start, end, by = carry.window.start, carry.window.end, self._found.get(carry.by)
             if not isinstance(by, Place) or by.on in {*self.moved.values(), *within}:
                 return Handed(np.array(starts), tuple(ways), start)
@@ -138,7 +134,7 @@ class Places:
 
     @cached_property
     def _found(self) -> dict[str, Place | str]:
-        waiting: list[Rider | PlacedRobot] = [*self.obstacles, *self.robots]
+        waiting: list[Obstacle | PlacedRobot] = [*self.obstacles, *self.robots]
         found: dict[str, Place | str] = {
             name: Place(link, np.eye(4)) for name, link in self.moved.items()
         }
@@ -157,14 +153,14 @@ class Places:
             found |= self._on(one, NotThere(why))
         return found
 
-    def _on(self, one: Rider | PlacedRobot, base: Place | str) -> dict[str, Place | str]:
+    def _on(self, one: Obstacle | PlacedRobot, base: Place | str) -> dict[str, Place | str]:
         """What one brings that is on a base, or on what has no place."""
         if isinstance(one, PlacedRobot):
             return dict(self._of_robot(one, base))
         if isinstance(base, str):
             return {one.name: base}
-        if one.moves is None and not one.carries:
-            return {one.name: base.on_it(one.pose)}
+        if one.moves is None and not self._carries_of(one.name):
+            return {one.name: base.on_it(_own_pose(one))}
         after = "hold" if one.moves is None else one.moves.timing.after
         return {one.name: self._mover(one.name, _Mover(one, base), after)}
 
@@ -225,10 +221,13 @@ def _masters(placed: PlacedRobot, parent: str, child: str) -> set[str]:
     return {joint.name for joint in chain_between(placed.robot, parent, child).masters}
 
 
-def _below(one: Rider | PlacedRobot) -> str | None:
-    if isinstance(one, PlacedRobot):
-        return None if one.mount is None else one.mount.on
-    return one.on
+def _below(one: Obstacle | PlacedRobot) -> str | None:
+    return None if one.mount is None else one.mount.on
+
+
+def _own_pose(one: Obstacle) -> np.ndarray:
+    """(4, 4) [m] in the world, or on what it is on."""
+    return one.world_from_body if one.mount is None else one.mount.pose
 
 
 def _pose(steps: Sequence[Step], time: float) -> np.ndarray:
@@ -236,12 +235,12 @@ def _pose(steps: Sequence[Step], time: float) -> np.ndarray:
     return np.asarray(series_of(steps, np.array([time]), np.ones(1)).poses[0])
 
 
-def _steps_of_rider(rider: Rider) -> Iterator[Step]:
+def _steps_of_obstacle(one: Obstacle) -> Iterator[Step]:
     """From what an obstacle is on, or the world, to the obstacle by its own table."""
-    if rider.moves is None or rider.on is not None:
-        yield rider.pose
-    if rider.moves is not None:
-        yield from steps_of_poses(knots_of_poses(rider.moves))
+    if one.moves is None or one.mount is not None:
+        yield _own_pose(one)
+    if one.moves is not None:
+        yield from steps_of_poses(knots_of_poses(one.moves))
 
 
 def _steps_of_link(placed: PlacedRobot, link: str) -> Iterator[Step]:
