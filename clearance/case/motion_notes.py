@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,38 +19,10 @@ MOST_NAMES = 8
 """Of things that do the same, how many a note names."""
 
 
-class _Table(NamedTuple):
-    """What moves, and when its table is followed: its first and last sample [s] of the run.
-
-    Attributes:
-        picked_up: [s] when it is picked up, which ends its table; infinite for what never is.
-    """
-
-    what: _Actor
-    first: float
-    last: float
-    timing: Timing
-    picked_up: float = math.inf
-
-
-class _Actor(NamedTuple):
-    """A robot or an obstacle, and its name."""
-
-    kind: str
-    name: str
-
-
-class _Sentence(NamedTuple):
-    """What is said of one thing, and what of several."""
-
-    one: str
-    several: str
-
+_Deed = tuple[str, str]
+"""What is said of one thing, and what of several."""
 
 _HOW = "by straight translation, and rotation about one axis at constant speed"
-BETWEEN_POSES = _Sentence(
-    f"moves between the poses of its table {_HOW}", f"move between the poses of their tables {_HOW}"
-)
 
 
 def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
@@ -60,72 +31,76 @@ def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
     Args:
         start, end: [s] of the run.
     """
-    moving = [obstacle for obstacle in case.obstacles if obstacle.moves is not None]
-    said = [(_Actor("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
-    for table in _tables(case):
-        said += [(table.what, deed) for deed in _before_and_after(table, start, end)]
-        if table.picked_up < table.last:
-            said.append((table.what, _until_picked_up(table.picked_up)))
-    alike: dict[tuple[str, _Sentence], list[str]] = {}
-    for thing, deed in said:
-        alike.setdefault((thing.kind, deed), []).append(repr(thing.name))
-    return tuple(_line(kind, names, deed) for (kind, deed), names in alike.items())
-
-
-def _line(kind: str, names: list[str], deed: _Sentence) -> str:
-    if len(names) == 1:
-        return f"{kind} {names[0]} {deed.one}"
-    return f"{kind}s {listed(names, MOST_NAMES)} {deed.several}"
-
-
-def _tables(case: Case) -> Iterator[_Table]:
-    for placed in case.robots:
-        if placed.trajectory is not None:
-            times = placed.trajectory.times
-            yield _table(_Actor("robot", placed.robot.name), times, placed.timing)
-    for obstacle in case.obstacles:
-        if obstacle.moves is not None:
-            table = _table(
-                _Actor("obstacle", obstacle.name), obstacle.moves.times, obstacle.moves.timing
-            )
-            starts = [c.window.start for c in case.carries if c.part == obstacle.name]
-            yield table._replace(picked_up=min(starts, default=math.inf))
-
-
-def _table(what: _Actor, times: np.ndarray, timing: Timing) -> _Table:
-    first, last = timing.run_times(times[[0, -1]] if len(times) > 1 else times)[[0, -1]].tolist()
-    return _Table(what, first, last, timing)
-
-
-def _until_picked_up(time: float) -> _Sentence:
-    return _Sentence(
-        f"follows its table until it is picked up at {time:g} s",
-        f"follow their tables until they are picked up at {time:g} s",
+    alike: dict[tuple[str, _Deed], list[str]] = {}
+    for kind, name, deed in _deeds(case, start, end):
+        alike.setdefault((kind, deed), []).append(repr(name))
+    return tuple(
+        f"{kind} {names[0]} {one}"
+        if len(names) == 1
+        else f"{kind}s {listed(names, MOST_NAMES)} {several}"
+        for (kind, (one, several)), names in alike.items()
     )
 
 
-def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Sentence]:
-    _, first, last, timing, picked_up = table
+def _deeds(case: Case, start: float, end: float) -> Iterator[tuple[str, str, _Deed]]:
+    """A robot or an obstacle, its name, and what it does."""
+    moving = [one for one in case.obstacles if one.moves is not None]
+    for obstacle in moving:
+        between = f"moves between the poses of its table {_HOW}"
+        several = f"move between the poses of their tables {_HOW}"
+        yield "obstacle", obstacle.name, (between, several)
+    for placed in case.robots:
+        if placed.trajectory is not None:
+            span = _span(placed.trajectory.times, placed.timing)
+            for deed in _before_and_after(span, placed.timing, start, end):
+                yield "robot", placed.robot.name, deed
+    for obstacle in moving:
+        assert obstacle.moves is not None
+        span = _span(obstacle.moves.times, obstacle.moves.timing)
+        starts = (one.window.start for one in case.carries if one.part == obstacle.name)
+        picked_up = min(starts, default=math.inf)
+        for deed in _before_and_after(span, obstacle.moves.timing, start, end, picked_up):
+            yield "obstacle", obstacle.name, deed
+        if picked_up < span[1]:
+            until = f"picked up at {picked_up:g} s"
+            deed = (
+                f"follows its table until it is {until}",
+                f"follow their tables until they are {until}",
+            )
+            yield "obstacle", obstacle.name, deed
+
+
+def _span(times: np.ndarray, timing: Timing) -> tuple[float, float]:
+    """The first and last sample of a table [s] of the run."""
+    first, last = timing.run_times(times[[0, -1]] if len(times) > 1 else times)[[0, -1]].tolist()
+    return first, last
+
+
+def _before_and_after(
+    span: tuple[float, float], timing: Timing, start: float, end: float, picked_up: float = math.inf
+) -> Iterator[_Deed]:
+    """What something does before and after its table.
+
+    Args:
+        picked_up: [s] when it is picked up, which ends its table.
+    """
+    first, last = span
     early, late = start < first, last < min(end, picked_up)
     if timing.after == "absent":
-        if early and picked_up < math.inf:
-            when = f"in the cell from {first:g} s (after: absent)"
-            yield _Sentence(f"is {when}", f"are {when}")
-        elif early or late:
-            when = f"in the cell from {first:g} s to {last:g} s only (after: absent)"
-            yield _Sentence(f"is {when}", f"are {when}")
+        if early or late:
+            until = "" if early and picked_up < math.inf else f" to {last:g} s only"
+            when = f"in the cell from {first:g} s{until} (after: absent)"
+            yield f"is {when}", f"are {when}"
         return
     if early:
         when = f"until {first:g} s"
-        yield _Sentence(
-            f"stands at its first sample {when}", f"stand at their first samples {when}"
-        )
+        yield f"stands at its first sample {when}", f"stand at their first samples {when}"
     if late and timing.after == "loop":
         how = f"again and again, every {last - first:g} s (after: loop)"
-        yield _Sentence(f"goes through its table {how}", f"go through their tables {how}")
+        yield f"goes through its table {how}", f"go through their tables {how}"
     elif late:
         when = f"from {last:g} s"
-        yield _Sentence(f"stands at its last sample {when}", f"stand at their last samples {when}")
+        yield f"stands at its last sample {when}", f"stand at their last samples {when}"
 
 
 def check_not_given_twice(in_case: Iterable[str], in_trajectory: Iterable[str]) -> None:
