@@ -16,7 +16,7 @@ from clearance.errors import BadInput, BadTime, MissingKey, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.robot.srdf import StatePositions, positions_in_states, states_known
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.joints import states_of
+from clearance.formats.schema.case import states_of
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed

@@ -20,7 +20,7 @@ from clearance.formats.robot.request import RobotRequest, checked_args
 from clearance.formats.robot.robot_element import XACRO
 from clearance.formats.robot.srdf import read_srdf
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.joints import states_of
+from clearance.formats.schema.case import states_of
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.timed_files import trajectory_of
 from clearance.world.mount import Mount

@@ -185,7 +185,7 @@ FORMATS = (
     _mesh("octomap", (".bt", ".ot"), "octree_file:read_octree"),
     Format("glTF", Kind.MESH, (".gltf",), what="a mesh", hint="export it as .glb, one binary file"),
     _cloud("PCD", (".pcd",), "pcd_file:read_pcd"),
-    _cloud("points of a PLY", (".ply",), "points:read_ply_points", sniff=_unseen),
+    _cloud("points of a PLY", (".ply",), "formats:read_ply_points", sniff=_unseen),
     _cloud("points as text", (".csv", ".xyz", ".txt", ".asc"), "points_text:read_points_text", sniff=_unseen),
     Format("URDF", Kind.ROBOT, (".urdf", ".xml", ANY), "robot.urdf.robot:read_urdf", sniff=sniff.is_urdf,
            what="a URDF robot", hint="name it in a case file: robot: {{urdf: {name}}}, beside scene and "

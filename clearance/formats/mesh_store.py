@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh.mesh_file import LoadedMesh, mesh_from_bytes
-from clearance.formats.mesh.request import UpAxis
+from clearance.formats.mesh.triangles import UpAxis
 from clearance.tolerance import TESSELLATION
 
 if TYPE_CHECKING:

@@ -6,14 +6,42 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, at
-from clearance.formats.cloud.points import Points
+from clearance.errors import BadShape, BadSyntax, EmptyMesh, at
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
+from clearance.formats.mesh.ply_file import elements_of, vertices
+from clearance.formats.mesh.triangles import scaled_points
 from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
+
+
+class Points(NamedTuple):
+    """Points of a scan.
+
+    Attributes:
+        places: (n, 3) in the file's unit; NaN or infinity where a beam did not come back.
+        notes: what reading had to decide, one line each.
+        in_metres: True if the file names its units, so that the places are in metres.
+    """
+
+    places: np.ndarray
+    notes: tuple[str, ...] = ()
+    in_metres: bool = False
+
+
+def read_ply_points(data: bytes) -> Points:
+    """The vertices of a PLY file, as points of a scan; faces are passed over.
+
+    Raises:
+        BadSyntax, MissingKey: as `read_ply`.
+    """
+    elements = elements_of(data)
+    faces = [name for name in ("face", "tristrips") if name in elements and elements[name].n_rows]
+    notes = ("its faces are passed over: only the vertices are taken",) if faces else ()
+    return Points(vertices(elements), notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +97,7 @@ def cloud_from_bytes(
             raise BadShape(f"the file has {len(places):,} points", valid=f"{MOST_POINTS:,} at most")
         if in_millimetres and not found.in_metres:
             places = places / 1000.0
-        shape = PointCloud(_scaled(places, scale), radius)
+        shape = PointCloud(scaled_points(places, scale)[0], radius)
         notes += _on_copies(len(places), shape)
         return LoadedCloud(shape, (*found.notes, *notes))
 
@@ -94,16 +122,3 @@ def _on_copies(n_given: int, shape: PointCloud) -> list[str]:
     if not n_copies:
         return []
     return [f"{n_copies:,} of its points are there more than once and count once"]
-
-
-def _scaled(points: np.ndarray, scale: float | Sequence[float]) -> np.ndarray:
-    factors = np.asarray(scale, dtype=np.float64)
-    if factors.shape not in ((), (3,)) or not np.isfinite(factors).all() or not factors.all():
-        raise BadDimension(
-            f"scale {factors.tolist()} is given", valid="one or three factors, none zero"
-        )
-    with np.errstate(over="ignore"):
-        scaled = points * factors
-    if not np.isfinite(scaled).all():
-        raise BadDimension(f"scale {factors.tolist()} makes coordinates overflow")
-    return scaled

@@ -21,7 +21,7 @@ from clearance.errors import (
     UnknownKey,
     nearest_name,
 )
-from clearance.formats.cloud.points import Points
+from clearance.formats.cloud.formats import Points
 from clearance.formats.text.numbers import floats, integers
 
 _KEYS = (

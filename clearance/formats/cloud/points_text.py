@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from clearance.errors import BadInput, BadShape
-from clearance.formats.cloud.points import Points
+from clearance.formats.cloud.formats import Points
 from clearance.formats.table.column_units import Column, columns_in, in_own_units, note_on_units
 from clearance.formats.table.csv_table import TextTable, columns_of, first_row, header_of
 from clearance.formats.table.table_start import blanks_as_tabs

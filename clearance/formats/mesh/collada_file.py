@@ -23,8 +23,7 @@ from clearance.formats.mesh.collada_geometry import (
     words_of,
 )
 from clearance.formats.mesh.placing import MOST_COPIED_NODES, Z_FROM_Y_UP, CopyCount, joined, placed
-from clearance.formats.mesh.request import MeshRequest, UpAxis
-from clearance.formats.mesh.triangles import Triangles
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, UpAxis
 from clearance.formats.text.numbers import floats
 from clearance.formats.text.xml_document import root_of
 

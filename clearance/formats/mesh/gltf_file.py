@@ -19,8 +19,7 @@ from clearance.errors import BadSyntax, EmptyMesh, NotFinite, at
 from clearance.formats.mesh.gltf_buffers import Buffers, GltfObject
 from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined, placed
 from clearance.formats.mesh.polygon_cut import fan, strip
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles, refuse_missing_corners
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, refuse_missing_corners
 from clearance.geometry.pose import pose_from_quaternion
 
 _HARMLESS = (

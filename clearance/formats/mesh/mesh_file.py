@@ -17,9 +17,10 @@ from clearance.errors import BadSyntax, at
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.formats.mesh.placing import Z_FROM_Y_UP
-from clearance.formats.mesh.request import MeshRequest, UpAxis
 from clearance.formats.mesh.triangles import (
+    MeshRequest,
     Triangles,
+    UpAxis,
     checked,
     n_without_area,
     scaled,

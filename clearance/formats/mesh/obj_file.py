@@ -14,8 +14,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh
 from clearance.formats.mesh.polygon_cut import cut_rings
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles, checked
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, checked
 
 _FREE_FORM = frozenset({b"curv", b"curv2", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"res"})
 

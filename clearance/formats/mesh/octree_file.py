@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, MissingKey
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles
+from clearance.formats.mesh.triangles import MeshRequest, Triangles
 from clearance.formats.text.numbers import floats, integers
 
 DEPTH = 16

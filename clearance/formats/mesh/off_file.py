@@ -12,8 +12,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, at
 from clearance.formats.mesh.polygon_cut import cut_rings
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles, checked
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, checked
 from clearance.formats.text.numbers import floats, integers
 
 _KINDS = (b"OFF", b"COFF", b"NOFF", b"CNOFF", b"STOFF")

@@ -14,8 +14,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, DuplicateName, EmptyMesh, MissingKey, at
 from clearance.formats.mesh.polygon_cut import cut_rings, strip
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles, checked, refuse_missing_corners
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, checked, refuse_missing_corners
 from clearance.formats.text.numbers import floats, integers
 
 _CORNERS = ("vertex_indices", "vertex_index")

@@ -23,8 +23,7 @@ from clearance.extras import require
 from clearance.formats.mesh.gltf_buffers import Buffers, GltfObject
 from clearance.formats.mesh.gltf_file import chunks, mesh_pieces, read_glb
 from clearance.formats.mesh.placing import Z_FROM_Y_UP
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles
+from clearance.formats.mesh.triangles import MeshRequest, Triangles
 from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION
 
 _PROCESS = Path(__file__).with_name("step_process.py")

@@ -12,8 +12,7 @@ import re
 import numpy as np
 
 from clearance.errors import BadSyntax
-from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles
+from clearance.formats.mesh.triangles import MeshRequest, Triangles
 from clearance.formats.text.numbers import floats
 
 _HEADER_BYTES = 84

@@ -1,4 +1,5 @@
-"""Triangles as a mesh file has them, before they become a solid: checked, scaled, mirrored.
+"""What is asked of a reader of mesh files, and triangles as a file has them, before they become a solid: checked,
+scaled, mirrored.
 
 No point is moved except by the scale. Not for: file formats; equal points, flat triangles and
 coplanar neighbours (`geometry.coplanar`).
@@ -7,15 +8,32 @@ coplanar neighbours (`geometry.coplanar`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadPolygon, EmptyMesh, NotFinite
 from clearance.geometry.edges import distinct_vertices
+from clearance.tolerance import TESSELLATION
 
 _ODD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
 """Factors of a hash: odd, with bits all over."""
+
+
+UpAxis = Literal["file", "ros"]
+"""What becomes of COLLADA's `<up_axis>`: "file" turns as it says, "ros" ignores it as RViz and MoveIt do."""
+
+
+class MeshRequest(NamedTuple):
+    """The content of a file, and how it is to be read.
+
+    Attributes:
+        up_axis: of COLLADA. tolerance: [m] how far the facets of a CAD file may be off its surface.
+    """
+
+    data: bytes
+    up_axis: UpAxis = "file"
+    tolerance: float = TESSELLATION
 
 
 class Triangles(NamedTuple):
@@ -73,6 +91,21 @@ def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:
     round.
 
     Raises:
+        BadDimension: as `scaled_points`.
+    """
+    vertices, factors = scaled_points(triangles.vertices, scale)
+    mirrored = np.count_nonzero(factors < 0) % 2 == 1
+    corners = triangles.corners[:, :: -1 if mirrored else 1]
+    off = triangles.off * float(np.abs(factors).max())
+    return triangles._replace(vertices=vertices, corners=corners, off=off)
+
+
+def scaled_points(
+    points: np.ndarray, scale: float | Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 3) points with each axis multiplied, and the (3,) factors.
+
+    Raises:
         BadDimension: not one or three factors, one that is zero or not finite, or so large that
             coordinates overflow.
     """
@@ -81,15 +114,11 @@ def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:
         raise BadDimension(
             f"scale {factors.tolist()} is given", valid="one or three factors, none zero"
         )
-    factors = np.broadcast_to(factors, 3)
     with np.errstate(over="ignore"):
-        vertices = triangles.vertices * factors
-    if not np.isfinite(vertices).all():
+        made = points * factors
+    if not np.isfinite(made).all():
         raise BadDimension(f"scale {factors.tolist()} makes coordinates overflow")
-    mirrored = np.count_nonzero(factors < 0) % 2 == 1
-    corners = triangles.corners[:, :: -1 if mirrored else 1]
-    off = triangles.off * float(np.abs(factors).max())
-    return triangles._replace(vertices=vertices, corners=corners, off=off)
+    return made, np.broadcast_to(factors, 3)
 
 
 def without_copies(triangles: Triangles) -> tuple[Triangles, int]:

@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, format_of, function_at
-from clearance.formats.mesh.request import UpAxis
+from clearance.formats.mesh.triangles import UpAxis
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.request import Geometry, RobotRequest, checked_args
 from clearance.formats.robot.urdf.robot import read_urdf

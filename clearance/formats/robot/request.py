@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from clearance.errors import BadRobot
-from clearance.formats.mesh.request import UpAxis
+from clearance.formats.mesh.triangles import UpAxis
 
 Geometry = Literal["collision", "visual", "collision_or_visual"]
 

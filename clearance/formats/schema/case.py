@@ -9,18 +9,25 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from clearance.errors import BadInput, Contradiction, MissingKey, nearest_name
-from clearance.formats.schema.joints import Joints
 from clearance.formats.schema.limits import AllowedPair, Limits
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.pose import Base, WindowedEntry
 from clearance.formats.schema.strict_model import Level, Name, StrictModel
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.schema.tolerance import Tolerance
+from clearance.world.names import checked_name
 from clearance.world.notice import accepted_kind
 
 
@@ -30,6 +37,41 @@ def _without_stroke(name: str) -> str:
             f"{name!r:.60} is given", valid="no '/', since links of several robots are robot/link"
         )
     return name
+
+
+STATE = "state"
+"""The key of the names of states; a joint may be called so too, and then has a number."""
+
+
+class RestingJoints(dict[str, float]):
+    """Positions by joint [rad] or [m].
+
+    Attributes:
+        states: of an SRDF, which give the positions of others.
+    """
+
+    def __init__(self, positions: dict[str, float], states: Iterable[str] = ()) -> None:
+        super().__init__(positions)
+        self.states = tuple(states)
+
+
+def states_of(joints: dict[str, float]) -> tuple[str, ...]:
+    """The states that a case file names among its joints."""
+    return joints.states if isinstance(joints, RestingJoints) else ()
+
+
+def _with_states(data: Any, positions: ValidatorFunctionWrapHandler) -> RestingJoints:
+    given = data.get(STATE) if isinstance(data, dict) else None
+    if not isinstance(given, str | list):
+        return RestingJoints(positions(data))
+    names = [given] if isinstance(given, str) else given
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise BadInput(f"{given!r:.60} is given", where=STATE, valid="names of states")
+    others = {name: value for name, value in data.items() if name != STATE}
+    return RestingJoints(positions(others), map(checked_name, names))
+
+
+Joints = Annotated[dict[str, float], WrapValidator(_with_states)]
 
 
 class Robot(StrictModel):

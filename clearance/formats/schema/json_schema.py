@@ -10,7 +10,6 @@ from typing import Any
 
 from clearance.formats.known_formats import Kind, names_of
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.joints import STATE
 from clearance.formats.schema.obstacle import SHAPES
 from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS, preset_names
 from clearance.world.notice import CODES_OF_KINDS, KINDS, WARNINGS
@@ -40,7 +39,7 @@ def case_schema() -> dict[str, Any]:
     factors = parts["Mesh"]["properties"]["scale"]
     parts["Mesh"]["properties"]["scale"] = {"anyOf": [{"type": "number"}, factors], "default": 1.0}
     _edit_obstacle(parts["Obstacle"])
-    parts["Robot"]["properties"]["joints"]["properties"] = {STATE: _NAMES_OF_STATES}
+    parts["Robot"]["properties"]["joints"]["properties"] = {schema.STATE: _NAMES_OF_STATES}
     parts["Rule"]["anyOf"] = [{"required": ["fail"]}, {"required": ["warn"]}]
     for pose in ("Pose", "Base"):
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}

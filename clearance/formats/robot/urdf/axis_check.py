@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.errors import ClearanceError
 from clearance.formats.mesh.mesh_file import triangles_from_bytes
-from clearance.formats.mesh.request import UpAxis
+from clearance.formats.mesh.triangles import UpAxis
 from clearance.formats.robot.urdf.elements import pose_of
 from clearance.formats.robot.urdf.shapes import ShapeReader
 from clearance.world.body import Body
