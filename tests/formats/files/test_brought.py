@@ -17,8 +17,9 @@ MESH = '<collision><geometry><mesh filename="package://example-robot-data/{file}
 BOX = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
 
 STL = b"\0" * 80 + (7).to_bytes(4, "little") + b"\0" * 350
-OBJ = "v 0 0 0\nf 1 2 3\nf 1//1 2//1 3//1 4//1\n"
-DAE = '<mesh><triangles material="m" count="12"/><polylist count="2"><vcount>3 4</vcount></polylist></mesh>'
+OBJ = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1//1 2//1 3//1 4//1\n"
+DAMAGED = MESH.format(file="robots/a/x.dae")
+OFF = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
 
 
 def urdf(collision: str = "", kind: str = "revolute") -> str:
@@ -29,12 +30,12 @@ def urdf(collision: str = "", kind: str = "revolute") -> str:
 def robots(tmp_path, monkeypatch):
     """The folder of a package with robots; no other package brings any."""
     share = tmp_path / "site" / "cmeel.prefix" / "share" / "example-robot-data"
-    meshes = "".join(MESH.format(file=f"robots/link.{kind}") for kind in ("stl", "obj", "dae"))
+    meshes = "".join(MESH.format(file=f"robots/link.{kind}") for kind in ("stl", "obj", "off"))
     for path, text in {
         "ur/ur5_robot.urdf": urdf(meshes + MESH.format(file="robots/none.stl") + BOX),
-        "ur/ur3.urdf": urdf(), "ur/ur3_robot.urdf": urdf(BOX), "a/twin.urdf": urdf(),
+        "ur/ur3.urdf": urdf(), "ur/ur3_robot.urdf": urdf(BOX), "a/twin.urdf": urdf(DAMAGED),
         "b/twin.urdf": urdf(), "c/model.urdf": urdf(), "c/table.urdf": urdf(BOX, "fixed"),
-        "c/broken.urdf": "<robot", "link.obj": OBJ, "link.dae": DAE,
+        "c/broken.urdf": "<robot", "link.obj": OBJ, "link.off": OFF, "a/x.dae": "<COLLADA",
     }.items():  # fmt: skip
         (share / "robots" / path).parent.mkdir(parents=True, exist_ok=True)
         (share / "robots" / path).write_text(text)
@@ -86,17 +87,17 @@ def test_what_is_no_package_is_a_path(tmp_path):
 
 
 LISTED = """\
-example-robot-data:robots/a/twin.urdf      2 links  no collision shapes
+example-robot-data:robots/a/twin.urdf      2 links  meshes that cannot be read
 example-robot-data:robots/b/twin.urdf      2 links  no collision shapes
 example-robot-data:robots/c/model.urdf     2 links  no collision shapes
 example-robot-data:ur3                     2 links  no collision shapes
 example-robot-data:ur3_robot               2 links  1 round or box shape
-example-robot-data:ur5                     2 links  25 triangles, 1 round or box shape, 1 mesh file missing
+example-robot-data:ur5                     2 links  12 triangles, 1 round or box shape, 1 mesh file missing
 """
 
 
 def test_the_robots_of_packages_are_listed(robots, capsys):
-    """7 triangles of STL, 3 of OBJ (one face has four corners), 12, 1 and 2 of COLLADA."""
+    """7 triangles of STL, 3 of OBJ and 2 of OFF: faces of four corners are two each."""
     assert run(["robots"]) == 0
     told = capsys.readouterr()
     assert told.out == LISTED
