@@ -15,9 +15,7 @@ from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.motion.joint_columns import without_followers
 from clearance.formats.motion.pose_file import (
     PoseRequest,
-    ReadPoses,
     ReadSamples,
-    read_poses,
     read_samples,
 )
 from clearance.formats.motion.recording_gaps import as_recorded
@@ -35,7 +33,7 @@ from clearance.formats.text.notes import counted
 from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed
-from clearance.world.pose_table import require_samples_to_loop
+from clearance.world.pose_table import PoseTable, require_samples_to_loop
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
 from clearance.world.trajectory import AS_WRITTEN, SHORTEST
@@ -113,28 +111,28 @@ def load_trajectory(path: Path, choice: Choice, files: InputFiles | None = None)
     Raises:
         BadInput: with the place in the file.
     """
+    files = files or InputFiles(path.parent)
+    if is_bag(path):
+        return _of_bag(path, files, choice, {})
 
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
         return read_trajectory(TrajectoryRequest(opened, n_bytes, choice=choice), shown)
 
-    files = files or InputFiles(path.parent)
-    if is_bag(path):
-        return _of_bag(path, files, choice, {})
     return _read(path, files, read, Kind.TRAJECTORY)
 
 
-def load_samples(path: Path, files: InputFiles) -> ReadSamples:
+def load_samples(path: Path, files: InputFiles, length: str | None = None) -> ReadSamples:
     """The poses in a file, as they stand there, which something can follow.
+
+    Args:
+        length: as in `PoseRequest`.
 
     Raises:
         BadInput: with the place in the file.
     """
 
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadSamples:
-        found = read_samples(PoseRequest(opened, n_bytes), shown)
-        with at(shown):
-            found.samples.table()
-        return found
+        return read_samples(PoseRequest(opened, n_bytes, length), shown)
 
     return _read(path, files, read, Kind.POSES)
 
@@ -157,25 +155,23 @@ def _of_bag(
     return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
 
 
-def pose_table_of(given: PoseFile, field: str, folder: Path, files: InputFiles) -> ReadPoses:
-    """The table of poses that a case file names for an obstacle, and notes on how it was read.
+def pose_table_of(
+    given: PoseFile, folder: Path, files: InputFiles
+) -> tuple[PoseTable, tuple[str, ...]]:
+    """The table of poses that a case file names for an obstacle in `moves`, and notes on how it was read.
 
     Args:
-        field: where it is named. folder: against which the path is looked up.
+        folder: against which the path is looked up.
 
     Raises:
         BadInput: with the field and the file.
     """
-
-    def read(opened: Opener, n_bytes: int, shown: str) -> ReadPoses:
-        return read_poses(PoseRequest(opened, n_bytes, given.length), shown)
-
     path = resolved(given.file, folder)
-    with at(f"{field}.file"):
-        table, notes = _read(path, files, read, Kind.POSES)
-    with at(field), at(files.shown(path)):
-        given.timing.run_times(table.times)
-        return ReadPoses(replace(table, timing=given.timing), notes)
+    with at("moves.file"):
+        samples, notes = load_samples(path, files, given.length)
+    with at("moves"), at(files.shown(path)):
+        given.timing.run_times(samples.times)
+        return replace(samples.table(), timing=given.timing), notes
 
 
 def _read(

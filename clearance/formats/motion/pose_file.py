@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadMotion, at
+from clearance.errors import at
 from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import note_on_rounded
@@ -29,15 +29,6 @@ class PoseRequest:
     opened: Opener
     n_bytes: int
     length: str | None = None
-
-    def refuse_units(self, why: str) -> None:
-        """Nothing, if the case says nothing of units.
-
-        Raises:
-            BadInput: it does, though the file says by itself what they are.
-        """
-        if self.length is not None:
-            raise BadMotion(f"'units' is given, and {why}", valid="leave 'units' out of moves")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,15 +71,8 @@ def samples_of(written: PoseSamples, notes: tuple[str, ...]) -> ReadSamples:
     return ReadSamples(samples, (*notes, *note_on_rounded(n_rounded)))
 
 
-class ReadPoses(NamedTuple):
-    """A table, and a line each on what was taken how."""
-
-    table: PoseTable
-    notes: tuple[str, ...] = ()
-
-
 def read_samples(request: PoseRequest, shown: str) -> ReadSamples:
-    """The samples in a file, as they stand there.
+    """The samples in a file, as they stand there, which something can follow.
 
     Args:
         shown: the file's name, in errors.
@@ -100,18 +84,5 @@ def read_samples(request: PoseRequest, shown: str) -> ReadSamples:
         known = format_of(Kind.POSES, shown)
         assert known is not None  # as any file is CSV where nothing says otherwise
         found: ReadSamples = function_at(known.read)(request)
+        found.samples.table()  # which raises, where nothing can follow them
     return found
-
-
-def read_poses(request: PoseRequest, shown: str) -> ReadPoses:
-    """The table of the samples in a file.
-
-    Args:
-        shown: the file's name, in errors.
-
-    Raises:
-        BadInput: as the reader says, with the place in the file.
-    """
-    samples, notes = read_samples(request, shown)
-    with at(shown):
-        return ReadPoses(samples.table(), notes)

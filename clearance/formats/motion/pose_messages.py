@@ -69,7 +69,9 @@ def read_json_poses(request: PoseRequest) -> ReadSamples:
 
 
 def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
-    request.refuse_units("messages are in metres")
+    if request.length is not None:
+        fault = "'units' is given, and messages are in metres"
+        raise BadMotion(fault, valid="leave 'units' out of moves")
     with request.opened() as file:
         documents = documents_in(file.read(MOST_JSON + 1))
     stamped: list[_StampedPose] = []

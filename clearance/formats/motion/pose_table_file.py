@@ -6,11 +6,9 @@ Not for: how a table is parsed (`csv_table`), nor where between its rows a body 
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
 
-from clearance.errors import BadMotion, BadPose, MissingKey, UnknownKey, at, nearest_name
+from clearance.errors import BadMotion, BadPose, MissingKey, UnknownKey, nearest_name
 from clearance.formats.motion.pose_file import (
     PoseRequest,
     PoseSamples,
@@ -37,7 +35,6 @@ from clearance.formats.table.csv_table import (
 from clearance.formats.table.table_start import as_written, notes_on_writing
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.tolerance import LARGEST, ROUNDED_ROTATION
-from clearance.world.pose_table import PoseTable
 
 _POSITION, _QUATERNION = POSE_COLUMNS[1:4], POSE_COLUMNS[4:]
 _SLIDES = dict.fromkeys(_POSITION, False)
@@ -69,12 +66,6 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     refuse_off_length_one(quaternions, table)
     notes = (*notes_on_writing(table), *notes_on_names(header, columns), *note_on_units(columns))
     return samples_of(PoseSamples(times[:, 0], positions, quaternions), notes)
-
-
-def parse_pose_table(data: bytes, shown: str) -> PoseTable:
-    """The samples in the content of a CSV file, as `read_csv_poses` finds them in the file."""
-    with at(shown):
-        return read_csv_poses(PoseRequest(lambda: io.BytesIO(data), len(data))).samples.table()
 
 
 def _refuse_units(by_name: dict[str, Column]) -> None:

@@ -51,7 +51,7 @@ def _placed(
     """The body where it stands, or on what it rides, or as it moves; and notes on files of poses."""
     pose, moves, notes = item.pose.matrix(), None, list[str]()
     if item.moves is not None:
-        moves, on_moves = pose_table_of(item.moves, "moves", folder, files)
+        moves, on_moves = pose_table_of(item.moves, folder, files)
         notes += [f"{item.moves.file}: {note}" for note in on_moves]
     if item.on is not None:
         return Obstacle(body, mount=Mount(item.on, pose), moves=moves, padding=item.padding), notes

@@ -148,9 +148,9 @@ def bag_folder(path: Path) -> object:
 
 
 def poses(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.motion.pose_file import PoseRequest, read_poses
+    from clearance.formats.motion.pose_file import PoseRequest, read_samples
 
-    return read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
+    return read_samples(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
 
 
 def xacro(path: Path) -> object:

@@ -9,7 +9,7 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
-from clearance.formats.motion.pose_file import PoseRequest, read_poses
+from clearance.formats.motion.pose_file import PoseRequest, read_samples
 from tests.formats.making_cell import DOOR, load_cell, write_cell
 
 STAMPED = """header:
@@ -49,7 +49,8 @@ pose:
 
 def read(text: str | bytes, name: str = "door.yaml", length: str | None = None):
     data = text if isinstance(text, bytes) else text.encode()
-    return read_poses(PoseRequest(lambda: BytesIO(data), len(data), length), name)
+    samples, notes = read_samples(PoseRequest(lambda: BytesIO(data), len(data), length), name)
+    return samples.table(), notes
 
 
 def pose(x: float, seconds: float, **changes):
@@ -59,7 +60,7 @@ def pose(x: float, seconds: float, **changes):
 
 
 def test_a_table_in_other_units_with_semicolons_is_the_same_table():
-    plain = read(DOOR, "door.csv").table
+    plain = read(DOOR, "door.csv")[0]
     rows = (
         "time [ms];x_mm;y [mm];z (mm);qx;qy;qz;qw\n"
         "0;4000;0;0;0;0;0;1\n400;4000;500;0;0;0;0,6;0,8\n1e3;4e3;1000;0;0;0;1;0\n"
@@ -137,9 +138,9 @@ def test_paths_transforms_and_covariances_are_poses_too():
         }
         for one in stamped
     ]
-    expected = read("\n".join(map(json.dumps, stamped)), "a.json").table
+    expected = read("\n".join(map(json.dumps, stamped)), "a.json")[0]
     for given in ([path], covered, moved, [{"transforms": moved}]):
-        found = read("\n".join(map(json.dumps, given)), "a.json").table
+        found = read("\n".join(map(json.dumps, given)), "a.json")[0]
         assert np.array_equal(found.columns, expected.columns)
         assert found.times.tolist() == [0.0, 2.0]
 

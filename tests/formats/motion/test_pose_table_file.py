@@ -18,22 +18,26 @@ from clearance.errors import (
     NotFinite,
     UnknownKey,
 )
-from clearance.formats.motion.pose_file import PoseRequest, read_poses
-from clearance.formats.motion.pose_table_file import parse_pose_table
+from clearance.formats.motion.pose_file import PoseRequest, read_samples
 
 TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 
 
+def read(text, name):
+    data = text.encode()
+    return read_samples(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
+
+
 def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():
-    whole = parse_pose_table(TEXT.encode(), "door.csv")
+    whole = read(TEXT, "door.csv").samples
     header = TEXT.index("\n") + 1
     for n in range(len(TEXT)):
         try:
-            cut = parse_pose_table(TEXT[:n].encode(), "door.csv")
+            cut = read(TEXT[:n], "door.csv").samples
         except BadInput:
             continue
         assert n > header
-        rows = len(cut)
+        rows = len(cut.times)
         assert np.array_equal(cut.times, whole.times[:rows])
         assert np.array_equal(cut.positions, whole.positions[:rows])
         assert np.abs(cut.quaternions - whole.quaternions[:rows]).max() < 1e-6
@@ -44,7 +48,7 @@ def test_a_quaternion_is_read_or_its_line_is_named(numbers):
     length = float(np.linalg.norm(numbers))
     cells = ",".join(map(repr, numbers))
     try:
-        table = parse_pose_table(f"time,x,y,z,qx,qy,qz,qw\n0,0,0,0,{cells}\n".encode(), "a.csv")
+        table = read(f"time,x,y,z,qx,qy,qz,qw\n0,0,0,0,{cells}\n", "a.csv").samples.table()
     except BadInput as error:
         assert "a.csv: line 2: the quaternion" in str(error) and abs(length - 1) > 0.9e-3
     else:
@@ -63,14 +67,14 @@ STAMPED = "\n---\n".join(
 
 @pytest.mark.parametrize(("name", "text"), [("a.csv", DIGITS), ("a.yaml", STAMPED)])
 def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(name, text):
-    data = text.encode()
-    table, notes = read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
-    assert table.quaternions[1].tolist() == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5], abs=1e-15)
+    samples, notes = read(text, name)
+    assert samples.table().quaternions[1].tolist() == pytest.approx(
+        [0, 0, 0.5**0.5, 0.5**0.5], abs=1e-15
+    )
     told = "1 quaternion is rounded to three digits or so and made of length 1"
     assert [note for note in notes if "rounded" in note] == [told]
-    bad = text.replace("0.707", "0.7").encode()
     with pytest.raises(BadInput, match=r"0\.98994"):
-        read_poses(PoseRequest(lambda: io.BytesIO(bad), len(bad)), name)
+        read(text.replace("0.707", "0.7"), name)
 
 
 HEADER = "time,x,y,z,qx,qy,qz,qw\n"
@@ -97,5 +101,5 @@ FIRST = HEADER + "0,0,0,0,0,0,0,1\n"
 )  # fmt: skip
 def test_faults_name_file_and_row(table, fault, says):
     with pytest.raises(fault) as caught:
-        parse_pose_table(table.encode(), "door.csv")
+        read(table, "door.csv")
     assert str(caught.value).startswith(f"door.csv: {says}")
