@@ -47,12 +47,16 @@ def require_finished(report: Path) -> None:
     Raises:
         Incomplete: what is there is of an older run.
     """
+    from clearance.files import LAST
+    from clearance.report.withdrawn import OLDER_SUMMARY
+
     folder = report if report.is_dir() else report.parent
-    if place_of(folder).is_dir():
+    left = [one for one in (place_of(folder), folder / OLDER_SUMMARY) if one.exists()]
+    if left and not (left[0].name == OLDER_SUMMARY and (folder / LAST).exists()):
         raise Incomplete(
-            "a run into this folder was interrupted, or is not finished; its files are older",
+            "a run into this folder was interrupted or refused, or is not finished; its files are older",
             where=str(folder),
-            valid=f"the same check again, or remove {place_of(folder).name!r}",
+            valid=f"the same check again, or remove {left[0].name!r}",
         )
 
 

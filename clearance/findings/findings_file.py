@@ -89,7 +89,7 @@ def findings_text(found: FindingList) -> str:
         rows = zip(content[name], getattr(found, name), strict=True)
         content[name] = [row | {"code": one.code} for row, one in rows]
     if not found.measured.tolerances:
-        del content["measured"]["tolerances"]
+        del content["measured"]["tolerances"], content["measured"]["errors"]
     for finding in content["findings"]:
         for key in ("accepted", "move", "moves", "penetration", "penetration_at_least"):
             if finding[key] in (None, "", False):

@@ -53,6 +53,12 @@ def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iter
         yield f"clock slack was {slack_text(old)}, and is {slack_text(new)}: other clocks are not covered"
     if old.tolerances and not new.tolerances:
         yield "tolerances were counted, and are not given any more"
+    elif smaller := [
+        f"{name} {new.errors.get(name, 0.0):g}, was {was:g}"
+        for name, was in old.errors.items()
+        if new.errors.get(name, 0.0) < was
+    ]:
+        yield f"tolerances are smaller (m, rad, s): {listed(smaller)}"
 
 
 def _measured_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:

@@ -17,7 +17,7 @@ from weakref import WeakKeyDictionary
 from clearance.record.fingerprint import robot_digest
 from clearance.record.names import pair_names
 from clearance.record.record import Record
-from clearance.world.budget import Budget, RobotTolerance
+from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import Case, Limits
 from clearance.world.cell import once_a_cell
 from clearance.world.pairs import Pair
@@ -69,7 +69,7 @@ class MeasurementConditions:
             all that a link could meet.
         joints: what a joint beyond its limits is: "warn" or "fail". paddings: [m] of bodies that have one.
         moving: robots and obstacles with a motion of their own.
-        tolerances: sha256 of the errors that were counted with; empty without any.
+        tolerances: sha256 of the errors that were counted with; empty without any. errors: their sizes by name.
     """
 
     need: str
@@ -86,6 +86,7 @@ class MeasurementConditions:
     joints: str = "warn"
     paddings: dict[str, float] = field(default_factory=dict, hash=False)
     moving: tuple[str, ...] = ()
+    errors: dict[str, float] = field(default_factory=dict, hash=False)
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -119,6 +120,7 @@ def conditions_of(record: Record) -> MeasurementConditions:
         joints=record.case.limits.joints,
         paddings=paddings_in(record.case),
         moving=tuple(_moving(record.case)),
+        errors={name: size for name, size in _errors(record.case.tolerance) if size},
     )
 
 
@@ -155,6 +157,27 @@ def _tolerances(budget: Budget | None) -> str:
         budget.is_normal,
     )
     return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+def _errors(budget: Budget | None) -> Iterator[tuple[str, float]]:
+    """Each error by the name of its part and its kind, with its size [m, rad or s]."""
+    for name, robot in ({} if budget is None else budget.robots).items():
+        yield from _placed(f"base of {name}", robot.base)
+        yield f"clock of {name}", robot.timing
+        yield from ((f"surface of {name}/{link}", size) for link, size in robot.surfaces.items())
+        for joint, one in robot.joints.items():
+            yield f"position of joint {name}/{joint}", one.position
+            yield f"tracking of joint {name}/{joint}", one.tracking
+            yield from _placed(f"frame of joint {name}/{joint}", one.frame)
+    for name, obstacle in ({} if budget is None else budget.obstacles).items():
+        yield from _placed(name, obstacle.place)
+        yield f"clock of {name}", obstacle.timing
+        yield f"surface of {name}", obstacle.surface
+
+
+def _placed(name: str, place: PlacementTolerance) -> Iterator[tuple[str, float]]:
+    yield f"place of {name}", place.xyz
+    yield f"angle of {name}", place.angle
 
 
 def _sorted(robot: RobotTolerance) -> str:

@@ -28,7 +28,7 @@ def assert_clear(
         at_least: [m]; the fail limit of the rule that judges each pair if not given. Without it and `between`, the
             run is passed. With either, input must not be suspect, no peer may disagree and programs must be
             proven all the same, and where the case has tolerances what they leave of the pairs is proven to keep
-            it, unless `unproven_ok` is set.
+            it. `unproven_ok` of the case excuses its own limits only, not `at_least`.
 
     Raises:
         AssertionError: what comes nearer, how near, when, and what was asked for; or why the input is in doubt.

@@ -38,7 +38,7 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
     if not answers:
         raise _no_such_pair(run, between)
     found = {one.name: [*_faults(run.record, one, level)] for one in answers}
-    for left in _budgets(run, is_meant):
+    for left in _budgets(run, is_meant, level):
         if not found[left.rule]:
             found[left.rule] += _with_tolerances(left, between, level)
     return [line for lines in found.values() for line in lines]
@@ -69,10 +69,10 @@ def _links_unasked(case: Case, pattern: PairPattern) -> Iterator[str]:
                 yield f"{b} - {a} ({SELF_COLLISION} not checked)"
 
 
-def _budgets(run: Run, is_meant: PairTest) -> tuple[RuleBudget, ...]:
-    """What tolerances leave of the pairs; nothing without any, and where what is not proven is accepted."""
+def _budgets(run: Run, is_meant: PairTest, level: float | None) -> tuple[RuleBudget, ...]:
+    """What tolerances leave of the pairs; nothing without any, and for limits that the case lets pass unproven."""
     tolerance = run.record.case.tolerance
-    if tolerance is None or tolerance.unproven_ok:
+    if tolerance is None or (level is None and tolerance.unproven_ok):
         return ()
     return run.session.budget_of_pairs(is_meant)
 

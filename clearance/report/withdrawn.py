@@ -31,14 +31,14 @@ def withdraw_report(folder: Path) -> None:
         Unwritable: it cannot be marked.
     """
     page, summary = folder / "report.html", folder / LAST
+    if summary.is_file():  # first: another name needs no room on a full disk
+        with unwritable(summary):
+            summary.replace(folder / OLDER_SUMMARY)
     if page.is_file() and not page.is_symlink():
         content = page.read_bytes()
         marked = marked_page(content)
         if marked != content:
             write_file(page, marked)
-    if summary.is_file():
-        with unwritable(summary):
-            summary.replace(folder / OLDER_SUMMARY)
 
 
 def marked_page(content: bytes) -> bytes:

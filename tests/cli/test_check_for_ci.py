@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import run
+from clearance.report.withdrawn import withdraw_report
 from tests.findings.gates import write_gates
 from tests.report.junit_schema import valid_suite
 
@@ -172,9 +173,15 @@ def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
     assert "broken/case.yaml: VIOLATED" in out and "no list of cases" in err
 
 
-def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(reports, capsys):
+@pytest.mark.parametrize("rows_are_left", [True, False])
+def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(
+    reports, capsys, rows_are_left
+):
     assert run(["compare", "of_broken", "of_clear", "--quiet"]) == 0
-    (reports / ".of_clear.unfinished").mkdir()  # where rows are kept until the report is there
+    if rows_are_left:
+        (reports / ".of_clear.unfinished").mkdir()  # where rows are kept until the report is there
+    else:
+        withdraw_report(reports / "of_clear")
     for arguments in (
         ["compare", "of_broken", "of_clear"],
         ["compare", "of_clear/findings.json", "of_broken"],

@@ -7,6 +7,7 @@ import json
 
 import pytest
 
+import clearance as cl
 from clearance.errors import BadInput
 from clearance.findings.comparison import compared
 from clearance.findings.doubts import DISPUTED, NOT_CHECKED, Doubt
@@ -177,6 +178,16 @@ def test_a_shorter_run_and_fewer_moves_are_told_and_fail_nothing(tmp_path):
         "shorter: programs make 4 moves, and made 6",
     ]
     assert listed(tmp_path).duration == 2.0 and len(listed(tmp_path).measured.moving) == 1
+
+
+def test_smaller_tolerances_are_less_known_and_greater_ones_are_not(tmp_path):
+    case = load_gates(tmp_path, CLEAR)
+    bases = ({"xyz": 0.002}, {"xyz": 1e-4, "angle": 0.001})
+    found = [cl.check(case, tolerance={"base": base}).finding_list for base in bases]
+    assert compared(*found[::-1]).passed and not compared(*found).passed
+    assert doubt_lines(compared(*found)) == [
+        "less is known: tolerances are smaller (m, rad, s): place of base of box 0.0001, was 0.002"
+    ]
 
 
 def test_less_padding_is_less_known_and_more_is_not(tmp_path):

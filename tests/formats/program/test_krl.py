@@ -301,7 +301,7 @@ def test_a_base_on_another_machine_is_refused():
     ).moves  # BASE_DATA is seen from the plate as it is from the robot's foot
     for move, other in zip((one, two, last), stands, strict=True):
         assert np.array_equal(move.to.pose, other.to.pose)
-    with pytest.raises(cl.ClearanceError, match="^weld.src: line 9: this has no value for"):
+    with pytest.raises(cl.ClearanceError, match=r"^weld\.src: line 9: this has no value for"):
         program(f"{body.replace('LIN XP1', 'XP1=$BASE:XP1')}\nLIN XP1", points, **units)
     with pytest.raises(
         cl.ClearanceError, match="line 11: the tool's pose before this move is not known"

@@ -246,7 +246,7 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
 )
 def test_a_module_that_is_cut_off_is_refused(end):
     with pytest.raises(
-        cl.ClearanceError, match="line 26: the file ends; |line 24: PROC has no ENDPROC; "
+        cl.ClearanceError, match=r"line 26: the file ends; |line 24: PROC has no ENDPROC; "
     ):
         read("a.mod", CELL[: CELL.index(end) + len(end)])
 
