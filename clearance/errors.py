@@ -98,13 +98,7 @@ class UnknownKey(BadInput):
 
 
 class MissingKey(BadInput):
-    """A key that the schema requires.
-
-    Attributes:
-        lacks: for what the files of a program do not say, the key of the program and the name below it.
-    """
-
-    lacks: tuple[str, str] | None = None
+    """A key that the schema requires."""
 
 
 class UnknownLink(BadInput):

@@ -20,7 +20,7 @@ from clearance.formats.known_formats import Format, Kind, format_of, function_at
 from clearance.formats.plausibility import odd_in_program
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.conversion import ConvertedProgram, converted
-from clearance.formats.program.given import read_whole, require_used
+from clearance.formats.program.given import require_used
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.timed import TrajectoryFile
@@ -125,7 +125,7 @@ def _read(
     others = [*_along(path, row), *(resolved(one, folder) for one in asked.beside)]
     beside = {files.shown(one): files.read(one) for one in others}
     request = ProgramRequest(data, shown, asked, beside)
-    read = read_whole(function_at(row.read), request)
+    read = function_at(row.read)(request)
     if isinstance(read, schema.Program):
         return shown, _of_schema(read)
     with at(shown), _suspecting(odd_in_program(asked)):

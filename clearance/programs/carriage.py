@@ -236,12 +236,19 @@ class Carriage:
     @cached_property
     def knots(self) -> np.ndarray:
         """(m,) [s] the times between which it moves on one cubic, in order."""
-        return np.unique(np.concatenate([*_knots(self.steps)]))
+        times = list[float]()
+        for one in _all_of(self.steps):
+            if isinstance(one, Handed):
+                times += [*one.starts, *([one.until] if np.isfinite(one.until) else [])]
+            elif not isinstance(one, np.ndarray):
+                times += [*one.table.knots]
+        return np.unique(times)
 
     @cached_property
     def until(self) -> float:
         """[s] When nobody knows any more where it is."""
-        return min(_untils(self.steps), default=np.inf)
+        ends = (one.until for one in _all_of(self.steps) if isinstance(one, Handed))
+        return min(ends, default=np.inf)
 
     @cached_property
     def turning_points(self) -> np.ndarray:
@@ -291,23 +298,12 @@ def series_of(
     return _series(steps, times, half, before)
 
 
-def _knots(steps: Sequence[Step]) -> Iterator[np.ndarray]:
+def _all_of(steps: Sequence[Step]) -> Iterator[Step]:
+    """Steps, and those of ways that take turns."""
     for one in steps:
-        if isinstance(one, Handed):
-            yield one.starts
-            yield np.array([one.until])[np.isfinite([one.until])]
-            for way in one.ways:
-                yield from _knots(way)
-        elif not isinstance(one, np.ndarray):
-            yield one.table.knots
-
-
-def _untils(steps: Sequence[Step]) -> Iterator[float]:
-    for one in steps:
-        if isinstance(one, Handed):
-            yield one.until
-            for way in one.ways:
-                yield from _untils(way)
+        yield one
+        for way in one.ways if isinstance(one, Handed) else ():
+            yield from _all_of(way)
 
 
 def _by_time_of(steps: Sequence[Step], timing: Timing) -> tuple[Step, ...]:

@@ -20,7 +20,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
+from clearance.programs.enclosure import (
+    Enclosed,
+    Intervals,
+    Spread,
+    cubic_series,
+    enclosed,
+    stroke_series,
+)
 from clearance.programs.following import Follower
 from clearance.programs.inverse import joints_at
 from clearance.programs.links_off import Cells, links_off
@@ -99,18 +106,15 @@ def _spread(
     stretch, counts = follower.stretch, np.array(shape[1:])
     sizes = np.linalg.norm(stretch.turns, axis=1)
     half = 0.5 * given.lengths[:, None]
-    middle = given.strokes[0] + half * (given.strokes[1] + 0.5 * given.strokes[2] * half)
-    moved = (
-        np.abs(given.strokes[1] + given.strokes[2] * half) * half
-        + np.abs(given.strokes[2]) * half**2
-    )
+    strokes = stroke_series(given, half)
+    middle, moved = strokes[0], np.abs(strokes[1]) + 2.0 * np.abs(strokes[2])
     shifts, halves = (cell + 0.5) / counts, np.tile(0.5 / counts, (len(i), 1))
     shifts[:, 0], halves[:, 0] = 0.5 * (shifts[:, 0] - 0.5), 0.5 * halves[:, 0]
     shifts[:, 1:] -= middle[i]
     halves[:, 1:] += moved[i]
     shifts[:, 1:][:, sizes == 0.0] = 0.0
     halves[:, 1:][:, sizes == 0.0] = 0.0
-    near = 0.5 * (given.before + given.after) + 0.25 * half * (given.rates[0] - given.rates[1])
+    near = cubic_series(given, half)[0]
     change = follower.joints_on_path.held[0] - follower.joints_on_path.held[1]
     start = near[i] + np.where(follower.free, 0.0, shifts[:, :1] * change)
     poses = stretch.poses(

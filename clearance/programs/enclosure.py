@@ -116,7 +116,7 @@ def enclosed(
 ) -> Enclosed:
     """What is proven of the joints that hold the tool at any pose of a spread about the path."""
     half = 0.5 * given.lengths[:, None]
-    joints, strokes = cubic_series(given, half), _strokes(given, half)
+    joints, strokes = cubic_series(given, half), stroke_series(given, half)
     joints[0] += spread.joints
     turn, origin = arm.series(joints)
     of_point, of_turn = _shifted(strokes, spread)
@@ -202,7 +202,7 @@ def cubic_series(given: Intervals, half: np.ndarray) -> np.ndarray:
     return found
 
 
-def _strokes(given: Intervals, half: np.ndarray) -> np.ndarray:
+def stroke_series(given: Intervals, half: np.ndarray) -> np.ndarray:
     """(ORDER + 1, n, 2) the series of the strokes about the middle."""
     share, rate, change = given.strokes
     found = np.zeros((ORDER + 1, *share.shape))

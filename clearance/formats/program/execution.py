@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from clearance.errors import BadProgram, nearest_name
+from clearance.errors import BadProgram, ClearanceError, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait, end_of
 from clearance.formats.program.effects import (
     Effects,
@@ -130,9 +130,14 @@ class Execution(Remarks):
     def run(self, body: Iterable[Statement]) -> Leave | None:
         """Runs statements, and what they were left by."""
         for one in body:
-            with on(one.line):
-                self._count()
-                left = self._step(one)
+            self.line = one.line
+            try:
+                with on(one.line):
+                    self._count()
+                    left = self._step(one)
+            except ClearanceError:
+                self.require_all()
+                raise
             if left is not None:
                 return left
         return None
@@ -200,14 +205,6 @@ class Execution(Remarks):
         if self.language.waits(call):
             self.note(WAITS, f"{call.name} ({call.line})")
         return self.language.result_of(call, self)
-
-    def items(self, values: list[Any], kind: str) -> Any:
-        """Values in brackets."""
-        return self.language.items(values, kind)
-
-    def part_of(self, value: Any, by: Any) -> Any:
-        """A part of a value."""
-        return self.language.part_of(value, by)
 
     def _assign(self, one: Assign) -> None:
         name = assigned(one.target)

@@ -108,11 +108,8 @@ class Scope(Protocol):
     def result_of(self, call: Call) -> Any:
         """The value of a function."""
 
-    def items(self, values: list[Any], kind: str) -> Any:
-        """Values in brackets."""
-
-    def part_of(self, value: Any, by: Any) -> Any:
-        """A part of a value; raises LookupError or TypeError where there is none."""
+    language: Any
+    """Which makes values in brackets (`items`), and finds parts of values (`part_of`)."""
 
 
 def value_of(one: Expression, scope: Scope) -> Any:
@@ -129,10 +126,11 @@ def value_of(one: Expression, scope: Scope) -> Any:
         case Call():
             return scope.result_of(one)
         case Items():
-            return scope.items([value_of(item, scope) for item in one.items], one.kind)
+            items = [value_of(item, scope) for item in one.items]
+            return scope.language.items(items, one.kind)
         case Part():
             by = one.by if isinstance(one.by, str) else value_of(one.by, scope)
-            return applied(scope.part_of, (value_of(one.of, scope), by), one.line)
+            return applied(scope.language.part_of, (value_of(one.of, scope), by), one.line)
         case Operation():
             return applied(one.act, [value_of(item, scope) for item in one.on], one.line)
 

@@ -38,10 +38,9 @@ from clearance.formats.program.fanuc_text import (
     Motion,
     listing_of,
 )
-from clearance.formats.program.given import not_in_files
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
-from clearance.formats.program.statements import For, Routine, within
+from clearance.formats.program.statements import For, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import pose_from_rpy
@@ -59,7 +58,6 @@ _SECONDS = {"sec": 1.0, "msec": 1e-3}
 _IDLE = re.compile(r"ACC\d+|PTH|BREAK|PSPD\d+|RT_LD\d+|AP_LD\d+|EV\d+%?|INDEV\d+%?")
 """Options of a motion that change nothing of its way, or only how near to its corner it is rounded."""
 
-_ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
 
 _ROUNDING = math.radians(0.1)
 """Of a pose in a listing: axes are known no better."""
@@ -76,9 +74,7 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
     with at(asked.shown):
         main = listing_of(asked.data)
         others = [listing_of(data, file) for file, data in asked.beside.items()]
-        routines = {
-            one.name: Routine(one.name, Line(1), _ARGUMENTS, one.body) for one in (*others, main)
-        }
+        routines = {one.name: one for one in (*others, main)}
         entry = asked.asked.entry
         entry_of("program", [main.name], entry, (entry or "").upper(), main.name)
         language = _Fanuc(asked.asked)
@@ -162,7 +158,7 @@ class _Fanuc(Language):
             to=to,
             tool=tool,
             via=ends[0][0] if kind == "circ" else None,
-            zone=self._zone(motion.end),
+            zone=self._zone(motion.end, run),
             **_speed(kind, motion.unit, run.evaluated(speed), call, run),
         )
 
@@ -205,7 +201,7 @@ class _Fanuc(Language):
         """(4, 4) [m] A frame or a tool by its number, which the program sets or the point has; 0 is none.
 
         Raises:
-            BadProgram: they differ, as no controller accepts. MissingKey: the case does not say it.
+            BadProgram: they differ, as no controller accepts.
         """
         chosen = run.value_of(Name(f"{kind}_NUM", Line(0)))
         current = None if isinstance(chosen, Unknown) else number(chosen, f"{kind}_NUM")
@@ -226,14 +222,12 @@ class _Fanuc(Language):
             fault = f"{name}: no {kind}_NUM is set before"
             raise BadProgram(fault, valid=f"write {kind}_NUM=1 before it")
         fault = "is set in the program" if is_changed else "is not in a listing"
-        raise not_in_files(f"{name}: {key} {fault}", word, key)
+        return np.asarray(run.lack(f"{name}: {key} {fault}", word, key))
 
-    def _zone(self, end: str) -> float:
+    def _zone(self, end: str, run: Execution) -> float:
         """[m] The radius of the corner at a motion's end.
 
-        Raises:
-            MissingKey: its length is not in the file: what CNT cuts depends on speed and load, and CR may be the
-                radius of the arc.
+        The file does not have it: what CNT cuts depends on speed and load, and CR may be the radius of the arc.
         """
         if end == "FINE":
             return 0.0
@@ -242,7 +236,7 @@ class _Fanuc(Language):
             if key in self.asked.zones:
                 return self.asked.zones[key]
         fault = f"{end} does not say where the corner begins"
-        raise not_in_files(fault, "zones", end, more=f", or {kind} of all")
+        return float(run.lack(fault, "zones", end, more=f", or {kind} of all"))
 
 
 def _speed(kind: str, unit: str, value: Any, call: Call, run: Execution) -> dict[str, Any]:

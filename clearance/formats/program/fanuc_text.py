@@ -33,6 +33,7 @@ from clearance.formats.program.statements import (
     For,
     If,
     Leave,
+    Routine,
     Statement,
     Unreadable,
     While,
@@ -129,16 +130,11 @@ class Motion:
     calls: bool = False
 
 
-@dataclass(frozen=True)
-class Listing:
-    """A program: its name in capitals, where it stands, and its statements."""
-
-    name: str
-    body: tuple[Statement, ...]
+_ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
 
 
-def listing_of(data: bytes, file: str = "") -> Listing:
-    """The statements of a file.
+def listing_of(data: bytes, file: str = "") -> Routine:
+    """The program in a file; its name is in capitals.
 
     Args:
         file: as of a `Line`.
@@ -163,7 +159,8 @@ def listing_of(data: bytes, file: str = "") -> Listing:
     rows = text[start.end() : body_end].split("\n")
     first = text.count("\n", 0, start.end()) + 1
     instructions = [*_instructions(rows, first, file), Token(END, "", Line(first, file))]
-    return Listing(head[1].upper(), _Reader(instructions, positions).all())
+    body = _Reader(instructions, positions).all()
+    return Routine(head[1].upper(), Line(1), _ARGUMENTS, body)
 
 
 def _instructions(rows: list[str], first: int, file: str) -> Iterator[Token]:

@@ -1,98 +1,29 @@
-"""What a case gives for a program beside its file: what is lacking, and that the program uses the rest. One check
-for all languages.
+"""What a case gives for a program beside its file: that the program uses it. One check for all languages.
 
-Not for: what the program does with it (each language).
+Not for: what the program does with it (each language), and what it lacks (`remarks`).
 """
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadProgram, ClearanceError, MissingKey
+from clearance.errors import BadProgram, ClearanceError
 from clearance.formats.program.controller_program import (
     ControllerMove,
     ControllerProgram,
     ProgramRequest,
     digits_of,
 )
-from clearance.formats.schema.pose import Pose
-from clearance.formats.schema.program_file import ProgramFile
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
 NAMED = ("tools", "frames", "units", "zones")
 """Keys of a case that give values by name."""
-
-
-MOST_LACKING = 20
-"""Values by name that an error asks for at once."""
-
-
-def not_in_files(fault: str, key: str, name: str, before: str = "", more: str = "") -> MissingKey:
-    """The error for a value by name that no file of a program has.
-
-    Args:
-        key: of the program, one of `NAMED`. before, more: beside what the program may have.
-    """
-    unit = ", the radius of such corners [m]" if key == "zones" else " in m and rad"
-    valid = f"{before}program: {{{_written([(key, name)])}}}{unit}{more}"
-    error = MissingKey(fault, valid=valid)
-    error.lacks = key, name
-    return error
-
-
-def read_whole(
-    read: Callable[[ProgramRequest], ControllerProgram], request: ProgramRequest
-) -> ControllerProgram:
-    """The program that a reader makes of a request; where values by name are lacking, the error has all of them.
-
-    Raises:
-        BadInput: as the reader.
-    """
-    lacking: dict[tuple[str, str], MissingKey] = {}
-    while len(lacking) < MOST_LACKING:
-        try:
-            found = read(replace(request, asked=_with_any(request.asked, lacking)))
-        except MissingKey as error:
-            if error.lacks is None or error.lacks in lacking:
-                break
-            lacking[error.lacks] = error
-        except ClearanceError:
-            break
-        else:
-            if not lacking:
-                return found
-            break
-    if not lacking:
-        return read(request)
-    first = next(iter(lacking.values()))
-    if len(lacking) > 1:
-        first.valid = f"program: {{{_written(lacking)}}} in m and rad"
-    raise first
-
-
-def _with_any(asked: ProgramFile, lacking: Iterable[tuple[str, str]]) -> ProgramFile:
-    """What a case gives, and any value of what is lacking."""
-    found = asked
-    for key, name in lacking:
-        value = 0.05 if key == "zones" else Pose(xyz=[0.0, 0.0, 0.0])
-        found = found.model_copy(update={key: {**getattr(found, key), name: value}})
-    return found
-
-
-def _written(lacking: Iterable[tuple[str, str]]) -> str:
-    """The keys of values by name, as a case has them."""
-    parts = dict[str, list[str]]()
-    for key, name in lacking:
-        shown = f'"{name}"' if "[" in name else name
-        value = "0.05" if key == "zones" else "{xyz: […], rpy: […]}"
-        parts.setdefault(key, []).append(f"{shown}: {value}")
-    return ", ".join(f"{key}: {{{', '.join(own)}}}" for key, own in parts.items())
 
 
 def require_used(

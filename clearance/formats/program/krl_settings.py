@@ -17,7 +17,6 @@ import numpy as np
 from clearance.errors import BadProgram
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Expression, Name, Unknown
-from clearance.formats.program.given import not_in_files
 from clearance.formats.program.krl_expressions import (
     FRAME,
     MM,
@@ -107,18 +106,14 @@ class Settings:
         self.set("$VEL_AXIS", dict.fromkeys(range(1, 7), value))
 
     def frame(self, name: str, key: str) -> np.ndarray:
-        """(4, 4) [m] The tool or base in force.
-
-        Raises:
-            MissingKey: it is not known.
-        """
+        """(4, 4) [m] The tool or base in force."""
         value = self.value(name)
         if isinstance(value, Mapping):
             return matrix_of(value, name)
         index = re.match(r"(?:(?:TOOL|BASE)_DATA\[)?(\d+)(?:\]| of it )", why(value))
         named = f"{name[1:]}_DATA[{index[1]}]" if index else name
         fault = f"{name} is not known: {why(value)}"
-        raise not_in_files(fault, key, named, "a file beside that sets it, or ")
+        return np.asarray(self.run.lack(fault, key, named, "a file beside that sets it, or "))
 
     def numbered(self, array: str, index: Any, none: str) -> Any:
         """The tool or base of a number; 0 is none."""
@@ -242,11 +237,7 @@ class Settings:
         return float(value)
 
     def zone(self, kind: str, words: list[str], zones: Mapping[str, float]) -> float:
-        """[m] The radius of the corner at a move's end.
-
-        Raises:
-            MissingKey: the files say no length.
-        """
+        """[m] The radius of the corner at a move's end."""
         if not words:
             return 0.0
         if kind == "ptp" and {"C_PTP", "C_DIS"} <= {*words}:  # one ends the corner, one begins it
@@ -259,7 +250,7 @@ class Settings:
         if word in zones:
             return zones[word]
         lacks = "$APO.CDIS, its length, is not in the files" if by_length else "is no length"
-        raise not_in_files(f"{word}: {lacks}", "zones", word)
+        return float(self.run.lack(f"{word}: {lacks}", "zones", word))
 
 
 def _corner_of_joints(data: Any) -> Aggregate:

@@ -102,7 +102,12 @@ class Language:
     def program_of(
         self, run: Any, notes: Iterable[str] = (), doubts: Iterable[str] = ()
     ) -> ControllerProgram:
-        """The program that a run has made, with further notes and doubts."""
+        """The program that a run has made, with further notes and doubts.
+
+        Raises:
+            MissingKey: it uses values by name that no file has; with all of them.
+        """
+        run.require_all()
         return ControllerProgram(
             tuple(run.moves),
             (*run.notes, *notes),

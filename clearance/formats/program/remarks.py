@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from clearance.errors import BadProgram
+import numpy as np
+
+from clearance.errors import BadProgram, MissingKey
 from clearance.formats.program.expressions import Call, Unknown, number
+from clearance.formats.program.tokens import Line
 from clearance.world.notice import listed
 from clearance.world.trajectory import FURTHER_PASSES
+
+MOST_LACKING = 20
+"""Values by name that an error asks for at once."""
 
 LEFT_OUT = "left out as asked"
 WAITS = "instructions that take a time which no file says are taken to take none"
@@ -23,10 +30,12 @@ class Remarks:
     """What was passed over, and what a verdict leaves out.
 
     Attributes:
-        doubts: for the headline, one line each.
+        doubts: for the headline, one line each. line: that runs.
     """
 
     doubts: dict[str, None] = field(init=False, default_factory=dict)
+    line: Line = field(init=False, default=Line(0))
+    _lacking: dict[tuple[str, str], MissingKey] = field(init=False, default_factory=dict)
     _passed: dict[str, dict[str, None]] = field(init=False, default_factory=dict)
 
     @property
@@ -49,6 +58,31 @@ class Remarks:
         """Keeps something to tell, each place once."""
         self._passed.setdefault(what, {})[where] = None
 
+    def lack(self, fault: str, key: str, name: str, before: str = "", more: str = "") -> Any:
+        """Any tool, frame or radius, for one of a name that no file has: `require_all` then refuses the program.
+
+        Args:
+            key: of the case's program. before, more: beside what it may have.
+        """
+        unit = ", the radius of such corners [m]" if key == "zones" else " in m and rad"
+        valid = f"{before}program: {{{_written([(key, name)])}}}{unit}{more}"
+        error = MissingKey(fault, where=str(self.line), valid=valid)
+        self._lacking.setdefault((key, name), error)
+        return 0.05 if key == "zones" else np.eye(4)
+
+    def require_all(self) -> None:
+        """Nothing, if nothing lacks.
+
+        Raises:
+            MissingKey: something does; with all of it.
+        """
+        if self._lacking:
+            first = next(iter(self._lacking.values()))
+            if len(self._lacking) > 1:
+                asked = _written([*self._lacking][:MOST_LACKING])
+                first.valid = f"program: {{{asked}}} in m and rad"
+            raise first from None
+
     def share_of_speeds(self, value: Any, call: Call, whole: float) -> float:
         """The share of all speeds that an instruction asks for; where it is not known it is 1, and is told.
 
@@ -65,3 +99,13 @@ class Remarks:
         if share < 1.0:
             self.note("shares of all speeds are followed", f"{call.name} {value:g} ({call.line})")
         return share
+
+
+def _written(lacking: Iterable[tuple[str, str]]) -> str:
+    """The keys of values by name, as a case has them."""
+    parts = dict[str, list[str]]()
+    for key, name in lacking:
+        shown = f'"{name}"' if "[" in name else name
+        value = "0.05" if key == "zones" else "{xyz: […], rpy: […]}"
+        parts.setdefault(key, []).append(f"{shown}: {value}")
+    return ", ".join(f"{key}: {{{', '.join(own)}}}" for key, own in parts.items())

@@ -38,7 +38,9 @@ def at(x: float, y: float, z: float) -> np.ndarray:
 
 
 def made(*moves, start=(), robot=None, **asked):
-    asked = validated(ProgramFile, {"file": "weld.mod", "link": "tool_tip", **asked}, "program")
+    given = {"file": "weld.mod", "link": "tool_tip", **asked}
+    given = {key: value for key, value in given.items() if value is not None}
+    asked = validated(ProgramFile, given, "program")
     robot = robot or arm("heron6").robot
     return converted(ControllerProgram(moves), asked, robot, dict(start))
 

@@ -6,7 +6,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import MissingKey
-from clearance.formats.program.given import read_whole, require_used
+from clearance.formats.program.given import require_used
 from tests.formats.program import test_fanuc, test_krl, test_rapid
 from tests.formats.program.reading import reader_and_request
 
@@ -85,7 +85,7 @@ def test_all_values_that_the_files_lack_are_asked_for_at_once(name, text, asked)
     given = {"tools": test_fanuc.CASE["tools"]} if name == "CELL.LS" else {}
     reader, request = reader_and_request(name, text, beside, **given)
     with pytest.raises(MissingKey) as caught:
-        read_whole(reader, request)
+        reader(request)
     assert str(caught.value).endswith(f"; program: {asked} in m and rad") and "line" in str(
         caught.value
     )
@@ -93,4 +93,4 @@ def test_all_values_that_the_files_lack_are_asked_for_at_once(name, text, asked)
     with pytest.raises(
         MissingKey, match=r"tools: \{tcp: \{xyz: \[…\]\}\}\}, its pose on the flange"
     ):
-        read_whole(reader, request)
+        reader(request)

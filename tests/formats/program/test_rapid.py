@@ -245,9 +245,8 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
     "end", ["MoveL p10_Table, v100", "MoveL p10_Table, v100, fine, gun\\WObj:=table;"]
 )
 def test_a_module_that_is_cut_off_is_refused(end):
-    with pytest.raises(
-        cl.ClearanceError, match=r"line 26: the file ends; |line 24: PROC has no ENDPROC; "
-    ):
+    told = r"line 26: the file ends; |line 24: PROC has no ENDPROC; "
+    with pytest.raises(cl.ClearanceError, match=told):
         read("a.mod", CELL[: CELL.index(end) + len(end)])
 
 
@@ -354,6 +353,7 @@ def test_a_branch_that_persistent_data_decide_is_doubted():
 def test_the_procedure_that_runs_is_chosen():
     text = f"MODULE M PROC a() MoveL {P},v5,fine,tool0; ENDPROC PROC b() ENDPROC ENDMODULE"
     assert len(read("a.mod", text, entry="A").moves) == 1
-    for entry, told in ((None, "several procedures are there: a, b"), ("c", "no procedure 'c'")):
+    several = "several procedures are there: a, b"
+    for asked, told in (({}, several), ({"entry": "c"}, "no procedure 'c'")):
         with pytest.raises(cl.ClearanceError, match=told):
-            read("a.mod", text, entry=entry)
+            read("a.mod", text, **asked)
