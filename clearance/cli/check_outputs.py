@@ -20,7 +20,7 @@ from clearance.errors import Unwritable
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
-    from clearance.formats.motion.trajectory_writer import WrittenTrajectory
+    from clearance.formats.motion.trajectory_writer import WrittenFile
     from clearance.run import Question, Run
 
 SUMMARY_VARIABLE, ROOT_VARIABLE = "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"
@@ -176,7 +176,7 @@ class Outputs:
 
             write_file(self.summary, refusal_markdown(case_file.name, text).encode("utf-8"))
 
-    def trajectory_ahead(self, question: Question) -> WrittenTrajectory | None:
+    def trajectory_ahead(self, question: Question) -> WrittenFile | None:
         """The trajectory file, where the motion is known before it is measured.
 
         Raises:
@@ -196,7 +196,7 @@ class Outputs:
         return motion_content(timeline_of(case, own).motions, self.trajectory.name)
 
     def write(
-        self, run: Run, comparison: Comparison | None, ahead: WrittenTrajectory | None
+        self, run: Run, comparison: Comparison | None, ahead: WrittenFile | None
     ) -> list[str]:
         """Writes each file, whole or not at all; a line for each thing in the trajectory that is not as it was.
 

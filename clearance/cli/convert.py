@@ -12,7 +12,7 @@ from clearance.cli.options import INCLUDE_OPTION, OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.formats.conversion.files import ConvertedFiles
+    from clearance.formats.conversion.scene import ConvertedFiles
 
 _KINDS = ("trajectory", "scene", "poses")
 

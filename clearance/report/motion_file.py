@@ -9,7 +9,7 @@ from pathlib import PurePath
 
 from clearance.errors import BadInput, at
 from clearance.formats.known_formats import Kind, written_as
-from clearance.formats.motion.trajectory_writer import WrittenTrajectory, written
+from clearance.formats.motion.trajectory_writer import WrittenFile, written
 from clearance.world.motion import Motion
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.placed_robot import PlacedRobot
@@ -34,7 +34,7 @@ def require_motion_file(robots: Sequence[PlacedRobot], shown: str) -> None:
         )
 
 
-def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
+def motion_content(motions: Sequence[Motion], shown: str) -> WrittenFile:
     """The motions as a file of this name, in the order of the case; a robot without joints that move is left out.
 
     Every number comes back bit for bit; what would not is refused, times that are rounded are a note.
@@ -60,7 +60,7 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
         parts.append(content)
         notes += (*changes, *_bridged(motion), *_nominal(motion))
     between = b"---\n" if is_yaml else b""
-    return WrittenTrajectory(between.join(parts), tuple(dict.fromkeys(notes)))
+    return WrittenFile(between.join(parts), tuple(dict.fromkeys(notes)))
 
 
 def _bridged(motion: Motion) -> list[str]:

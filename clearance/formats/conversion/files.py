@@ -10,10 +10,9 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from clearance.errors import BadInput, BadShape, Contradiction, at
-from clearance.formats.conversion.scene import converted_scene
+from clearance.formats.conversion.scene import ConvertedFiles, converted_scene
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import FORMATS, WANTED, Kind, foreign, formats_in, written_as
 from clearance.formats.motion import pose_writer, trajectory_writer
@@ -40,21 +39,6 @@ class Conversion:
     choice: Choice
     package_dirs: tuple[Path, ...] = ()
     includes: Mapping[str, str] = field(default_factory=dict)
-
-
-class ConvertedFiles(NamedTuple):
-    """What was made.
-
-    Attributes:
-        files: contents by name, the target's and those that are to lie beside it.
-        amount: of samples or poses, in words.
-        notes, warnings: a line each; warnings bear on what a check will find.
-    """
-
-    files: Mapping[str, bytes]
-    amount: str
-    notes: tuple[str, ...]
-    warnings: tuple[str, ...] = ()
 
 
 def converted(asked: Conversion, kind: Kind) -> ConvertedFiles:
@@ -130,10 +114,7 @@ def _poses(asked: Conversion) -> ConvertedFiles:
 
 def _scene(asked: Conversion) -> ConvertedFiles:
     request = SceneRequest(asked.source, asked.files, asked.package_dirs, asked.includes)
-    made = converted_scene(request, asked.target)
-    return ConvertedFiles(
-        made.files, counted(made.n_obstacles, "obstacle"), made.notes, made.warnings
-    )
+    return converted_scene(request, asked.target)
 
 
 def _of_target(asked: Conversion, changes: tuple[str, ...]) -> tuple[str, ...]:

@@ -23,6 +23,7 @@ from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.scene.writer import rows_of, written_scene
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
+from clearance.formats.text.notes import counted
 from clearance.formats.text.yaml_text import flow
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.rules import matches
@@ -31,16 +32,22 @@ _SHOWN = 6
 """Rows that a line shows; the file has all."""
 
 
-class ConvertedScene(NamedTuple):
-    """The files of a scene by name, its own first, and a line each on what is to be known."""
+class ConvertedFiles(NamedTuple):
+    """What a conversion made.
+
+    Attributes:
+        files: contents by name, the target's and those that are to lie beside it.
+        amount: of samples, poses or obstacles, in words.
+        notes, warnings: a line each; warnings bear on what a check will find.
+    """
 
     files: Mapping[str, bytes]
-    n_obstacles: int
+    amount: str
     notes: tuple[str, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
 
-def converted_scene(asked: SceneRequest, target: Path) -> ConvertedScene:
+def converted_scene(asked: SceneRequest, target: Path) -> ConvertedFiles:
     """The scene of a file, to be written at `target`; it is read once more before it is handed over.
 
     Raises:
@@ -58,9 +65,9 @@ def converted_scene(asked: SceneRequest, target: Path) -> ConvertedScene:
     made = written_scene(content, asked, target.parent, "clearance convert", remarks)
     files = {target.name: made.content, **made.meshes}
     _read_back(files, target, asked)
-    return ConvertedScene(
+    return ConvertedFiles(
         files,
-        len(rows),
+        counted(len(rows), "obstacle"),
         (*content.notes, *(f"{asked.shown}: {one.note}" for one in losses)),
         tuple(notice.line for notice in content.notices),
     )

@@ -6,31 +6,22 @@ are whole nanoseconds. What would not come back is refused. Not for: reading (`p
 
 from __future__ import annotations
 
-import csv
 import io
 import json
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import Any
 
 from clearance.errors import BadMotion, ClearanceError
 from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.times import NANO, whole_times
 from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
+from clearance.formats.motion.trajectory_writer import WrittenFile, table_text
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.formats.text.yaml_text import flow
 
 Message = dict[str, Any]
 
 
-class WrittenPoses(NamedTuple):
-    """The content of a file, and a line each on what is not as it was."""
-
-    content: bytes
-    notes: tuple[str, ...]
-
-
-def written_poses(samples: PoseSamples, shown: str) -> WrittenPoses:
+def written_poses(samples: PoseSamples, shown: str) -> WrittenFile:
     """The content of the file `shown`, in the format of its suffix.
 
     Messages are a Path, or transforms where the samples are of a frame of their own.
@@ -49,17 +40,13 @@ def written_poses(samples: PoseSamples, shown: str) -> WrittenPoses:
     else:
         notes = _lost_in_tables(samples)
     _refuse_other(samples, content, shown)
-    return WrittenPoses(content, tuple(notes))
+    return WrittenFile(content, tuple(notes))
 
 
 def csv_text(samples: PoseSamples) -> str:
     """A table: times, positions, quaternions."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(POSE_COLUMNS)
     columns = (samples.times[:, None], samples.positions, samples.quaternions)
-    writer.writerows(np.hstack(columns).tolist())
-    return text.getvalue()
+    return table_text(POSE_COLUMNS, columns)
 
 
 def yaml_text(samples: PoseSamples) -> str:

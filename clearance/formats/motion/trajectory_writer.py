@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,14 +24,14 @@ from clearance.formats.text.yaml_text import flow
 from clearance.world.trajectory import Points, Trajectory
 
 
-class WrittenTrajectory(NamedTuple):
+class WrittenFile(NamedTuple):
     """The content of a file, and a line each on what is not as it was."""
 
     content: bytes
     notes: tuple[str, ...]
 
 
-def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
+def written(trajectory: Trajectory, shown: str) -> WrittenFile:
     """The content of the file `shown`, in the format of its suffix.
 
     Raises:
@@ -42,7 +42,7 @@ def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
     whole = whole_times(trajectory.written.times.tolist()) if known.is_message else None
     is_rounded = whole is not None and whole.n_rounded > 0
     _refuse_other(trajectory, content, shown, is_rounded)
-    return WrittenTrajectory(content, (whole.note(),) if whole and is_rounded else ())
+    return WrittenFile(content, (whole.note(),) if whole and is_rounded else ())
 
 
 def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:
@@ -52,13 +52,16 @@ def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:
 
 def csv_text(trajectory: Trajectory) -> str:
     """A table: times, positions, velocities where they are known."""
-    header, columns = (
-        [TIME, *trajectory.joint_names],
-        [trajectory.times[:, None], trajectory.positions],
-    )
+    header = [TIME, *trajectory.joint_names]
+    columns = [trajectory.times[:, None], trajectory.positions]
     if trajectory.velocities is not None:
         header += [name + VELOCITY for name in trajectory.joint_names]
         columns.append(trajectory.velocities)
+    return table_text(header, columns)
+
+
+def table_text(header: Sequence[str], columns: Sequence[np.ndarray]) -> str:
+    """CSV: a header, and below it arrays (n, k) beside each other."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)

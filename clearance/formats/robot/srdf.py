@@ -125,7 +125,7 @@ class _Row:
 
     def __init__(self, element: Element) -> None:
         self.tag = str(element.tag)
-        self.links = [_link(element, attribute) for attribute in _ENDS[self.tag]]
+        self.links = [_named(element, attribute) for attribute in _ENDS[self.tag]]
         given = element.get("reason") or ""
         self.reason = given if given in REASONS else "User"
 
@@ -144,13 +144,6 @@ def _rows(root: Element) -> Iterator[_Row]:
         i = counted[tag] = counted.get(tag, -1) + 1
         with at(f"{tag}[{i}]"):
             yield _Row(element)
-
-
-def _link(element: Element, attribute: str) -> str:
-    name = element.get(attribute)
-    if not name:
-        raise MissingKey(f"<{element.tag}> has no {attribute}", valid=f'{attribute}="a link"')
-    return checked_name(name)
 
 
 def _pair(row: _Row) -> tuple[str, str]:
@@ -280,7 +273,7 @@ def _state(element: Element) -> GroupState:
 def _named(element: Element, attribute: str) -> str:
     name = element.get(attribute)
     if not name:
-        raise MissingKey(f"<{element.tag}> has no {attribute}")
+        raise MissingKey(f"<{element.tag}> has no {attribute}", valid=f'{attribute}="…"')
     return checked_name(name)
 
 
