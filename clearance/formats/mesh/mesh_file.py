@@ -6,7 +6,7 @@ each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -108,80 +108,58 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
 
 
 def _solid(triangles: Triangles) -> LoadedMesh:
-    single, n_copies = without_copies(triangles)
-    off = triangles.off
+    single, off = without_copies(triangles), triangles.off
     given = Polyhedron.from_triangles(single.vertices, single.corners, excess=off, shortfall=off)
     shape = given.outward()
-    notes = [
-        *_notes_on_facets(off),
-        *triangles.notes,
-        *_notes_on_copies(n_copies),
-        *_notes_on_flat(n_without_area(single), shape),
-        *_notes_on_turned(given),
-        *_notes_on_sides(shape.component_two_sided),
-        *_notes_on_open(shape.component_closed),
-    ]
-    return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+    notes = (*_on_triangles(triangles, single, shape), *_on_parts(given, shape))
+    return LoadedMesh(shape, len(triangles.corners), notes)
 
 
-def _notes_on_facets(off: float) -> list[str]:
-    if not off:
-        return []
-    return [
-        f"facets of a CAD file, up to {off * 1e3:.3g} mm off its surface, which is taken off the clearance; "
-        "depths of contact are those of the facets"
-    ]
+def _on_triangles(triangles: Triangles, single: Triangles, shape: Polyhedron) -> Iterator[str]:
+    """Notes on triangles, of which `single` are those without copies."""
+    if triangles.off:
+        yield (
+            f"facets of a CAD file, up to {triangles.off * 1e3:.3g} mm off its surface, which is taken off the "
+            "clearance; depths of contact are those of the facets"
+        )
+    yield from triangles.notes
+    n_copies = len(triangles.corners) - len(single.corners)
+    if n_copies:
+        copies = _counted(n_copies, "exact copy of a face is", "exact copies of faces are")
+        yield f"{copies} left out"
+    n_flat = n_without_area(single)
+    if n_flat:
+        yield _on_flat(n_flat, shape)
 
 
-def _notes_on_copies(n_copies: int) -> list[str]:
-    if not n_copies:
-        return []
-    return [
-        f"{_counted(n_copies, 'exact copy of a face is', 'exact copies of faces are')} left out"
-    ]
-
-
-def _notes_on_turned(given: Polyhedron) -> list[str]:
-    n_parts, n_turned = len(given.component_inside_out), int(given.component_inside_out.sum())
-    if not n_turned:
-        return []
-    which = "the closed surface" if n_parts == 1 else f"{n_turned} of its {n_parts} parts"
-    were = "was" if n_turned == 1 else "were"
-    return [f"{which} {were} inside out and {'is' if n_turned == 1 else 'are'} turned round"]
-
-
-def _notes_on_sides(two_sided: np.ndarray) -> list[str]:
-    n_parts, n_two_sided = len(two_sided), int(np.count_nonzero(two_sided))
-    if not n_two_sided:
-        return []
-    hold = "holds" if n_two_sided == 1 else "hold"
-    which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts {hold}"
-    return [
-        f"{which} each face once for each side: what is wholly inside is not seen to be in contact"
-    ]
-
-
-def _notes_on_open(closed: np.ndarray) -> list[str]:
-    n_parts, n_open = len(closed), int(np.count_nonzero(~closed))
-    if not n_open:
-        return []
-    if n_open == n_parts:
-        return [OPEN]
-    return [
-        f"{n_open} of its {n_parts} parts {'is open: it has' if n_open == 1 else 'are open: they have'} no inside"
-    ]
-
-
-def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:
-    if not n_flat:
-        return []
+def _on_flat(n_flat: int, shape: Polyhedron) -> str:
     n_faces = int(np.count_nonzero(~shape.normals.any(axis=1)))
     what = f"{_counted(n_flat, 'triangle', 'triangles')} {'has' if n_flat == 1 else 'have'} no area"
     if not n_faces:
         covered = "is covered by its" if n_flat == 1 else "are covered by their"
-        return [f"{what} and {covered} neighbours"]
+        return f"{what} and {covered} neighbours"
     faces = "1 is kept as a face" if n_faces == 1 else f"{n_faces} are kept as faces"
-    return [f"{what}; {faces}, because nothing else covers {'it' if n_faces == 1 else 'them'}"]
+    return f"{what}; {faces}, because nothing else covers {'it' if n_faces == 1 else 'them'}"
+
+
+def _on_parts(given: Polyhedron, shape: Polyhedron) -> Iterator[str]:
+    """Notes on the parts of a surface, as they were given and as they are."""
+    n_parts, n_turned = len(given.component_inside_out), int(given.component_inside_out.sum())
+    if n_turned:
+        which = "the closed surface" if n_parts == 1 else f"{n_turned} of its {n_parts} parts"
+        yield f"{which} {'was inside out and is' if n_turned == 1 else 'were inside out and are'} turned round"
+    n_parts, n_two_sided = len(shape.component_closed), int(shape.component_two_sided.sum())
+    if n_two_sided:
+        hold = "holds" if n_two_sided == 1 else "hold"
+        all_hold = n_two_sided == n_parts
+        which = "it holds" if all_hold else f"{n_two_sided} of its {n_parts} parts {hold}"
+        yield f"{which} each face once for each side: what is wholly inside is not seen to be in contact"
+    n_open = int((~shape.component_closed).sum())
+    if n_open == n_parts:
+        yield OPEN
+    elif n_open:
+        are = "is open: it has" if n_open == 1 else "are open: they have"
+        yield f"{n_open} of its {n_parts} parts {are} no inside"
 
 
 def _counted(n: int, one: str, many: str) -> str:

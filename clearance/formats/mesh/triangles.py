@@ -121,13 +121,13 @@ def scaled_points(
     return made, np.broadcast_to(factors, 3)
 
 
-def without_copies(triangles: Triangles) -> tuple[Triangles, int]:
-    """The triangles without those that come again, same corners, same way round, and how many these are.
+def without_copies(triangles: Triangles) -> Triangles:
+    """The triangles without those that come again, same corners, same way round.
 
     A triangle that is there once for each side is no copy. Equal corners are equal bit for bit.
     """
     if not _may_hold_copies(triangles):
-        return triangles, 0
+        return triangles
     _, kinds = distinct_vertices(triangles.vertices)
     corners = kinds[triangles.corners]
     least = np.argmin(corners, axis=1)[:, None]
@@ -138,9 +138,7 @@ def without_copies(triangles: Triangles) -> tuple[Triangles, int]:
     again[order[1:]] = (rows[1:] == rows[:-1]).all(
         axis=1
     )  # lexsort is stable: the first of its kind stays
-    if not again.any():
-        return triangles, 0
-    return triangles._replace(corners=triangles.corners[~again]), int(again.sum())
+    return triangles._replace(corners=triangles.corners[~again])
 
 
 def _may_hold_copies(triangles: Triangles) -> bool:
