@@ -19,6 +19,7 @@ from clearance.formats.text.numbers import floats, integers
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
+_SURFACES = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 _LINES = ("lines", "linestrips")
 _NO_SURFACE = ("asset", "source", "vertices", "extra", *_LINES)
 
@@ -103,9 +104,9 @@ def geometry_pieces(geometry: Element, ids: ElementsById) -> list[Triangles]:
 
 def _has_surface(item: Element) -> bool:
     kind = local_name(item)
-    if kind not in _READERS and kind not in _NO_SURFACE:
-        raise BadSyntax(f"<{kind}> is not supported", valid=", ".join(_READERS))
-    return kind in _READERS
+    if kind not in _SURFACES and kind not in _NO_SURFACE:
+        raise BadSyntax(f"<{kind}> is not supported", valid=", ".join(_SURFACES))
+    return kind in _SURFACES
 
 
 def _piece(primitive: Element, ids: ElementsById) -> Triangles:
@@ -126,7 +127,7 @@ def _piece(primitive: Element, ids: ElementsById) -> Triangles:
         refuse_missing_corners(flat, len(points))
         if len(flat):
             checked(Triangles(points, np.repeat(flat, 3)))
-        return Triangles(points, _READERS[kind](primitive, rings, points))
+        return Triangles(points, _cut(primitive, rings, points))
 
 
 def _inputs(primitive: Element, ids: ElementsById) -> tuple[int, int, Element]:
@@ -199,14 +200,20 @@ def _columns(accessor: Element) -> list[int]:
     )
 
 
-def _triangles(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -> np.ndarray:
-    corners = np.concatenate(rings)
-    _refuse_count(primitive, len(corners) / 3)
-    return corners.reshape(-1, 3)
+def _cut(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -> np.ndarray:
+    """(m, 3) the triangles of a primitive; a ring is a polygon, strip or fan, or some of the other primitives."""
+    kind, corners = local_name(primitive), np.concatenate(rings)
+    if kind == "polylist":
+        return _polylist(primitive, corners, points)
+    _refuse_count(primitive, len(corners) / 3 if kind == "triangles" else len(rings))
+    if kind == "triangles":
+        return corners.reshape(-1, 3)
+    if kind == "polygons":
+        return cut_rings(points, corners, np.array([len(ring) for ring in rings]))
+    return np.concatenate([(strip if kind == "tristrips" else fan)(ring) for ring in rings])
 
 
-def _polylist(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -> np.ndarray:
-    corners = np.concatenate(rings)
+def _polylist(primitive: Element, corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     vcount = primitive.find("{*}vcount")
     counts = integers(words_of(vcount)) if vcount is not None else np.empty(0, dtype=np.int64)
     if (counts < 0).any() or sum(counts.tolist()) != len(corners):
@@ -215,31 +222,7 @@ def _polylist(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -
     return cut_rings(points, corners, counts)
 
 
-def _polygons(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -> np.ndarray:
-    _refuse_count(primitive, len(rings))
-    return cut_rings(points, np.concatenate(rings), np.array([len(ring) for ring in rings]))
-
-
-def _strips(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -> np.ndarray:
-    _refuse_count(primitive, len(rings))
-    return np.concatenate([strip(ring) for ring in rings])
-
-
-def _fans(primitive: Element, rings: list[np.ndarray], points: np.ndarray) -> np.ndarray:
-    _refuse_count(primitive, len(rings))
-    return np.concatenate([fan(ring) for ring in rings])
-
-
 def _refuse_count(primitive: Element, n_held: float) -> None:
     stated = whole_number(primitive, "count", int(n_held))
     if stated != n_held:
         raise BadSyntax(f"its count is {stated}, and it holds {n_held:g}")
-
-
-_READERS = {
-    "triangles": _triangles,
-    "polylist": _polylist,
-    "polygons": _polygons,
-    "tristrips": _strips,
-    "trifans": _fans,
-}
