@@ -41,7 +41,7 @@ def read_points_text(data: bytes) -> Points:
         raise BadShape(f"{len(header)} columns", valid="three or more: x, y, z")
     of_axes = _axes(header)
     chosen = [header[i] for i, _ in of_axes]
-    (places,) = columns_of(table, len(content), header, [chosen], finite=False)
+    (places,) = columns_of(table, header, [chosen], finite=False)
     columns = [column for _, column in of_axes]
     in_own_units(places, columns)
     notes = [*([] if has_header else _on_more_columns(len(header))), *note_on_units(columns)]

@@ -58,7 +58,7 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     _refuse_units(by_name)
     parts = [[by_name[name] for name in part] for part in ([TIME], _POSITION, _QUATERNION)]
     wanted = [[column.header for column in part] for part in parts]
-    times, positions, quaternions = columns_of(table, request.n_bytes, header, wanted)
+    times, positions, quaternions = columns_of(table, header, wanted)
     for values, part in zip((times, positions), parts, strict=False):
         in_own_units(values, part)
     refuse_standing_time(times[:, 0], table)

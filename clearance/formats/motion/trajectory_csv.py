@@ -67,7 +67,7 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
     if any(name.endswith(VELOCITY) for name in by_name):
         parts.append([joint + VELOCITY for joint in joints])
     wanted = [[by_name[name] for name in part] for part in parts]
-    times, *moving = _values(table, request.n_bytes, header, wanted)
+    times, *moving = _values(table, header, wanted)
     if choice.period is not None:
         with np.errstate(over="ignore"):
             times = choice.period * np.arange(len(times), dtype=np.float64)[:, None]
@@ -154,9 +154,9 @@ def _require_times(names: list[str], choice: Choice) -> None:
 
 
 def _values(
-    table: TextTable, n_bytes: int, header: list[str], parts: Sequence[Sequence[Column]]
+    table: TextTable, header: list[str], parts: Sequence[Sequence[Column]]
 ) -> list[np.ndarray]:
-    read = columns_of(table, n_bytes, header, [[one.header for one in part] for part in parts])
+    read = columns_of(table, header, [[one.header for one in part] for part in parts])
     for values, part in zip(read, parts, strict=True):
         in_own_units(values, part)
     return read

@@ -128,7 +128,6 @@ def require_time(names: Sequence[str], others: str) -> None:
 
 def columns_of(
     table: TextTable,
-    n_bytes: int,
     names: list[str],
     parts: Sequence[Sequence[str]],
     *,
@@ -137,28 +136,20 @@ def columns_of(
     """For each of `parts` the (n, len(part)) columns of its names.
 
     Args:
-        n_bytes: length of the file. names: of all its columns. finite: False to take NaN and infinity too.
+        names: of all columns of the file. finite: False to take NaN and infinity too.
 
     Raises:
         BadShape, BadSyntax, NotFinite: with the line in the file.
     """
     wanted = list(dict.fromkeys(name for part in parts for name in part))
-    # a cell ends with a comma, and one that is wanted has a digit; what is not filled takes no memory
-    most = n_bytes // (len(names) + len(wanted)) + 2
-    found = [np.empty((most, len(part))) for part in parts]
-    n_rows = 0
+    blocks: list[list[np.ndarray]] = [[] for _ in parts]
     for block in _blocks(table, names, wanted):
-        rows = slice(n_rows, n_rows + len(block))
-        for columns, part in zip(found, parts, strict=True):
-            for i, name in enumerate(part):
-                columns[rows, i] = block[str(names.index(name))]
-        n_rows = rows.stop
-    if not n_rows:
+        for arrays, part in zip(blocks, parts, strict=True):
+            columns = [block[str(names.index(name))] for name in part]
+            arrays.append(np.stack(columns, axis=1) if part else np.empty((len(block), 0)))
+    if not blocks[0]:
         raise _no_rows()
-    for columns in found:
-        columns.resize(
-            (n_rows, columns.shape[1]), refcheck=False
-        )  # gives the rest back, without a copy
+    found = [np.concatenate(arrays) for arrays in blocks]
     if finite:
         _refuse_not_finite(found, parts, names, table)
     return found
