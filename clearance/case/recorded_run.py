@@ -69,12 +69,11 @@ def with_recorded(
         budget = _with_tracking(case.tolerance or Budget(), placed, found)
     robots = [*case.robots]
     robots[i_robot] = _as_driven(placed, driven, found, str(path))
-    sources = {one.path: one for one in (*case.sources, *files.sources)}
     return replace(
         case,
         robots=tuple(robots),
         tolerance=budget,
-        sources=tuple(sources[name] for name in sorted(sources)),
+        sources=files.sources_beside(case.sources),
         notes=(*case.notes, *notes, *_notes(found)),
         notices=(*case.notices, *notices),
     )

@@ -84,13 +84,12 @@ def with_waivers(case: Case, paths: Sequence[Path]) -> Case:
     """
     if not paths:
         return case
-    found, sources = list(case.waivers), {source.path: source for source in case.sources}
+    found, sources = list(case.waivers), case.sources
     for path in paths:
         files = InputFiles(path.parent)
         found += waivers_of(files, path)
-        sources |= {source.path: source for source in files.sources}
-    in_order = tuple(sources[path] for path in sorted(sources))
-    return replace(case, waivers=tuple(found), sources=in_order)
+        sources = files.sources_beside(sources)
+    return replace(case, waivers=tuple(found), sources=sources)
 
 
 def _waiver(row: _Row, shown: str, place: int) -> Waiver:

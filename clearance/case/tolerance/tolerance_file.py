@@ -52,14 +52,17 @@ def with_tolerance(case: Case, given: Budget | Mapping[str, Any] | str | PathLik
             require_numbers(given, case)
         return _replaced(case, given, "tolerances that were given")
     if isinstance(given, str | PathLike):
-        return _with_file(case, Path(given))
+        path = Path(given)
+        files = InputFiles(path.parent)
+        block, place = _block(path, files)
+        return _read(case, block, place, files, f"tolerances of {files.shown(path)}")
     if not isinstance(given, Mapping):
         raise BadTolerance(
             f"tolerances are {given!r:.60}", valid="a mapping, the path of a file, or a Budget"
         )
     files = InputFiles(Path.cwd())
-    budget = _budget(dict(given), KEY, case, files)
-    return _with_sources(_replaced(case, budget, "tolerances that were given"), files)
+    block = validated(Tolerance, dict(given), KEY)
+    return _read(case, block, KEY, files, "tolerances that were given")
 
 
 def tolerance_digest(path: Path) -> str:
@@ -77,14 +80,6 @@ def tolerance_digest(path: Path) -> str:
     return hashlib.sha256(repr(hashes).encode()).hexdigest()
 
 
-def _with_file(case: Case, path: Path) -> Case:
-    files = InputFiles(path.parent)
-    block, place = _block(path, files)
-    with at(place):
-        budget = budget_of(block, case, files.folder, files)
-    return _with_sources(_replaced(case, budget, f"tolerances of {files.shown(path)}"), files)
-
-
 def _block(path: Path, files: InputFiles) -> tuple[Tolerance, str]:
     """The block in a file, and how messages call it."""
     shown = files.shown(path)
@@ -94,10 +89,12 @@ def _block(path: Path, files: InputFiles) -> tuple[Tolerance, str]:
     return validated(Tolerance, raw[KEY] if inside else raw, place), place  # type: ignore[index]
 
 
-def _budget(raw: object, place: str, case: Case, files: InputFiles) -> Budget:
-    block = validated(Tolerance, raw, place)
+def _read(case: Case, block: Tolerance, place: str, files: InputFiles, what: str) -> Case:
+    """The case with the budget of a block, whose files are read through `files`."""
     with at(place):
-        return budget_of(block, case, files.folder, files)
+        budget = budget_of(block, case, files.folder, files)
+    made = _replaced(case, budget, what)
+    return replace(made, sources=files.sources_beside(made.sources))
 
 
 def _replaced(case: Case, budget: Budget, what: str) -> Case:
@@ -106,12 +103,6 @@ def _replaced(case: Case, budget: Budget, what: str) -> Case:
     if case.tolerance is not None:
         notes = (*notes, f"{what} take the place of the case's own")
     return replace(case, tolerance=budget, notes=notes)
-
-
-def _with_sources(case: Case, files: InputFiles) -> Case:
-    found = {source.path: source for source in case.sources}
-    found |= {source.path: source for source in files.sources}
-    return replace(case, sources=tuple(found[path] for path in sorted(found)))
 
 
 def require_there(budget: Budget, case: Case) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cached_property
@@ -53,6 +53,11 @@ class InputFiles:
         """Every file read so far, sorted by its shown path, and what was looked for."""
         found = [*self._sources.values(), *self._lookups.values()]
         return tuple(sorted(found, key=lambda source: source.path))
+
+    def sources_beside(self, others: Iterable[Source]) -> tuple[Source, ...]:
+        """The same and others, each path once."""
+        found = {source.path: source for source in (*others, *self.sources)}
+        return tuple(found[path] for path in sorted(found))
 
     def read(self, path: Path) -> bytes:
         """The content of a file; a second call gives the same bytes without reading again.
