@@ -24,6 +24,9 @@ from clearance.package_digest import package_digest
 MOST_BYTES = 500_000_000
 """The most bytes in the cache; beyond, the oldest files go until half remain."""
 
+_NAME = "name_of_file"
+"""The array with the file's own name: a file under the name of another is not read."""
+
 
 def cached_surface(shape: Polyhedron, build: Callable[[Polyhedron], Surface]) -> Surface:
     """`build(shape)`, read from the user's cache where an earlier run has built it."""
@@ -53,8 +56,17 @@ def _path_of(shape: Polyhedron) -> Path:
 def _read(path: Path) -> Surface | None:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-            return Surface(**arrays)
-    except (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile):  # not there, or damaged
+            content = dict(arrays)
+            own = content.pop(_NAME).item()
+            return Surface(**content) if own == path.name else None
+    except (
+        OSError,
+        ValueError,
+        EOFError,
+        TypeError,
+        KeyError,
+        zipfile.BadZipFile,
+    ):  # not there, or damaged
         return None
 
 
@@ -63,7 +75,7 @@ def _write(path: Path, surface: Surface) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         whole = Path(folder) / path.name
-        np.savez(whole, **surface._asdict())
+        np.savez(whole, **surface._asdict(), **{_NAME: np.array(path.name)})
         os.replace(whole, path)
 
 

@@ -67,6 +67,12 @@ def with_objects(path: Path) -> None:
     np.savez(path, **dict.fromkeys(Surface._fields, np.array([Path], dtype=object)))
 
 
+def with_that_of_another_shape(path: Path) -> None:
+    surface_cache.cached_surface(round_one(0.4), tree._build)
+    (other,) = {*path.parent.iterdir()} - {path}
+    os.replace(other, path)
+
+
 @pytest.mark.parametrize(
     "damage",
     [
@@ -76,6 +82,7 @@ def with_objects(path: Path) -> None:
         lambda path: path.write_bytes(path.read_bytes().replace(b"\0\0\0\1", b"\0\0\0\2")),
         lambda path: np.savez(path, vertices=np.zeros((1, 3))),
         with_objects,
+        with_that_of_another_shape,
     ],
 )
 def test_what_is_damaged_or_not_plain_numbers_is_built_again(folder, damage):

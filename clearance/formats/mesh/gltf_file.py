@@ -38,7 +38,7 @@ _DEEPEST = 100
 
 
 def read_glb(asked: MeshRequest) -> Triangles:
-    """All triangles that the file's scene places, in metres, turned from y up to z up.
+    """All triangles that the file's scene places, in metres; turned from y up to z up for `up_axis` "file".
 
     Raises:
         BadSyntax: not GLB, cut off, or something in it that is not read. EmptyMesh, BadPolygon, NotFinite.
@@ -47,11 +47,13 @@ def read_glb(asked: MeshRequest) -> Triangles:
     _refuse_extensions(document)
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
         surface = joined(_Scene(document, binary).pieces())
-        turned = surface.vertices @ Z_FROM_Y_UP.T
-    notes: tuple[str, ...] = ("turned from y up to z up, as glTF says",)
+        vertices, note = surface.vertices, "not turned from y up to z up, as in RViz and MoveIt"
+        if asked.up_axis == "file":
+            vertices, note = vertices @ Z_FROM_Y_UP.T, "turned from y up to z up, as glTF says"
+    notes: tuple[str, ...] = (note,)
     if len(document.items("scenes")) > 1:
         notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
-    return Triangles(turned, surface.corners, notes)
+    return Triangles(vertices, surface.corners, notes)
 
 
 def chunks(data: bytes) -> tuple[GltfObject, bytes]:

@@ -60,7 +60,7 @@ def read_mesh(
     Args:
         scale: factor of all axes or of each; negative mirrors, and the faces stay counter-clockwise
             from outside.
-        up_axis: what becomes of a COLLADA file's `<up_axis>`: "file" obeys it, "ros" ignores it.
+        up_axis: which way is up in COLLADA and GLB: "file" as they say, "ros" as they lie.
         tolerance: [m] how far the facets of a CAD file may be off its surface. The solid's `shortfall` says how
             far they are at most; a case takes it off the clearance, `distance` of two solids does not.
 

@@ -21,14 +21,15 @@ _ODD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dt
 
 
 UpAxis = Literal["file", "ros"]
-"""What becomes of COLLADA's `<up_axis>`: "file" turns as it says, "ros" ignores it as RViz and MoveIt do."""
+"""Which way is up in COLLADA and GLB: "file" turns as `<up_axis>` and glTF say, "ros" leaves files as they lie, as
+RViz and MoveIt do."""
 
 
 class MeshRequest(NamedTuple):
     """The content of a file, and how it is to be read.
 
     Attributes:
-        up_axis: of COLLADA. tolerance: [m] how far the facets of a CAD file may be off its surface.
+        up_axis: of COLLADA and GLB. tolerance: [m] how far the facets of a CAD file may be off its surface.
     """
 
     data: bytes

@@ -22,7 +22,7 @@ class RobotRequest:
         package_dirs: where `package://` is looked up first.
         geometry: which shapes are the robot's; "collision_or_visual" takes the visual ones of links that have no
             others.
-        collada_up_axis: "ros" leaves COLLADA files as they lie, "file" turns them as their `<up_axis>` says.
+        collada_up_axis: "ros" leaves COLLADA and GLB files as they lie, "file" turns them to z up as they say.
         xacro: the file is made into URDF by xacro first, which evaluates Python. xacro_args: its arguments.
     """
 

@@ -11,6 +11,7 @@ from clearance.formats.robot.request import RobotRequest
 from clearance.world.notice import Severity
 from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl
 from tests.formats.making_case import changed, load_small
+from tests.formats.making_glb import document_of, glb
 from tests.formats.making_urdf import joint, link, robot
 from tests.formats.mesh.test_collada_file import document
 
@@ -53,19 +54,30 @@ def load(
     return read_robot(request, MeshStore(InputFiles(folder)))
 
 
-def test_ros_leaves_a_file_as_it_lies_and_file_turns_it(tmp_path):
-    as_it_lies = load(tmp_path, bar__dae=dae(LYING)).bodies[0].shape.bounds
-    assert as_it_lies.tolist() == [LYING.min(axis=0).tolist(), LYING.max(axis=0).tolist()]
-    turned = load(tmp_path, "file", bar__dae=dae(LYING)).bodies[0].shape.bounds
-    assert turned.tolist() == [BAR.min(axis=0).tolist(), BAR.max(axis=0).tolist()]
+def made(corners: np.ndarray, file: str) -> dict[str, bytes | str]:
+    """The bar of such corners in a file of a y-up format, as `load` takes it."""
+    indices = CUBE_TRIANGLES.ravel().astype("<u2")
+    data = dae(corners)
+    if file.endswith("glb"):
+        data = glb(*document_of(corners.astype("<f4"), indices, primitive={"indices": 1}))
+    return {"collision": file, file.replace(".", "__"): data}
 
 
-def test_shapes_that_lie_together_only_the_other_way_are_suspect(tmp_path):
-    (notice,) = load(tmp_path, "ros", bar__dae=dae(LYING)).notices
+@pytest.mark.parametrize("file", ["bar.dae", "bar.glb"])
+def test_ros_leaves_a_file_as_it_lies_and_file_turns_it(tmp_path, file):
+    as_it_lies = load(tmp_path, **made(LYING, file)).bodies[0].shape.bounds
+    assert as_it_lies == pytest.approx(np.array([LYING.min(axis=0), LYING.max(axis=0)]), abs=1e-7)
+    turned = load(tmp_path, "file", **made(LYING, file)).bodies[0].shape.bounds
+    assert turned == pytest.approx(np.array([BAR.min(axis=0), BAR.max(axis=0)]), abs=1e-7)
+
+
+@pytest.mark.parametrize("file", ["bar.dae", "bar.glb"])
+def test_shapes_that_lie_together_only_the_other_way_are_suspect(tmp_path, file):
+    (notice,) = load(tmp_path, "ros", **made(LYING, file)).notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "axis")
     assert "shapes of 1 link lie apart with robot: {collada_up_axis: ros}" in notice.text
     assert notice.text.endswith("together with file: 'b'")
-    (notice,) = load(tmp_path, "file", bar__dae=dae(BAR)).notices
+    (notice,) = load(tmp_path, "file", **made(BAR, file)).notices
     assert notice.text.endswith("together with ros: 'b'")
 
 

@@ -1,8 +1,9 @@
-"""COLLADA files in a URDF that lie otherwise than all else says: a sign of which way their axis tag was meant.
+"""COLLADA and GLB files in a URDF that lie otherwise than all else says: a sign of which way is up in them.
 
-RViz and MoveIt ignore `<up_axis>`, some robots are drawn for programs that obey it, and both look right alone.
-Where a link has a visual and a collision shape, their boxes decide; if both turn together, the link's joints do,
-which are at its shape one way and away from it the other. Not for: files whose tag is `Z_UP`.
+RViz and MoveIt ignore `<up_axis>` and leave GLB as it lies. Some robots are drawn for programs that turn both, and
+both ways look right alone. Where a link has a visual and a collision shape, their boxes decide. If both turn
+together, the link's joints do, which are at its shape one way and away from it the other. Not for: files whose tag
+is `Z_UP`.
 """
 
 from __future__ import annotations
@@ -119,8 +120,9 @@ def _has_tag(link: Element, reader: ShapeReader) -> bool:
 
 
 def _is_tagged(mesh: Element, reader: ShapeReader) -> bool:
-    if not mesh.get("filename").lower().endswith(".dae"):
-        return False
+    name = mesh.get("filename").lower()
+    if not name.endswith(".dae"):
+        return name.endswith(".glb")
     path, _ = reader.mesh_file(mesh)
     return _UP.search(reader.meshes.files.read(path)) is None
 
