@@ -8,7 +8,7 @@ Source: Kwon, Lee, Lee 2001, section 3.5.
 from __future__ import annotations
 
 from clearance.sketch.graph.graph import POINT, SLIDE, TURN, ConstraintGraph
-from clearance.sketch.graph.steps import IN_BODY, PlanStep
+from clearance.sketch.graph.steps import PlanStep
 
 
 class Bodies:
@@ -48,7 +48,7 @@ class Bodies:
         for v in seeds:
             self.body_of[v] = body
         firsts = (seeds[1],) if len(seeds) == 2 else (seeds[2], seeds[1])
-        first = [PlanStep(firsts, (), IN_BODY), PlanStep((seeds[0],), (row,), IN_BODY)]
+        first = [PlanStep(firsts, ()), PlanStep((seeds[0],), (row,))]
         grown = self._grown(seeds, body)
         if grown:
             self.steps.append(first + grown)
@@ -89,7 +89,7 @@ class Bodies:
         self.body_of[v] = body
         if line >= 0:
             self.body_of[line] = body
-        return PlanStep((v,) if line < 0 else (line, v), tuple(hooks[:need]), IN_BODY)
+        return PlanStep((v,) if line < 0 else (line, v), tuple(hooks[:need]))
 
     def _hangs(self, row: int, without: tuple[int, ...], body: int) -> bool:
         """Whether all ends of the edge but some belong to the body."""

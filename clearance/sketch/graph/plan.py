@@ -29,7 +29,7 @@ from clearance.sketch.graph.graph import (
 )
 from clearance.sketch.graph.pebble import match, play
 from clearance.sketch.graph.peel import peel
-from clearance.sketch.graph.steps import IN_BODY, IN_CORE, ConstructionPlan, PlanStep
+from clearance.sketch.graph.steps import ConstructionPlan, PlanStep
 
 
 def make_plan(graph: ConstraintGraph) -> ConstructionPlan:
@@ -75,7 +75,7 @@ class _Core:
         """(steps, body of every vertex, marks of the fixed bodies) of the core."""
         steps = [step for body in self.bodies.steps for step in body]
         fixed, begun = self._initial_clusters()
-        steps += [PlanStep((self.graph.ends[row][0],), (row,), IN_BODY) for row in begun]
+        steps += [PlanStep((self.graph.ends[row][0],), (row,)) for row in begun]
         return steps + self._clusters(fixed), self.body_of, np.array(fixed, bool)
 
     def _components(self) -> Components:
@@ -187,7 +187,7 @@ class _Core:
         single = self.body_of[v] < 0
         line = len(placed) == 2 and kind[v] == TURN and kind[placed[1]] == SLIDE
         line = line and self.graph.theta_of[placed[1]] == v
-        return PlanStep(placed, rows, IN_CORE, numeric=not (single and (len(placed) == 1 or line)))
+        return PlanStep(placed, rows, numeric=not (single and (len(placed) == 1 or line)))
 
 
 def strong_parts(nodes: Sequence[int], near: Mapping[int, list[int]]) -> list[list[int]]:
