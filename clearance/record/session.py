@@ -1,15 +1,16 @@
-"""The questions that findings ask of a run beside its record. Not for: answering them (`simulate.session`)."""
+"""The questions asked of a run beside its record. Not for: answering them (`simulate.session`)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
 
 from clearance.record.budget import BudgetMoment, RuleBudget
+from clearance.record.levels import Event, Interval
 from clearance.record.moment import Moment
-from clearance.record.record import Record
+from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import NearRows, RuleAnswer
 from clearance.record.sensitivity import Sensitivity
 
@@ -65,3 +66,37 @@ class Session(Protocol):
 
     def least_left(self, budget: RuleBudget) -> Sequence[BudgetMoment]:
         """The moments at which tolerances leave least to a rule, the worst first."""
+
+    def error_sources(
+        self, budget: RuleBudget, i_moment: int = 0, most: int | None = None
+    ) -> BudgetMoment:
+        """One of these moments with what each error takes of it, and of the first `most` the greatest size."""
+
+    def pair_minima(self, most: int | None = None) -> Sequence[PairMinimum]:
+        """The least clearance of each pair at the steps, least first; the first `most` if that is given."""
+
+    def motion_minima(self, most: int | None = None) -> Sequence[PairMinimum]:
+        """The least clearance of each pair over the motion, where that is certified; else at the steps."""
+
+    @property
+    def intervals(self) -> Mapping[str, Sequence[Interval]]:
+        """For each level its first stretches, in order of time."""
+
+    @property
+    def events(self) -> Sequence[Event]:
+        """The first moments at which a level was entered or left, in order of time."""
+
+    @property
+    def not_listed(self) -> Mapping[str, int]:
+        """The number of intervals of each level and of events that these omit."""
+
+    def extent(self, level: str) -> tuple[int, int]:
+        """The number of intervals of a level, and of the steps in them."""
+
+    @property
+    def hints(self) -> tuple[str, ...]:
+        """The hints on pairs that touch all the time, and on parts that touch as they change hands."""
+
+    @property
+    def standing_bodies(self) -> frozenset[str]:
+        """The names of the measured bodies that never move."""

@@ -113,7 +113,7 @@ def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
 def _of_rules(model: ReportModel) -> Iterator[TestResult]:
     """One case for each rule where there are any: it fails by its worst moment, or if its limit is not proven."""
     record, judgement = model.record, model.judgement
-    limits, worst_of = record.case.limits, judgement.worst_of or model.details.worst
+    limits, worst_of = record.case.limits, judgement.worst_of or model.worst_of
     if not limits.rules:
         return
     for i, name in enumerate(limits.rule_names):
@@ -140,7 +140,7 @@ def _of_pairs(model: ReportModel) -> Iterator[TestResult]:
             listed.add((finding.body_a, finding.body_b, finding.rule))
             yield _of_finding(finding)
     judge = PairJudge.of(model.record)
-    for minimum in model.details.minima:
+    for minimum in model.session.motion_minima():
         if (minimum.link, minimum.obstacle, minimum.rule) not in listed:
             yield _of_minimum(model.record, judge, minimum)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 from clearance.findings.comparison import Comparison
 from clearance.findings.finding import Finding
@@ -18,50 +18,18 @@ from clearance.findings.judgement import Judgement, judgement_of
 from clearance.findings.of_budget import of_budget
 from clearance.findings.of_record import findings_of
 from clearance.findings.verdict import Verdict, verdict_of
-from clearance.record.budget import BudgetMoment, RuleBudget
-from clearance.record.details import RunDetails
-from clearance.record.levels import Interval
-from clearance.record.record import PairMinimum, Record
+from clearance.record.budget import BudgetMoment
+from clearance.record.moment import Moment
+from clearance.record.record import Record
 from clearance.record.sensitivity import Sensitivity
 from clearance.record.session import Session
-
-
-class ReportSession(Session, Protocol):
-    """What a report asks beside a record, and findings do not."""
-
-    @property
-    def details(self) -> RunDetails:
-        """All that the summary shows beside the record."""
-
-    @property
-    def intervals(self) -> Mapping[str, Sequence[Interval]]:
-        """The times below each level."""
-
-    @property
-    def hints(self) -> tuple[str, ...]:
-        """On pairs that touch all the time."""
-
-    @property
-    def standing_bodies(self) -> frozenset[str]:
-        """The names of measured bodies that never move."""
-
-    def motion_minima(self, most: int | None = None) -> Sequence[PairMinimum]:
-        """The least clearance of each pair, least first; of the first `most`."""
-
-    def extent(self, level: str) -> tuple[int, int]:
-        """The number of intervals below a level, and of steps in them."""
-
-    def error_sources(
-        self, budget: RuleBudget, i_moment: int = 0, most: int | None = None
-    ) -> BudgetMoment:
-        """A moment at which tolerances leave least, with what each error takes; the greatest size of `most`."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReportModel:
     """A run, to be told."""
 
-    session: ReportSession
+    session: Session
 
     @property
     def record(self) -> Record:
@@ -109,9 +77,18 @@ class ReportModel:
         return finding_list_of(self.session, self.findings, self.judgement)
 
     @cached_property
-    def details(self) -> RunDetails:
-        """All that the summary shows beside the record."""
-        return self.session.details
+    def worst_of(self) -> dict[str, Moment | None]:
+        """By rule, the most critical moment of what it judges, in contact the deepest."""
+        return {rule.name: self.session.worst_among([rule]) for rule in self.record.rules}
+
+    @cached_property
+    def least_left(self) -> dict[str, list[BudgetMoment]]:
+        """By rule, the moments at which tolerances leave least, with what each error takes."""
+        session = self.session
+        return {
+            one.rule: [session.error_sources(one, i) for i in range(len(session.least_left(one)))]
+            for one in self.record.budget or ()
+        }
 
 
 @dataclass(frozen=True, eq=False)

@@ -80,7 +80,7 @@ def _entries(model: ReportModel) -> list[_Entry]:
             one = _of_moment(record, rule.worst)
             found.setdefault(one.is_of, one)
     judge = PairJudge.of(record)
-    for minimum in model.details.minima:
+    for minimum in model.session.motion_minima():
         one = _of_pair(record, minimum, judge.status_of(minimum))
         found.setdefault(one.is_of, one)
     limits = {rule.name: rule.limits.fail for rule in record.rules}

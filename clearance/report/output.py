@@ -71,7 +71,7 @@ def page_text(
     """
     findings = model.finding_list.findings
     content = PageContent(summary_of(model), model.verdict, drawn.pictures, findings, comparison)
-    curves = pair_curves(model.record, model.details.minima, measured)
+    curves = pair_curves(model.record, model.session.motion_minima(), measured)
     more = PageCurves(curves, [*more_curves(model.record)])
     return page_of(content, drawn.replay, more, drawn.earlier)
 
@@ -113,7 +113,7 @@ def write(
             write_parquet(pair_batches(record, measured), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         if record.budget is not None:
-            write_csv(lambda: [budget_table(record, model.details.least_remaining)], place / BUDGET)
+            write_csv(lambda: [budget_table(record, model.least_left)], place / BUDGET)
         drawn.replay.save(place / FILE_NAME)
         for name, text in texts.items():
             (place / name).write_text(text, encoding="utf-8")

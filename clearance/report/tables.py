@@ -129,7 +129,7 @@ BUDGET_COLUMNS = {
 
 
 def budget_table(record: Record, worst_of: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
-    """The table of a record with tolerances; `worst_of` as in `RunDetails`."""
+    """The table of a record with tolerances; `worst_of` as in `ReportModel.least_left`."""
     rows = [
         row
         for one in record.budget or ()

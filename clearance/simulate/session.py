@@ -5,14 +5,12 @@ Whoever makes a record has its session with it, and gives it to those who ask.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 
 from clearance.record.budget import BudgetMoment, RuleBudget
-from clearance.record.details import RunDetails
 from clearance.record.levels import Event, Interval
 from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum
@@ -167,25 +165,3 @@ class MeasuringSession(MeasuredRun):
     ) -> BudgetMoment:
         """One of these moments with what each error takes of it, and of the first `most` the greatest size."""
         return self.least_left(budget)[i_moment]
-
-    @cached_property
-    def details(self) -> RunDetails:
-        """All that a report shows with the record."""
-        worst = {rule.name: self.worst_among([rule]) for rule in self.record.rules}
-        budgets = self.record.budget or ()
-        return RunDetails(
-            minima=self.motion_minima(),
-            n_pairs=Counter(pair.rule for pair in self.pair_minima()),
-            worst={name: moment for name, moment in worst.items() if moment is not None},
-            intervals=self.intervals,
-            events=self.events,
-            not_listed=self.not_listed,
-            hints=self.hints,
-            standing=self.standing_bodies,
-            least_remaining={
-                one.rule: tuple(
-                    self.error_sources(one, i) for i in range(len(self.least_left(one)))
-                )
-                for one in budgets
-            },
-        )

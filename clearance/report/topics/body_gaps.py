@@ -37,9 +37,11 @@ MOST_LINES, MOST_ROWS = 4, 200
 
 def data(model: ReportModel) -> dict[str, Any]:
     """The gaps, where they are asked for."""
-    if not model.record.body_gaps:
-        return {}
-    return {"body_gaps": body_gaps_of(model.details.minima, model.details.standing)}
+    return {"body_gaps": _found(model)} if model.record.body_gaps else {}
+
+
+def _found(model: ReportModel) -> list[dict[str, Any]]:
+    return body_gaps_of(model.session.motion_minima(), model.session.standing_bodies)
 
 
 def body_gaps_of(minima: Sequence[PairMinimum], standing: frozenset[str]) -> list[dict[str, Any]]:
@@ -64,8 +66,7 @@ def body_gaps_of(minima: Sequence[PairMinimum], standing: frozenset[str]) -> lis
 def lines(model: ReportModel) -> Iterator[Line]:
     """The narrowest of them, and where the widths are from."""
     if model.record.body_gaps:
-        found = body_gaps_of(model.session.motion_minima(), model.session.standing_bodies)
-        yield from labelled("body gaps", gap_lines(found))
+        yield from labelled("body gaps", gap_lines(_found(model)))
 
 
 def gap_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:

@@ -49,7 +49,7 @@ def data(model: ReportModel) -> dict[str, Any]:
         "cross_check": None if check is None else asdict(check) | {"agrees": check.agrees},
         "tracking_error": _tracking_error(record),
         "tessellation_bound": tessellation_bound(record),
-        "notes": notes_of(record, model.details.hints),
+        "notes": notes_of(record, model.session.hints),
     }
 
 

@@ -21,14 +21,14 @@ LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below
 
 def data(model: ReportModel) -> dict[str, Any]:
     """Steps of each status, intervals and events."""
-    details = model.details
+    session = model.session
     return {
         "status_counts": status_counts(model.record),
         "intervals": {
-            level: [asdict(one) for one in found] for level, found in details.intervals.items()
+            level: [asdict(one) for one in found] for level, found in session.intervals.items()
         },
-        "events": [asdict(event) for event in details.events],
-        "not_listed": details.not_listed,
+        "events": [asdict(event) for event in session.events],
+        "not_listed": session.not_listed,
     }
 
 

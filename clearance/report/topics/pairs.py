@@ -75,11 +75,11 @@ class PairJudge:
 
 def data(model: ReportModel) -> dict[str, Any]:
     """The least clearance of each pair by each rule that judges it, with its status; pairs left out."""
-    record = model.record
+    record, minima = model.record, model.session.motion_minima()
     judge = PairJudge.of(record)
     return {
         "sides": list(record.sides[:2]),
-        "pairs": [asdict(one) | {"status": judge.status_of(one)} for one in model.details.minima],
+        "pairs": [asdict(one) | {"status": judge.status_of(one)} for one in minima],
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
         "self_clearance": self_clearance_of(record),
     }

@@ -6,6 +6,7 @@ Not for: judging (`simulate.answers.run_answer`).
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -32,9 +33,10 @@ def data(model: ReportModel) -> dict[str, Any]:
     """The limits, and all rules of the case in its order, the limits by themselves first."""
     limits = model.record.case.limits
     answers = {answer.name: answer for answer in model.record.rules}
+    n_pairs = Counter(pair.rule for pair in model.session.pair_minima())
     own: list[Rule | None] = [None, *limits.rules]
     rules = [
-        _rule_row(model, i, name, rule, answers.get(name))
+        _rule_row(model, i, rule, answers.get(name)) | {"name": name, "n_pairs": n_pairs.get(name)}
         for i, (name, rule) in enumerate(zip(limits.rule_names, own, strict=True))
     ]
     return {
@@ -44,15 +46,15 @@ def data(model: ReportModel) -> dict[str, Any]:
 
 
 def _rule_row(
-    model: ReportModel, i: int, name: str, rule: Rule | None, answer: RuleAnswer | None
+    model: ReportModel, i: int, rule: Rule | None, answer: RuleAnswer | None
 ) -> dict[str, Any]:
     """A rule; one that judges no pair has no status."""
-    record, details = model.record, model.details
-    limits, worst = record.case.limits.of_rule(i), details.worst.get(name)
+    record = model.record
+    limits = record.case.limits.of_rule(i)
+    worst = None if answer is None else model.worst_of[answer.name]
     window = (-math.inf, math.inf) if rule is None else (rule.window.start, rule.window.end)
     sample = None if answer is None else answer.worst_sample
     return {
-        "name": name,
         "between": None if rule is None else list(rule.between),
         "from": _finite(window[0]),
         "until": _finite(window[1]),
@@ -60,7 +62,6 @@ def _rule_row(
         "fail": limits.fail,
         "warn": limits.warn,
         "status": None if answer is None else answer.status,
-        "n_pairs": details.n_pairs.get(name),
         "lower_bound": _proven(answer),
         "worst": None if worst is None else moment_row(record, worst),
         "worst_sample": None if sample is None else moment_row(record, sample),
@@ -93,7 +94,7 @@ def _standing(model: ReportModel, answer: RuleAnswer | None) -> str:
         return "judges nothing"
     if answer.worst is None:
         return f"{answer.status}, nothing nearer was asked for"
-    worst = model.session.worst_among([answer]) or answer.worst
+    worst = model.worst_of[answer.name] or answer.worst
     near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
     return f"{answer.status}, {near}, {worst.link} - {worst.obstacle} at {moment_text(model.record, worst)}"
 

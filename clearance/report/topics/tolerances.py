@@ -149,14 +149,15 @@ def data(model: ReportModel) -> dict[str, Any]:
     record, budget = model.record, model.record.case.tolerance
     if budget is None:
         return {}
-    worst_of = model.details.least_remaining
     row = {
         "coverage": budget.coverage,
         "distributions": "normal" if budget.is_normal else "uniform",
         "unproven_ok": budget.unproven_ok,
         "sources": list(budget.sources),
         "lines": list(tolerance_lines(record)),
-        "rules": [_rule_row(record, one, worst_of[one.rule]) for one in record.budget or ()],
+        "rules": [
+            _rule_row(record, one, model.least_left[one.rule]) for one in record.budget or ()
+        ],
         "verdict": model.verdict.tolerances,
     }
     return {"tolerances": row}
