@@ -11,10 +11,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from clearance.formats.message.times import split_time
 from clearance.record.moment import Moment
@@ -34,27 +31,6 @@ ROBOT_LINK, WORLD_OBJECT, ROBOT_ATTACHED = "ROBOT_LINK", "WORLD_OBJECT", "ROBOT_
 """Kinds of bodies, as `moveit_msgs/ContactInformation` names them."""
 
 
-@dataclass(frozen=True)
-class _Entry:
-    """A pair at a moment."""
-
-    rule: str
-    status: str
-    clearance: float
-    bodies: tuple[str, str]
-    points: tuple[tuple[float, float, float], tuple[float, float, float]]
-    time: float
-    time_b: float | None
-    step: int
-    between: bool
-    positions: tuple[np.ndarray, ...]
-
-    @property
-    def is_of(self) -> tuple[str, str, str]:
-        """What there is one entry of."""
-        return self.rule, *self.bodies
-
-
 def moments_of(model: ReportModel) -> dict[str, Any]:
     """The file's content."""
     record = model.record
@@ -66,85 +42,71 @@ def moments_of(model: ReportModel) -> dict[str, Any]:
         "need": record.need,
         "header": {"frame_id": "world"},
         "n_left_out": max(0, len(entries) - MOST),
-        "moments": [_moment_row(record, names, entry) for entry in entries[:MOST]],
+        "moments": [_moment_row(record, names, *entry) for entry in entries[:MOST]],
     }
 
 
-def _entries(model: ReportModel) -> list[_Entry]:
-    """The overall worst of what decides, then all that is not clear, the worst first."""
-    record = model.record
-    worst = _of_moment(record, model.verdict.worst)
-    found = {worst.is_of: worst}
-    for rule in record.rules:
-        if rule.worst is not None:
-            one = _of_moment(record, rule.worst)
-            found.setdefault(one.is_of, one)
-    judge = PairJudge.of(record)
+def _entries(model: ReportModel) -> list[tuple[Moment, str]]:
+    """The overall worst of what decides, then all that is not clear, the worst first; each with its status."""
+    record, judge = model.record, PairJudge.of(model.record)
+    worst = model.verdict.worst
+    found: dict[tuple[str, str, str], tuple[Moment, str]] = {}
+    for moment in (worst, *(rule.worst for rule in record.rules)):
+        if moment is not None:
+            found.setdefault(_key(moment), (moment, record.status_of(moment)))
     for minimum in model.session.motion_minima():
-        one = _of_pair(record, minimum, judge.status_of(minimum))
-        found.setdefault(one.is_of, one)
+        moment = _of_pair(record, minimum)
+        found.setdefault(_key(moment), (moment, judge.status_of(minimum)))
     limits = {rule.name: rule.limits.fail for rule in record.rules}
-    rest = [one for one in found.values() if one is not worst and one.status != Status.CLEAR]
-    return [
-        worst,
-        *sorted(rest, key=lambda one: (_rank(one), one.clearance - limits[one.rule], one.is_of)),
-    ]
+
+    def standing(entry: tuple[Moment, str]) -> tuple[int, float, tuple[str, str, str]]:
+        moment, status = entry
+        above = moment.clearance - limits[moment.rule]
+        return -STATUSES.index(Status(status)), above, _key(moment)
+
+    first = found.pop(_key(worst))
+    rest = [entry for entry in found.values() if entry[1] != Status.CLEAR]
+    return [first, *sorted(rest, key=standing)]
 
 
-def _rank(entry: _Entry) -> int:
-    return -STATUSES.index(Status(entry.status))
+def _key(moment: Moment) -> tuple[str, str, str]:
+    """What there is one entry of."""
+    return moment.rule, moment.link, moment.obstacle
 
 
-def _of_moment(record: Record, moment: Moment) -> _Entry:
-    return _Entry(
-        moment.rule,
-        record.status_of(moment),
-        moment.clearance,
-        (moment.link, moment.obstacle),
-        (moment.point_link, moment.point_obstacle),
-        moment.time,
-        moment.time_b,
-        moment.step,
-        moment.between,
-        moment.positions,
+def _of_pair(record: Record, minimum: PairMinimum) -> Moment:
+    positions = tuple(motion.positions_at(minimum.time) for motion in record.motions)
+    names = (
+        "step",
+        "time",
+        "between",
+        "clearance",
+        "link",
+        "obstacle",
+        "point_link",
+        "point_obstacle",
     )
+    given = {name: getattr(minimum, name) for name in names}
+    return Moment(**given, positions=positions, rule=minimum.rule)
 
 
-def _of_pair(record: Record, minimum: PairMinimum, status: str) -> _Entry:
-    return _Entry(
-        minimum.rule,
-        status,
-        minimum.clearance,
-        (minimum.link, minimum.obstacle),
-        (minimum.point_link, minimum.point_obstacle),
-        minimum.time,
-        None,
-        minimum.step,
-        minimum.between,
-        tuple(motion.positions_at(minimum.time) for motion in record.motions),
-    )
-
-
-def _moment_row(record: Record, names: _Names, entry: _Entry) -> dict[str, Any]:
-    paddings = paddings_of(record)
-    padding = sum(paddings.get(name, 0.0) for name in entry.bodies)
-    row: dict[str, Any] = {
-        "rule": entry.rule,
-        "status": entry.status,
-        "clearance": entry.clearance,
-        **(
-            {"padding": padding, "distance": max(0.0, entry.clearance + padding)} if padding else {}
-        ),
-        "time_from_start": time_of(entry.time),
-        "step": entry.step,
-        "between": entry.between,
-        "bodies": [names.keys_of(name, entry.time) for name in entry.bodies],
-        "nearest_points": [_vector(point) for point in entry.points],
-        **_overlap(record, entry),
-        "robot_states": [*_states(record, names, entry)],
+def _moment_row(record: Record, names: _Names, moment: Moment, status: str) -> dict[str, Any]:
+    bodies, paddings = (moment.link, moment.obstacle), paddings_of(record)
+    padding = sum(paddings.get(name, 0.0) for name in bodies)
+    row: dict[str, Any] = {"rule": moment.rule, "status": status, "clearance": moment.clearance}
+    if padding:
+        row |= {"padding": padding, "distance": max(0.0, moment.clearance + padding)}
+    row |= {
+        "time_from_start": time_of(moment.time),
+        "step": moment.step,
+        "between": moment.between,
+        "bodies": [names.keys_of(name, moment.time) for name in bodies],
+        "nearest_points": [_vector(moment.point_link), _vector(moment.point_obstacle)],
+        **_overlap(record, moment),
+        "robot_states": [*_states(record, names, moment)],
     }
-    if entry.time_b is not None:
-        row["time_from_start_of_second"] = time_of(entry.time_b)
+    if moment.time_b is not None:
+        row["time_from_start_of_second"] = time_of(moment.time_b)
     return row
 
 
@@ -195,20 +157,21 @@ class _Names:
         return self._on.get(name, "")
 
 
-def _overlap(record: Record, entry: _Entry) -> dict[str, Any]:
+def _overlap(record: Record, moment: Moment) -> dict[str, Any]:
     """Penetration depth of two bodies, where it is computed, and the separation vector of the first."""
+    asked = (moment.step, moment.link, moment.obstacle)
     for row in record.worked_out:
         found, pair = row.known, (row.step, row.link, row.obstacle)
-        if found is not None and pair == (entry.step, *entry.bodies) and not entry.between:
+        if found is not None and pair == asked and not moment.between:
             vector = found.penetration * found.direction
             return {"depth": found.penetration, "separation_vector": _vector(vector)}
     return {}
 
 
-def _states(record: Record, names: _Names, entry: _Entry) -> Iterator[dict[str, Any]]:
+def _states(record: Record, names: _Names, moment: Moment) -> Iterator[dict[str, Any]]:
     """The state of each robot, as `moveit_msgs/RobotState` has it; of the joints that do not follow others."""
-    attached = [*names.attached(entry.time)]
-    for motion, positions in zip(record.motions, entry.positions, strict=True):
+    attached = [*names.attached(moment.time)]
+    for motion, positions in zip(record.motions, moment.positions, strict=True):
         robot = motion.placed.robot.name
         parts = [
             {"link_name": one["link_name"], "object": {"id": one["id"]}}
