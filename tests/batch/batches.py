@@ -55,7 +55,7 @@ class JointsOnPath:
         self.todo: list[str] = []
         self.measured: list[str] = []
 
-    def begin(self, items, n_cached) -> None:
+    def begin(self, items) -> None:
         self.names = {item.number: item.name for item in items}
         self.todo = list(self.names.values())
 

@@ -1,11 +1,13 @@
 """How far a batch is, on a pipe: a line now and then, which names the worst, of contacts the deepest."""
 
+from clearance.batch.item import Item
 from clearance.batch.measuring import Fault, ItemResult
-from clearance.cli.batch_run import PipeWatch, shown_progress
+from clearance.batch.run import BatchWatch
+from clearance.cli.batch_run import shown_progress
 from clearance.progress import never_silent
 from tests.counted_end import CountedEnd
 
-NAMES = ["a", "b", "c", "d"]
+ITEMS = [Item(i, name, f"{name}.yaml", None, None) for i, name in enumerate("abcd")]
 
 
 def result(number, status, exit_code, clearance, penetration=None):
@@ -14,8 +16,8 @@ def result(number, status, exit_code, clearance, penetration=None):
 
 
 def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
-    watch = PipeWatch(NAMES.__getitem__)
-    watch.begin(NAMES, 3)
+    watch = BatchWatch()
+    watch.begin(ITEMS)
     assert watch.line == "0 of 4 cases measured"
     watch.note([result(0, "clear", 0, 0.4)], [])
     assert watch.line.endswith("0 failed, worst clear 400.0 mm, a")
@@ -27,8 +29,8 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
 
 def test_on_a_pipe_lines_come_until_it_is_done(capsys):
     end = CountedEnd(2)
-    with never_silent(lambda: "batch", end), shown_progress(False, NAMES.__getitem__) as watch:
-        watch.begin(NAMES, 0)
+    with never_silent(lambda: "batch", end), shown_progress(False) as watch:
+        watch.begin(ITEMS)
         end.pass_all()
     assert capsys.readouterr().err.splitlines() == [
         "0 of 4 cases measured, 10 s so far",
