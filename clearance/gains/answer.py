@@ -39,8 +39,8 @@ from clearance.gains.obstruction import (
     unproven,
     worst_pair,
 )
-from clearance.gains.offsets import JointOffsets, joint_offsets
-from clearance.gains.paths_together import PathsTogether
+from clearance.gains.offsets import joint_offsets
+from clearance.gains.path_change import PathChange
 from clearance.gains.programme import Box
 from clearance.gains.request import Request
 from clearance.gains.result import Gain
@@ -174,7 +174,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
         found = _least_of_several(search, way, first, at_least)
     x = found.state.x
     who = before.robot.name
-    result = _gain(case, request, found, shift.change_of(x), way, at_least, who, blocked)
+    result = _gain(case, request, found, way.change_of(x), way, at_least, who, blocked)
     after = found.state.case.robots[i_robot]
     return replace(
         result,
@@ -183,15 +183,13 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     )
 
 
-def _shift_obstruction(first: State, way: Shift | ToolPathKept) -> Obstruction | None:
+def _shift_obstruction(first: State, way: Shift) -> Obstruction | None:
     """What no change of place mends; None where that is not known: a large one may part what a small does not."""
     blocked = blocked_by(first, way.gradient, way.transfers)
     return blocked if blocked is not None and blocked.why in HOPELESS else None
 
 
-def _least_of_several(
-    search: Search, shift: Shift | ToolPathKept, first: State, at_least: float
-) -> SearchResult:
+def _least_of_several(search: Search, shift: Shift, first: State, at_least: float) -> SearchResult:
     """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     for far in FARTHER:
@@ -203,9 +201,7 @@ def _least_of_several(
     return best
 
 
-def _best_from_sides(
-    search: Search, shift: Shift | ToolPathKept, best: SearchResult, far: float
-) -> SearchResult:
+def _best_from_sides(search: Search, shift: Shift, best: SearchResult, far: float) -> SearchResult:
     """The best, or a better one of searches from `far` [m] along each axis, either way.
 
     The one that misses least comes first, those in contact last; once a change is known, these are left out.
@@ -220,7 +216,7 @@ def _best_from_sides(
     return best
 
 
-def _starts(far: float, shift: Shift | ToolPathKept) -> Iterator[np.ndarray]:
+def _starts(far: float, shift: Shift) -> Iterator[np.ndarray]:
     """(m,) variables `far` [m] along each axis, either way, as far as they may be."""
     axes = np.eye(len(shift.box.low))
     for side in (*axes, *-axes):
@@ -246,7 +242,8 @@ def _by_path(case: Case, request: Request) -> Gain:
         if found.kept or blocked:
             break
     who = ", ".join(case.robots[i].robot.name for i in changed)
-    change = offsets.offsets(found.state.x)
+    changes = offsets.offsets(found.state.x)
+    change = changes if len(changes) > 1 else changes[0]
     result = _gain(case, request, found, change, offsets, at_least, who, blocked)
     moves = () if offsets.tool_poses is None else tuple(offsets.tool_poses.moves(found.state.x))
     names = tuple(
@@ -255,20 +252,16 @@ def _by_path(case: Case, request: Request) -> Gain:
     return replace(result, joint_names=names, tool_moves=moves)
 
 
-def _path_obstruction(
-    first: State, offsets: JointOffsets | PathsTogether, request: Request
-) -> Obstruction | None:
+def _path_obstruction(first: State, offsets: PathChange, request: Request) -> Obstruction | None:
     """What no change of the path mends; None where that is not known."""
     blocked = blocked_by(first, offsets.gradient, offsets.transfers)
     if blocked is not None:
         blocked = _kept_still(blocked, first, offsets, request)
         return blocked if blocked.why in HOPELESS else None
-    return tool_obstruction(first, offsets) if isinstance(offsets, JointOffsets) else None
+    return tool_obstruction(first, offsets.parts[0])
 
 
-def _least_path(
-    search: Search, offsets: JointOffsets | PathsTogether, first: State
-) -> SearchResult:
+def _least_path(search: Search, offsets: PathChange, first: State) -> SearchResult:
     """The least of a search from a path as it is, and, where that ends at a pair that no small step parts, from
     beside it, on the coarsest splines."""
     found = search.from_state(first)
@@ -277,9 +270,7 @@ def _least_path(
     return found if flat is None else from_detours(search, offsets, flat) or found
 
 
-def _offsets(
-    case: Case, changed: Sequence[int], n_intervals: int, request: Request
-) -> JointOffsets | PathsTogether:
+def _offsets(case: Case, changed: Sequence[int], n_intervals: int, request: Request) -> PathChange:
     """What may be changed of one robot's path, or of several at once."""
     parts = [
         joint_offsets(
@@ -287,11 +278,11 @@ def _offsets(
         )
         for i in changed
     ]
-    return parts[0] if len(parts) == 1 else PathsTogether(tuple(parts))
+    return PathChange(tuple(parts))
 
 
 def _kept_still(
-    blocked: Obstruction, first: State, offsets: JointOffsets | PathsTogether, request: Request
+    blocked: Obstruction, first: State, offsets: PathChange, request: Request
 ) -> Obstruction:
     """The same, for the reason that all that moves the pair is to stay as it is then, if that is so."""
     approach = approach_of(blocked, first)
@@ -330,7 +321,7 @@ def _gain(
 def _binding(found: SearchResult, way: Change, blocked: Obstruction) -> tuple[str, ...]:
     """What the best that was reached is up against."""
     x, robots = found.state.x, found.state.case.robots
-    if isinstance(way, JointOffsets | PathsTogether):
+    if isinstance(way, PathChange):
         binding = bound_by(found.state, blocked, [robots[part.i_robot] for part in way.parts])
         return (
             binding

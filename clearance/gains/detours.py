@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.gains.offsets import JointOffsets
-from clearance.gains.paths_together import PathsTogether
+from clearance.gains.path_change import PathChange
 from clearance.gains.search import FINE, Search, SearchResult
 from clearance.gains.shortfalls import State
 from clearance.simulate.answers.approaches import Approach
@@ -31,8 +31,6 @@ WIDE = 0.25
 MOST_STARTS = 4
 """That are gone on from."""
 
-Offsets = JointOffsets | PathsTogether
-
 
 class FlatMoment(NamedTuple):
     """A pair that falls short where no small step of the path changes its clearance.
@@ -45,7 +43,7 @@ class FlatMoment(NamedTuple):
     time: float
 
 
-def flat_moment(state: State, offsets: Offsets) -> FlatMoment | None:
+def flat_moment(state: State, offsets: PathChange) -> FlatMoment | None:
     """The one that falls short by most; None without one."""
     found: FlatMoment | None = None
     worst = FINE
@@ -64,7 +62,7 @@ def flat_moment(state: State, offsets: Offsets) -> FlatMoment | None:
     return found
 
 
-def from_detours(search: Search, offsets: Offsets, flat: FlatMoment) -> SearchResult | None:
+def from_detours(search: Search, offsets: PathChange, flat: FlatMoment) -> SearchResult | None:
     """The least that searches from beside a path come to and prove; None where none does."""
     states = [search.state_at(start) for start in _starts(offsets, flat)]
     best: SearchResult | None = None
@@ -85,7 +83,7 @@ def _rank(state: State) -> tuple[bool, float]:
     return state.touches, state.record.rule(worst.rule).limits.fail - worst.clearance
 
 
-def _starts(offsets: Offsets, flat: FlatMoment) -> Iterator[np.ndarray]:
+def _starts(offsets: PathChange, flat: FlatMoment) -> Iterator[np.ndarray]:
     """(m,) variables, all within the limits of joints."""
     before, size = 0, len(offsets.first_reach)
     for part in offsets.parts:
@@ -111,7 +109,7 @@ def _shapes(part: JointOffsets, time: float) -> list[np.ndarray]:
     return [np.maximum(0.0, 1.0 - off / (1.0 + WIDE * part.n_splines)), np.ones(part.n_splines)]
 
 
-def _share_within_limits(offsets: Offsets, x: np.ndarray) -> float:
+def _share_within_limits(offsets: PathChange, x: np.ndarray) -> float:
     """[-] The share of a change up to 1 that keeps all limits of joints."""
     grown, most = offsets.inequalities.a @ x, offsets.inequalities.b
     some = grown > most

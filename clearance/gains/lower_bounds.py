@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.gains.offsets import JointOffsets
-from clearance.gains.paths_together import PathsTogether
+from clearance.gains.path_change import PathChange
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import State
 from clearance.gains.tool_path import ToolPathKept
@@ -46,11 +46,10 @@ def _least_of(shift: Shift, near: Sequence[Approach], margin: float) -> float:
 
 def least_base(way: ToolPathKept, state: State, margin: float) -> float:
     """[m] The same of a base whose tool path is kept: of pairs that no joint of the path moves."""
-    own = [one for one in state.near if way.is_of_base(one)]
-    return _least_of(way.shift, own, margin)
+    return _least_of(way, [one for one in state.near if way.is_of_base(one)], margin)
 
 
-def least_offset(offsets: JointOffsets | PathsTogether, state: State, margin: float) -> float:
+def least_offset(offsets: PathChange, state: State, margin: float) -> float:
     """[rad] In no smaller change the rules hold by a margin, however the joints move together."""
     least = 0.0
     for approach in state.near:

@@ -1,8 +1,7 @@
 """A change of path: smooth offsets of a robot's joints over its table, and the limits that they keep.
 
-A change is as large as the greatest offset of any joint at any sample, on cubics of what encloses them between
-samples too, slides counted by `SLIDE`. Of those
-that are as large the least in sum is taken. Not for: by how much (`search`).
+They are as large as the greatest offset of any joint at any sample, on cubics of what encloses them between
+samples too, slides counted by `SLIDE`. Not for: what is sought (`path_change`).
 """
 
 from __future__ import annotations
@@ -18,8 +17,7 @@ from clearance.gains.basis import Basis
 from clearance.gains.between_samples import values_between
 from clearance.gains.grasp import Grasps
 from clearance.gains.joint_rows import joint_rows
-from clearance.gains.programme import Box, Inequalities, reachable, within_reach
-from clearance.gains.shortfalls import Rows
+from clearance.gains.programme import Inequalities
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.point_motion import has_joint_between, motion_of_frame
@@ -44,9 +42,6 @@ ARM = 0.5
 PER_INTERVAL = 6
 """Samples of each interval of the splines at which the greatest offset is sought."""
 
-EVENLY = 0.01
-"""[-] What the sum of all offsets weighs beside the greatest."""
-
 
 @dataclass(frozen=True, eq=False)
 class JointOffsets:
@@ -62,8 +57,6 @@ class JointOffsets:
     basis: Basis
     tool_keeps: tuple[ToolKeep, ...] = ()
     tool: str | None = None
-    price: float = 100.0
-    bends: bool = True
     weights: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -91,11 +84,6 @@ class JointOffsets:
     def n_splines(self) -> int:
         """Of each joint."""
         return len(self.basis.free)
-
-    @cached_property
-    def box(self) -> Box:
-        size = self.n_joints * self.n_splines
-        return Box(np.full(size, -np.inf), np.full(size, np.inf))
 
     @cached_property
     def first_reach(self) -> np.ndarray:
@@ -127,16 +115,6 @@ class JointOffsets:
     def offsets(self, x: np.ndarray) -> np.ndarray:
         """(n, k) [rad or m] of the samples of the table."""
         return np.asarray(self._samples @ x.reshape(self.n_joints, -1).T)
-
-    @property
-    def parts(self) -> tuple[JointOffsets, ...]:
-        """Itself: those of one robot."""
-        return (self,)
-
-    def case_of(self, x: np.ndarray) -> Case:
-        robots = list(self.case.robots)
-        robots[self.i_robot] = self.placed_of(x)
-        return replace(self.case, robots=tuple(robots))
 
     def placed_of(self, x: np.ndarray) -> PlacedRobot:
         """The robot with the path that is changed."""
@@ -198,9 +176,6 @@ class JointOffsets:
         offsets = self._sized @ x.reshape(self.n_joints, -1).T
         return float((np.abs(offsets) * self.weights).max(initial=0.0))
 
-    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
-        return None if self.tool_poses is None else self.tool_poses.rows(x, beyond)
-
     @cached_property
     def tool_poses(self) -> ToolPoses | None:
         """What is kept of the tool's poses; None for nothing."""
@@ -216,9 +191,6 @@ class JointOffsets:
     def swing(self, reach: np.ndarray) -> float:
         farthest = reach.reshape(self.n_joints, -1).max(axis=1, initial=0.0)
         return ARM * float((farthest * self.weights).max())
-
-    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
-        return least_greatest(rows, x, box, self.sized, self.weight_of_each, self.inequalities)
 
     @property
     def sized(self) -> Any:
@@ -236,40 +208,6 @@ class JointOffsets:
     def inequalities(self) -> Inequalities:
         """The limits of joints, of their speeds and of their accelerations, at the samples and between."""
         return joint_rows(self.placed, self.basis)
-
-
-def least_greatest(
-    rows: Rows, x: np.ndarray, box: Box, sized: Any, weights: np.ndarray, inequalities: Inequalities
-) -> np.ndarray | None:
-    """(m,) the variables of least greatest offset that keep all rows, linear about x; None if none do.
-
-    Args:
-        sized: (r, m) sparse: what offsets are at samples. weights: (m,) of each variable.
-        inequalities: kept beside the rows.
-    """
-    from scipy.optimize import linprog
-    from scipy.sparse import block_array, csr_array, eye_array
-
-    size, rows, inequalities = len(x), reachable(rows, x, box), within_reach(inequalities, *box)
-    wanted = rows.missing + rows.gradients @ x
-    ones, unit = csr_array(np.ones((sized.shape[0], 1))), eye_array(size)
-    a = block_array(
-        [
-            [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
-            [sized, None, -ones],
-            [-sized, None, -ones],
-            [unit, -unit, None],
-            [-unit, -unit, None],
-            [inequalities.a, None, None],
-        ],
-        format="csr",
-    )
-    flat = np.zeros(2 * sized.shape[0] + 2 * size)
-    cost = np.concatenate([np.zeros(size), EVENLY / size * weights, [1.0]])
-    bounds = [*zip(box.low, box.high, strict=True), *([(0.0, None)] * (size + 1))]
-    b = np.concatenate([-wanted, flat, inequalities.b])
-    found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
-    return None if found.x is None else np.asarray(found.x[:size])
 
 
 def joint_offsets(

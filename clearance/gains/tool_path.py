@@ -7,7 +7,7 @@ for: how far the tool is off between samples (`tool_path_error`), limits of join
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,6 @@ import numpy as np
 from clearance.errors import BadChange
 from clearance.gains.between_samples import values_between
 from clearance.gains.offsets import columns_of, require_path
-from clearance.gains.programme import Box
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import Rows
 from clearance.gains.tool_limits import limit_rows
@@ -23,7 +22,6 @@ from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
 from clearance.programs.inverse import MOST_FROM_AFAR, joints_at, least_motion
 from clearance.simulate.answers.approaches import Approach
-from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex, Pair
@@ -59,52 +57,29 @@ class FollowedPath:
 
 
 @dataclass(frozen=True, eq=False)
-class ToolPathKept:
+class ToolPathKept(Shift):
     """A shift of a base, and a turn, in which the tool goes the same way through the world.
 
     Attributes:
-        shift: of the base alone. tool: what is kept.
+        tool: what is kept.
     """
 
-    shift: Shift
-    i_robot: int
-    tool: Tool
-    price: float = 30.0
-    inequalities: None = None
-    bends: bool = False
-    _known: dict[bytes, FollowedPath] = field(default_factory=dict)
-
-    @property
-    def box(self) -> Box:
-        return self.shift.box
-
-    @property
-    def first_reach(self) -> np.ndarray:
-        return self.shift.first_reach
-
-    @property
-    def transfers(self) -> Transfers:
-        """The parts that it hands over elsewhere."""
-        return self.shift.transfers
+    i_robot: int = field(kw_only=True)
+    tool: Tool = field(kw_only=True)
+    _known: dict[bytes, FollowedPath] = field(default_factory=dict, kw_only=True)
 
     @property
     def placed(self) -> PlacedRobot:
         """The robot as it was."""
-        return self.shift.case.robots[self.i_robot]
-
-    def size(self, x: np.ndarray) -> float:
-        return self.shift.size(x)
-
-    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
-        return self.shift.least(rows, x, box)
+        return self.case.robots[self.i_robot]
 
     def swing(self, reach: np.ndarray) -> float:
-        return 2.0 * self.shift.swing(reach)
+        return 2.0 * super().swing(reach)
 
     def case_of(self, x: np.ndarray) -> Case:
-        moved = self.shift.case_of(x)
+        moved = super().case_of(x)
         robots = list(moved.robots)
-        solved = self.solved(self.shift.pose_in(moved))
+        solved = self.solved(self.pose_in(moved))
         robots[self.i_robot] = replace(robots[self.i_robot], trajectory=solved.trajectory)
         return replace(moved, robots=tuple(robots))
 
@@ -153,11 +128,11 @@ class ToolPathKept:
 
     def _by_base(self, world_from_tool: np.ndarray, base: np.ndarray) -> np.ndarray:
         """(n, 6, m) how the tool moves and turns with the base, its joints as they are."""
-        by_unit = np.zeros((len(world_from_tool), 6, self.shift.size_of_x))
+        by_unit = np.zeros((len(world_from_tool), 6, self.size_of_x))
         by_unit[:, :3, :3] = np.eye(3)
-        if self.shift.pivot is not None:
-            by_unit[:, :3, 3] = self.shift.pivot.by_unit(world_from_tool[:, :3, 3], base)
-            by_unit[:, 3:, 3] = self.shift.pivot.turn.direction / ARM
+        if self.pivot is not None:
+            by_unit[:, :3, 3] = self.pivot.by_unit(world_from_tool[:, :3, 3], base)
+            by_unit[:, 3:, 3] = self.pivot.turn.direction / ARM
         return by_unit
 
     def moves(self, case: Case, pair: Pair) -> bool:
@@ -167,7 +142,7 @@ class ToolPathKept:
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if all(self._stays(approach.case, body) for body in approach.pair):
             return None
-        solved = self.solved(self.shift.pose_in(approach.case))
+        solved = self.solved(self.pose_in(approach.case))
         timing, phase = self.placed.timing, approach.section.phase
         times = phase.motions[0].times[approach.steps - phase.first]
         own = (times - timing.start) * timing.rate
@@ -177,18 +152,18 @@ class ToolPathKept:
             len(own), *each
         )
         found = np.einsum("kj,kjm->km", self._by_joint(approach), followed)
-        by_base = self.shift.gradient(approach)
+        by_base = super().gradient(approach)
         if by_base is not None:
             found += by_base
         found[np.abs(found) < STILL] = 0.0
         return found
 
     def _by_joint(self, approach: Approach) -> np.ndarray:
-        return approach.by_columns()[:, columns_of(self.shift.case, self.i_robot)]
+        return approach.by_columns()[:, columns_of(self.case, self.i_robot)]
 
     def _stays(self, case: Case, body: BodyIndex) -> bool:
         """True if a body does not move with the base, or is fixed to the tool."""
-        if not self.shift.moved(case, body):
+        if not self.moved(case, body):
             return True
         forest = forest_of(case)
         tool, frame = forest.robot_starts[self.i_robot] + self.tool.link, body.frame_in(case)
@@ -196,10 +171,10 @@ class ToolPathKept:
 
     def is_of_base(self, approach: Approach) -> bool:
         """True if the base alone moves the bodies of an approach against each other, and no joint of its path."""
-        return self.shift.gradient(approach) is not None and not self._by_joint(approach).any()
+        return super().gradient(approach) is not None and not self._by_joint(approach).any()
 
     def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
-        solved = self.solved(self.shift.pose_in(self.shift.case_of(x)))
+        solved = self.solved(self.pose_in(super().case_of(x)))
         changed = replace(self.placed, trajectory=solved.trajectory)
         parts = [limit_rows(self.placed, changed, solved.followed, beyond), _same_poses(solved)]
         if solved.residual > REACHED:
@@ -232,7 +207,8 @@ def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept
     """
     placed = shift.case.robots[i_robot]
     require_path(placed)
-    found = ToolPathKept(shift, i_robot, tool_of(placed, name))
+    known = {one.name: getattr(shift, one.name) for one in fields(Shift)}
+    found = ToolPathKept(**known, i_robot=i_robot, tool=tool_of(placed, name))
     free = found.box.low < found.box.high
     barred = _same_poses(found.solved(placed.world_from_base)).gradients
     if np.linalg.matrix_rank(np.vstack([barred, np.eye(len(free))[~free]]), 1e-6) == len(free):

@@ -17,6 +17,7 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
+from clearance.gains.path_change import PathChange
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
 from clearance.record.record import PairMinimum
 from clearance.world.case import Case, Limits, index_of_robot
@@ -156,7 +157,9 @@ def _bent(
     if x is None or not _within_limits(offsets, x):
         return None
     who = offsets.placed.robot.name
-    return ViolatedCase(source.name, HOW[0], offsets.case_of(x), "waypoints", who, offsets.size(x))
+    return ViolatedCase(
+        source.name, HOW[0], PathChange((offsets,)).case_of(x), "waypoints", who, offsets.size(x)
+    )
 
 
 def _raised(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase | None:
@@ -256,7 +259,7 @@ def _until_short(
 
 def _within_limits(offsets: JointOffsets, x: np.ndarray) -> bool:
     try:
-        require_within_limits(offsets.case_of(x).robots[offsets.i_robot])
+        require_within_limits(offsets.placed_of(x))
     except BadInput:
         return False
     return True

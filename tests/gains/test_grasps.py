@@ -7,6 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.gains.offsets import joint_offsets
+from clearance.gains.path_change import PathChange
 from clearance.gains.search import Search
 from clearance.gains.shift import base_shift
 from clearance.gains.turn import Turn
@@ -18,7 +19,7 @@ def ways(case):
     """A base, one that is turned too, and offsets of the joint."""
     yield base_shift(case, "table")
     yield base_shift(case, "table", turn=Turn("z", (0.3, 0.2, 0.0)))
-    yield joint_offsets(case, 0, 12, ())
+    yield PathChange((joint_offsets(case, 0, 12, ()),))
 
 
 @pytest.mark.parametrize("until", [0.9, np.inf])

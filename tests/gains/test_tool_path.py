@@ -115,7 +115,7 @@ def arm():
 def test_the_rows_are_those_of_differences(turn):
     way = tool_path_kept(base_shift(arm(), "arm", turn=turn), 0, None)
     rng = np.random.default_rng(1)
-    x = 0.01 * rng.normal(size=way.shift.size_of_x)
+    x = 0.01 * rng.normal(size=way.size_of_x)
     search, step = Search(way, 0.1), 1e-6 * rng.normal(size=len(x))
     states = [search.state_at(x + side * step) for side in (-1.0, 0.0, 1.0)]
     near = [one.near[0] for one in states]

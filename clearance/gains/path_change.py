@@ -1,36 +1,41 @@
-"""A change of the paths of several robots at once, as large as the greatest of the changes of one.
+"""A change of the paths of one robot, or of several at once, as large as the greatest of the changes of one.
 
-Not for: one robot (`offsets`).
+Of those that are as large the least in sum is taken. Not for: the offsets of a robot (`offsets`), by how much
+(`search`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from clearance.gains.offsets import JointOffsets, least_greatest
-from clearance.gains.programme import Box, Inequalities
+from clearance.gains.offsets import JointOffsets
+from clearance.gains.programme import Box, Inequalities, reachable, within_reach
 from clearance.gains.shortfalls import Rows
+from clearance.gains.tool_poses import ToolPoses
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.transfers import CombinedTransfers
 from clearance.world.case import Case
 from clearance.world.pairs import Pair
 from clearance.world.timeline import Timeline
 
+EVENLY = 0.01
+"""[-] What the sum of all offsets weighs beside the greatest."""
+
 
 @dataclass(frozen=True, eq=False)
-class PathsTogether:
-    """Offsets of several robots of a case; the variables of one follow those of the other.
+class PathChange:
+    """Offsets of robots of a case; the variables of one follow those of the other.
 
     Attributes:
-        parts: of each robot.
+        parts: of each robot; one that keeps its tool is alone.
     """
 
     parts: tuple[JointOffsets, ...]
     price: float = 100.0
-    tool_poses: None = None
     bends: bool = True
 
     @cached_property
@@ -38,10 +43,15 @@ class PathsTogether:
         """The parts that any of them hands over elsewhere."""
         return CombinedTransfers(tuple(part.transfers for part in self.parts))
 
+    @property
+    def tool_poses(self) -> ToolPoses | None:
+        """What is kept of a tool's poses; None for nothing."""
+        return self.parts[0].tool_poses
+
     @cached_property
     def box(self) -> Box:
-        low, high = zip(*(part.box for part in self.parts), strict=True)
-        return Box(np.concatenate(low), np.concatenate(high))
+        size = len(self.first_reach)
+        return Box(np.full(size, -np.inf), np.full(size, np.inf))
 
     @cached_property
     def first_reach(self) -> np.ndarray:
@@ -102,8 +112,42 @@ class PathsTogether:
         return least_greatest(rows, x, box, sized, weights, self.inequalities)
 
     def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
-        return None
+        return None if self.tool_poses is None else self.tool_poses.rows(x, beyond)
 
     def swing(self, reach: np.ndarray) -> float:
         each = zip(self.parts, self.of_each(reach), strict=True)
         return sum(part.swing(own) for part, own in each)
+
+
+def least_greatest(
+    rows: Rows, x: np.ndarray, box: Box, sized: Any, weights: np.ndarray, inequalities: Inequalities
+) -> np.ndarray | None:
+    """(m,) the variables of least greatest offset that keep all rows, linear about x; None if none do.
+
+    Args:
+        sized: (r, m) sparse: what offsets are at samples. weights: (m,) of each variable.
+        inequalities: kept beside the rows.
+    """
+    from scipy.optimize import linprog
+    from scipy.sparse import block_array, csr_array, eye_array
+
+    size, rows, inequalities = len(x), reachable(rows, x, box), within_reach(inequalities, *box)
+    wanted = rows.missing + rows.gradients @ x
+    ones, unit = csr_array(np.ones((sized.shape[0], 1))), eye_array(size)
+    a = block_array(
+        [
+            [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
+            [sized, None, -ones],
+            [-sized, None, -ones],
+            [unit, -unit, None],
+            [-unit, -unit, None],
+            [inequalities.a, None, None],
+        ],
+        format="csr",
+    )
+    flat = np.zeros(2 * sized.shape[0] + 2 * size)
+    cost = np.concatenate([np.zeros(size), EVENLY / size * weights, [1.0]])
+    bounds = [*zip(box.low, box.high, strict=True), *([(0.0, None)] * (size + 1))]
+    b = np.concatenate([-wanted, flat, inequalities.b])
+    found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
+    return None if found.x is None else np.asarray(found.x[:size])
