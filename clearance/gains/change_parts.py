@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +16,8 @@ STILL = 1e-9
 """[rad], [m] or [s]: what moves no farther is not told as moved."""
 
 
-class ChangePart(NamedTuple):
+@dataclass(frozen=True)
+class ChangePart:
     """A part of a change.
 
     Attributes:

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import asdict
 from typing import Any, Literal
 
 from pydantic import Field, TypeAdapter
 
-from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
+from clearance.gains.change_parts import (
+    ChangePart,
+    change_parts,
+    joint_parts,
+    proven_after,
+    proven_bound,
+)
+from clearance.gains.obstruction import Obstruction
 from clearance.gains.result import Gain
 from clearance.gains.tool_path_error import ToolPathError
 from clearance.gains.turn import Turn
@@ -21,17 +29,6 @@ FORMAT = 2
 
 SCHEMA = f"urn:clearance:gain:{FORMAT}"
 """The name of the JSON Schema, which `clearance schema --results gain` prints."""
-
-
-class PartRow(Keys):
-    """A `ChangePart`."""
-
-    name: str
-    amount: float
-    unit: Literal["rad", "m", "s", "share"]
-    time: float | None
-    start: float | None
-    end: float | None
 
 
 class ToolRow(Keys):
@@ -69,18 +66,6 @@ class RunRow(Keys):
     proven: float | None
 
 
-class ObstructionRow(Keys):
-    """An `Obstruction`, and the same as a sentence."""
-
-    body_a: str
-    body_b: str
-    time: float
-    clearance: float
-    wanted: float
-    why: str
-    text: str
-
-
 class Figures(Keys):
     """`gain.json`, in metres, seconds and radians; null: none."""
 
@@ -95,17 +80,17 @@ class Figures(Keys):
     keep_ends: bool
     tool: list[ToolRow]
     tool_path: ToolPathError | None
-    joints: list[PartRow]
+    joints: list[ChangePart]
     within: list[Span] | None
     turn: Turn | None
     slow_down: bool
     size: float
     unit: Literal["rad", "m", "s", "share"]
     lower_bound: float | None
-    parts: list[PartRow]
+    parts: list[ChangePart]
     before: RunRow
     after: RunRow
-    blocked: ObstructionRow | None
+    blocked: Obstruction | None
     binding: list[str]
     n_measured: int
     notes: list[str]
@@ -141,17 +126,17 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
             for one in gain.tool_moves
         ],
         "tool_path": None if gain.tool_path is None else vars(gain.tool_path),
-        "joints": [] if gain.tool_path is None else [part._asdict() for part in joint_parts(gain)],
+        "joints": [] if gain.tool_path is None else [asdict(part) for part in joint_parts(gain)],
         "within": None if request.within is None else [list(ends) for ends in request.within],
         "turn": None if request.turn is None else vars(request.turn),
         "slow_down": request.slow_down,
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,
-        "parts": [part._asdict() for part in change_parts(gain)],
+        "parts": [asdict(part) for part in change_parts(gain)],
         "before": _of_run(gain.before, proven_bound(gain.before)),
         "after": _of_run(gain.after, proven_after(gain)),
-        "blocked": None if blocked is None else vars(blocked) | {"text": str(blocked)},
+        "blocked": None if blocked is None else asdict(blocked) | {"text": str(blocked)},
         "binding": list(gain.binding),
         "n_measured": gain.n_measured,
         "notes": list(notes),

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from clearance.world.rules import DEFAULT
 
 
-class Depth(NamedTuple):
+@dataclass(frozen=True)
+class Depth:
     """How deep two bodies are in each other.
 
     Attributes:

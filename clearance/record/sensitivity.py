@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 TWO_WAYS = 1e-3
 """[-] Of the greater of both slopes, how far they may add up to be one slope that holds both ways."""
@@ -13,7 +12,8 @@ NO_SLOPE = 1e-4
 """[-] or [m/rad] A smaller slope is none: bodies 1 mm apart that slide past an edge show half of it."""
 
 
-class Rate(NamedTuple):
+@dataclass(frozen=True)
+class Rate:
     """What the clearance changes by with one variable.
 
     Attributes:

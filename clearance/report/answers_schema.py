@@ -10,6 +10,7 @@ from typing import Any, Literal
 from pydantic import Field, TypeAdapter
 
 from clearance.profiles import compare
+from clearance.record.audit import PairFinding
 from clearance.record.workspace import SharedLinks
 from clearance.report import srdf, workspace
 from clearance.report.results_rows import Keys, Point
@@ -37,27 +38,13 @@ class Workspace(Keys):
     triangles: int
 
 
-class AuditedPair(Keys):
-    """A pair that the SRDF excuses, and whether it can meet [m; rad or m]."""
-
-    reason: str
-    link_a: str
-    link_b: str
-    status: Literal["apart", "meets", "undecided"]
-    lower_bound: float
-    least: float
-    positions: dict[str, float]
-    n_boxes: int
-    why: str
-
-
 class Audit(Keys):
     """The output of `clearance srdf audit --json`."""
 
     named: Literal[srdf.SCHEMA] = Field(alias="$schema")  # type: ignore[valid-type]
     never_refuted: int
     never_unproven: int
-    pairs: list[AuditedPair]
+    pairs: list[PairFinding]
 
 
 class Hausdorff(Keys):

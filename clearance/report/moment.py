@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ def moment_row(record: Record, moment: Moment) -> dict[str, Any]:
         "between": moment.between,
         "clearance": moment.clearance,
         "touches": moment.touches,
-        "depth": None if moment.depth is None else moment.depth._asdict(),
+        "depth": None if moment.depth is None else asdict(moment.depth),
         "status": record.status_of(moment),
         "rule": moment.rule,
         "link": moment.link,

@@ -7,6 +7,8 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from clearance.record.budget import ErrorSource
+from clearance.record.moment import Depth
+from clearance.record.sensitivity import Rate
 from clearance.world.recording import JointError
 
 Point = tuple[float, float, float]
@@ -16,14 +18,6 @@ Status = Literal["clear", "near", "violated", "contact"]
 
 class Keys(BaseModel):
     model_config = ConfigDict(extra="forbid")
-
-
-class Depth(Keys):
-    """Penetration depth [m]: no separation vector is shorter than `at_least`."""
-
-    penetration: float
-    at_least: float
-    exact: bool
 
 
 class Moment(Keys):
@@ -65,18 +59,6 @@ class CriticalMoment(Moment):
     joints: list[Joint]
 
 
-class Rate(Keys):
-    """Change of the clearance with one variable [m per unit]."""
-
-    kind: Literal["joint", "base", "obstacle"]
-    of: str
-    name: str
-    unit: Literal["rad", "m"]
-    more: float
-    less: float
-    both_ways: bool
-
-
 class Sensitivity(Keys):
     """Slopes of the clearance at the most critical moment, or why there are none."""
 
@@ -116,12 +98,6 @@ class Suspect(Keys):
     code: str
     kind: str
     text: str
-
-
-class DoubtRow(Suspect):
-    """What a reader must know beside the clearance."""
-
-    about: str
 
 
 class Certified(Keys):

@@ -12,6 +12,7 @@ from typing import Any, Literal
 from pydantic import Field, TypeAdapter
 
 from clearance.findings import findings_file
+from clearance.findings.doubts import Doubt
 from clearance.record.levels import Event, Interval
 from clearance.record.record import CrossCheck, PairMinimum, ProfileAnswer
 from clearance.report import summary
@@ -24,7 +25,6 @@ from clearance.report.results_rows import (
     ClockRow,
     Contact,
     CriticalMoment,
-    DoubtRow,
     Input,
     Keys,
     Limits,
@@ -63,7 +63,7 @@ class Summary(Keys):
     broken: list[str]
     warnings: list[str]
     suspects: list[Suspect]
-    doubts: list[DoubtRow]
+    doubts: list[Doubt]
     disputed_by: str | None
     not_checked: list[str]
     nearer: str | None
@@ -118,15 +118,23 @@ class Summary(Keys):
     tolerances: Tolerances | None = None
 
 
-_TEXT = {"type": "string"}
+_TEXT, _RAD_OR_M = {"type": "string"}, {"enum": ["rad", "m"]}
 
 _WRITTEN_TOO: dict[str, dict[str, Any]] = {
     "CrossCheck": {"agrees": {"type": "boolean"}},
     "PairMinimum": {"status": {"enum": ["clear", "near", "violated", "contact"]}},
-    "JointError": {"unit": {"enum": ["rad", "m"]}},
+    "JointError": {"unit": _RAD_OR_M},
+    "Rate": {
+        "both_ways": {"type": "boolean"},
+        "kind": {"enum": ["joint", "base", "obstacle"]},
+        "unit": _RAD_OR_M,
+    },
+    "ChangePart": {"unit": {"enum": ["rad", "m", "s", "share"]}},
     "ErrorSource": {"name": _TEXT, "given": _TEXT, "at_most": _TEXT},
     "Finding": {"code": _TEXT},
     "Doubt": {"code": _TEXT},
+    "PairFinding": {"reason": _TEXT},
+    "Obstruction": {"text": _TEXT},
     "FindingList": {
         "$schema": {"const": findings_file.SCHEMA},
         "format": {"const": findings_file.FORMAT},
@@ -134,7 +142,7 @@ _WRITTEN_TOO: dict[str, dict[str, Any]] = {
         "n_moves": {"type": "integer"},
     },
 }
-"""Keys that are written beside the fields of a dataclass."""
+"""Keys that are written beside the fields of a dataclass, or that say more than their types."""
 
 
 def summary_schema() -> dict[str, Any]:
@@ -154,7 +162,7 @@ def closed_schema(name: str, made: dict[str, Any]) -> dict[str, Any]:
             continue
         more = _WRITTEN_TOO.get(part["title"], {})
         keys = part["properties"] | more
-        part["required"] = [*part.get("required", []), *more]
+        part["required"] = list(dict.fromkeys([*part.get("required", []), *more]))
         part["properties"] = keys | {key: _TEXT for key in _of_programs(keys)}
         part["additionalProperties"] = False
     return {"$schema": DIALECT, "$id": name, **made}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 from clearance.findings.doubts import NOTE, WARNING, doubts_of
@@ -55,8 +56,8 @@ def data(model: ReportModel) -> dict[str, Any]:
             {"code": one.code, "kind": one.kind, "text": one.text} for one in verdict.suspects
         ],
         "doubts": [
-            {"code": one.code, "kind": one.kind, "about": one.about, "text": one.text}
-            for one in doubts_of(model.record, model.waived)
+            asdict(one) | {"code": one.code}
+            for one in doubts_of(model.record, model.judgement)
             if one.kind != NOTE  # `notes` has them
         ],
         "disputed_by": verdict.disputed_by,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -87,7 +87,7 @@ def sensitivity_data(found: Sensitivity) -> dict[str, Any]:
     return {
         "why_not": found.why_not or None,
         "pairs": [list(pair) for pair in found.pairs],
-        "rates": [rate._asdict() | {"both_ways": rate.both_ways} for rate in found.rates],
+        "rates": [asdict(rate) | {"both_ways": rate.both_ways} for rate in found.rates],
     }
 
 

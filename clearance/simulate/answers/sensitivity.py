@@ -8,7 +8,7 @@ the nearest is measured again a step of `STEP` either way, and each way the leas
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -198,5 +198,5 @@ def _rate(kind: str, of: str, name: str, unit: str, slopes: np.ndarray) -> Rate:
     made = Rate(kind, of, name, unit, more, less)
     if made.both_ways:
         mean = (more - less) / 2.0
-        return made._replace(more=mean, less=-mean)
+        return replace(made, more=mean, less=-mean)
     return made
