@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.manifest_file import TrajectoryOptions, is_manifest, load_manifest
-from clearance.batch.options import USUAL, CaseOptions
+from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
 from clearance.case.packed import is_zip
 from clearance.case.waiver_file import load_waivers
@@ -25,6 +25,7 @@ from clearance.errors import BadBatch, DuplicateName, MissingFile, at
 from clearance.formats.files.input_files import read_bytes
 from clearance.options import made
 from clearance.run import CheckOptions
+from clearance.run.options import USUAL
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
 

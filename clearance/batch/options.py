@@ -21,9 +21,6 @@ from clearance.run import CheckOptions, Question
 from clearance.world.case import Case
 from clearance.world.waiver import Waiver
 
-USUAL = {"need": "limit"}
-"""Defaults that are others in a batch."""
-
 _WAIVERS = TypeAdapter(tuple[Waiver, ...])
 
 _KEYED_BY_CONTENT = ("tolerance", "recorded", "waivers", "today")

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
 import pyarrow as pa
 
 from clearance.findings.doubts import doubts_of
-from clearance.findings.finding import Finding
+from clearance.findings.finding import AppliedWaiver, Finding, Point
 from clearance.findings.findings_file import conditions_text
 from clearance.findings.measurement_conditions import conditions_of
 from clearance.findings.of_budget import least_expected
@@ -30,37 +30,20 @@ CURVE = 64
 
 _TEXTS = pa.list_(pa.string())
 
+_COLUMNS = {
+    str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_(),
+    Point: pa.list_(pa.float64()), AppliedWaiver: pa.string(),
+}  # fmt: skip
+"""What keeps a field of a finding, by its type."""
+
+
+def _column(kind: Any) -> pa.DataType:
+    own = [one for one in get_args(kind) if one in _COLUMNS]
+    return _COLUMNS[kind if kind in _COLUMNS else own[0]]
+
+
 FINDING = pa.schema(
-    [
-        ("id", pa.string()),
-        ("kind", pa.string()),
-        ("rule", pa.string()),
-        ("body_a", pa.string()),
-        ("body_b", pa.string()),
-        ("occurrence", pa.int64()),
-        ("status", pa.string()),
-        ("clearance", pa.float64()),
-        ("proven", pa.float64()),
-        ("fail", pa.float64()),
-        ("warn", pa.float64()),
-        ("time", pa.float64()),
-        ("time_b", pa.float64()),
-        ("step", pa.int64()),
-        ("between", pa.bool_()),
-        ("start", pa.float64()),
-        ("end", pa.float64()),
-        ("first_step", pa.int64()),
-        ("last_step", pa.int64()),
-        ("point_a", pa.list_(pa.float64())),
-        ("point_b", pa.list_(pa.float64())),
-        ("text", pa.string()),
-        ("waived", pa.string()),
-        ("accepted", pa.bool_()),
-        ("move", pa.string()),
-        ("moves", pa.string()),
-        ("penetration", pa.float64()),
-        ("penetration_at_least", pa.float64()),
-    ]
+    [(name, _column(kind)) for name, kind in get_type_hints(Finding).items() if name != "joints"]
 )
 """What is kept of a `findings.finding.Finding`; of what waives it, the reason and by whom."""
 

@@ -19,10 +19,7 @@ from clearance.cli.options import (
 from clearance.errors import ClearanceError, Incomplete
 from clearance.extras import require
 from clearance.options import made
-from clearance.run.options import CheckOptions
-
-USUAL = {"need": "limit"}
-"""Defaults that are others in a batch."""
+from clearance.run.options import USUAL, CheckOptions
 
 _LEFT_OUT = "clearance.batch.command_left_out"
 

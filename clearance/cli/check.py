@@ -215,9 +215,9 @@ def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:
 
         click.echo(json_text(run.summary), nl=False)
     elif printed.has_words:
-        from clearance.cli.verdict import print_verdict
+        from clearance.report.terminal import print_answer
 
-        print_verdict(run, out)
+        print_answer(run.report, out)
     elif printed.brief and not printed.quiet:
         from clearance.report.terminal import print_answer
         from clearance.report.topics import verdict

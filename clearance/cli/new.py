@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +19,7 @@ from clearance.cli.new_given import (
     naming_options,
 )
 from clearance.cli.notices import say_notices
-from clearance.cli.options import INCLUDE_OPTION, XACRO_OPTIONS, OutputPath, SortParamType
+from clearance.cli.options import INCLUDE_OPTION, OutputPath, SortParamType, xacro_options
 from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
 from clearance.options import LENGTH
@@ -33,12 +32,6 @@ if TYPE_CHECKING:
 _MOST_NOTES = 8
 
 _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
-
-
-def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
-    for option in XACRO_OPTIONS:
-        command = option(command)
-    return command
 
 
 @click.command()
@@ -154,40 +147,10 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     type=click.Choice(["collision", "visual", "collision_or_visual"]),
     help="Shapes of the links to measure.  [default: collision; visual where there are no others]",
 )
-@_with_xacro
+@xacro_options
 @click.option("--check", "at_once", is_flag=True, help="Run the printed `clearance check` at once.")
 @click.option("--force", is_flag=True, help="Overwrite the files of a case in OUT_DIR.")
-def new(
-    out_dir: Path,
-    robot: str,
-    trajectory: str | None,
-    topic: str | None,
-    which: int | None,
-    units: tuple[str, ...],
-    period: float | None,
-    joints: list[str] | None,
-    columns: tuple[tuple[str, str], ...] | None,
-    states: list[str] | None,
-    program: str | None,
-    entry: str | None,
-    flange: str | None,
-    skip: tuple[str, ...],
-    program_keys: tuple[dict[str, Any], ...],
-    start: dict[str, float] | str | None,
-    scene: str | None,
-    includes: tuple[tuple[str, str], ...],
-    srdf: str | None,
-    rest: tuple[str, ...],
-    joint_limits: str | None,
-    controllers: str | None,
-    package_dirs: tuple[str, ...],
-    geometry: str | None,
-    xacro: bool,
-    xacro_args: dict[str, str],
-    at_once: bool,
-    force: bool,
-    **limits: float | None,
-) -> int:
+def new(out_dir: Path, at_once: bool, force: bool, **given: Any) -> int:
     """Writes a case from a robot, a motion and a scene.
 
     OUT_DIR gets case.yaml to edit, trajectory.csv and scene.yaml.
@@ -198,30 +161,32 @@ def new(
     """
     from clearance.case.new_case.robot import NewCaseRequest
 
-    keys = {
-        "urdf": robot,
-        "xacro": xacro,
-        "xacro_args": xacro_args,
-        "package_dirs": list(package_dirs),
-        "geometry": geometry,
-        "srdf": srdf,
-        "joint_limits": joint_limits,
-        "controllers": controllers,
-    }
+    def of(*names: str) -> dict[str, Any]:
+        return {name: given[name] for name in names}
+
+    robot = {"urdf": given["robot"], **of("xacro", "xacro_args", "package_dirs", "geometry")}
+    robot |= of("srdf", "joint_limits", "controllers")
     motion = {
-        "file": trajectory,
-        "topic": topic,
-        "which": which,
-        "units": {_UNITS[unit]: unit for unit in units},
-        "period": period,
-        "joints": joints,
-        "columns": dict(columns or ()),
+        "file": given["trajectory"],
+        **of("topic", "which"),
+        "units": {_UNITS[unit]: unit for unit in given["units"]},
+        **of("period", "joints"),
+        "columns": dict(given["columns"] or ()),
     }
-    of_program = {"file": program, "entry": entry, "link": flange, "skip": [*skip], "start": start}
-    asked = motion_of(given_of(motion), merged([given_of(of_program), *program_keys]), states)
-    beside = (states or (), rest, scene, dict(includes), limits)
-    given = NewCaseRequest(given_of(keys), asked or None, *beside)
-    made = _made(given, out_dir)
+    program = {"file": given["program"], **of("entry"), "link": given["flange"]}
+    program |= of("skip", "start")
+    states = given["states"]
+    asked = motion_of(given_of(motion), merged([given_of(program), *given["program_keys"]]), states)
+    request = NewCaseRequest(
+        given_of(robot),
+        asked or None,
+        states=states or (),
+        rest=given["rest"],
+        scene=given["scene"],
+        includes=dict(given["includes"]),
+        limits={level: given[level] for level in ("fail", "warn")},
+    )
+    made = _made(request, out_dir)
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)
     return _checked(_command(out_dir)) if at_once else ExitCode.CLEAR

@@ -113,8 +113,9 @@ def naming_options() -> Iterator[None]:
 
 
 def given_of(keys: dict[str, Any]) -> dict[str, Any]:
-    """What is given of them."""
-    return {key: value for key, value in keys.items() if value not in (None, False, [], {})}
+    """What is given of them; several values are a list, as in a file."""
+    listed = {key: [*one] if isinstance(one, tuple) else one for key, one in keys.items()}
+    return {key: value for key, value in listed.items() if value not in (None, False, [], {})}
 
 
 def merged(parts: list[dict[str, Any]]) -> dict[str, Any]:

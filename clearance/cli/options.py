@@ -225,7 +225,13 @@ def _by_name(
     return dict(given)
 
 
-XACRO_OPTIONS = (
+xacro_options = in_order(
+    click.option(
+        "--xacro",
+        is_flag=True,
+        is_eager=True,
+        help="Let xacro make URDF of the robot's file. It evaluates the Python in it.",
+    ),
     click.option(
         "--xacro-arg",
         "xacro_args",
@@ -234,12 +240,6 @@ XACRO_OPTIONS = (
         type=XacroArgumentParamType(),
         callback=_by_name,
         help="An argument of the xacro file; may be given again.",
-    ),
-    click.option(
-        "--xacro",
-        is_flag=True,
-        is_eager=True,
-        help="Let xacro make URDF of the robot's file. It evaluates the Python in it.",
     ),
 )
 """How a robot's file is made into URDF."""

@@ -13,15 +13,13 @@ import click
 from clearance.cli import ExitCode
 from clearance.cli.options import asked_options, said, spelled_by
 from clearance.options import made
-from clearance.run.options import CheckOptions
+from clearance.run.options import USUAL, CheckOptions
 
 if TYPE_CHECKING:
     from clearance.run import Run
 
 MOST = 20
 """Findings that are told of one case."""
-
-USUAL = {"need": "limit"}
 
 
 @click.command("pre-commit")
@@ -70,6 +68,6 @@ def _why(run: Run) -> list[str]:
     broken = [coded_line(finding) for finding in run.findings if finding.fails]
     more = [f"and {len(broken) - MOST} more"] if len(broken) > MOST else []
     warned = {WARNING} if run.record.case.fail_on_warning else set()
-    found = doubts_of(run.record, run.report.waived)
+    found = doubts_of(run.record, run.judgement)
     doubts = [doubt_text(one) for one in found if one.fails or one.kind in warned]
     return [*broken[:MOST], *more, *doubts]

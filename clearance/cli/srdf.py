@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import XACRO_OPTIONS, OutputPath, package_dir_option
+from clearance.cli.options import OutputPath, in_order, package_dir_option, xacro_options
 
 if TYPE_CHECKING:
     from clearance.world.robot import Robot
-
-_Command = TypeVar("_Command", bound=Callable)
 
 
 @click.group()
@@ -22,28 +19,25 @@ def srdf() -> None:
     """Checks or makes the list of excused link pairs."""
 
 
-def _robot_options(command: _Command) -> _Command:
-    """How a URDF file is read, as the keys of a case's `robot` say it."""
-    for option in (
-        click.option(
-            "--collada-up-axis",
-            type=click.Choice(["ros", "file"]),
-            default="ros",
-            show_default=True,
-            help="Whether COLLADA meshes are turned as their files say.",
-        ),
-        click.option(
-            "--geometry",
-            type=click.Choice(["collision", "visual", "collision_or_visual"]),
-            default="collision",
-            show_default=True,
-            help="Shapes of the links to measure.",
-        ),
-        package_dir_option("package:// is"),
-        *XACRO_OPTIONS,
-    ):
-        command = option(command)
-    return command
+_robot_options = in_order(
+    xacro_options,
+    package_dir_option("package:// is"),
+    click.option(
+        "--geometry",
+        type=click.Choice(["collision", "visual", "collision_or_visual"]),
+        default="collision",
+        show_default=True,
+        help="Shapes of the links to measure.",
+    ),
+    click.option(
+        "--collada-up-axis",
+        type=click.Choice(["ros", "file"]),
+        default="ros",
+        show_default=True,
+        help="Whether COLLADA meshes are turned as their files say.",
+    ),
+)
+"""How a URDF file is read, as the keys of a case's `robot` say it."""
 
 
 @srdf.command()

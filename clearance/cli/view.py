@@ -53,11 +53,11 @@ def _write_case(place: Path, name: str) -> None:
     from clearance.batch.output import rewrite_page
     from clearance.batch.store import open_store
     from clearance.cli.progress import shown_progress
-    from clearance.cli.verdict import print_verdict
+    from clearance.report.terminal import print_answer
 
     with open_store(place, make=False) as store:
         item = item_called(read_list(store), name)
     with shown_progress(False, ["measuring", "certifying"]) as progress:
         run, folder = write_case_page(place, item, progress)
     rewrite_page(place)
-    print_verdict(run, folder)
+    print_answer(run.report, folder)

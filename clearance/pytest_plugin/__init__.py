@@ -18,7 +18,7 @@ import pytest
 from clearance.errors import BadInput, ClearanceError
 from clearance.options import SWITCH, Option, flag_of, options_in
 from clearance.pytest_plugin.assertion import assert_clear
-from clearance.run.options import CheckOptions
+from clearance.run.options import USUAL, CheckOptions
 
 if TYPE_CHECKING:
     from clearance.pytest_plugin.collected import CaseListFile
@@ -30,9 +30,6 @@ SUFFIXES = (".clearance.yaml", ".clearance.yml")
 
 PREFIX = "clearance_"
 """Of an option among all of pytest's."""
-
-USUAL = {"need": "limit"}
-"""Defaults that are others here."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -16,8 +16,8 @@ import pytest
 from clearance.case.case_list import CASES, cases_in, mapping_in
 from clearance.errors import ClearanceError, shown
 from clearance.options import options_in
-from clearance.pytest_plugin import PREFIX, USUAL
-from clearance.run.options import CheckOptions
+from clearance.pytest_plugin import PREFIX
+from clearance.run.options import USUAL, CheckOptions
 
 if TYPE_CHECKING:
     from clearance.findings.finding import Finding

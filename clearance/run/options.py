@@ -87,6 +87,9 @@ COLUMNS = Sort("A,B=C,…", "columns such as time,elbow=q3", _columns, _columns_
 
 RECORDED = ("motion", "recorded")
 
+USUAL = {"need": "limit"}
+"""Defaults that are others where many cases are checked."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class QuestionOptions:

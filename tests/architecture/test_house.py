@@ -129,7 +129,6 @@ def test_no_room_has_a_name_that_says_nothing():
 
 
 COMMANDS = {
-    "clearance/cli/new.py",
     "clearance/cli/profile.py",
 }
 """Where click hands over one argument for each option."""

@@ -11,8 +11,8 @@ import pytest
 from rich.console import Console
 
 import clearance as cl
-from clearance.cli.verdict import print_verdict
 from clearance.record.record import ProfileAnswer, Record
+from clearance.report.terminal import print_answer
 from clearance.report.topics.verdict import header
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
@@ -65,7 +65,7 @@ CASES = {
 
 def printed(one: Record) -> list[str]:
     console = Console(file=io.StringIO(), width=200)
-    print_verdict(run_of(one), None, console)
+    print_answer(run_of(one).report, None, console)
     return console.file.getvalue().splitlines()
 
 

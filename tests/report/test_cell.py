@@ -13,8 +13,8 @@ import pytest
 from rich.console import Console
 
 import clearance as cl
-from clearance.cli.verdict import print_verdict
 from clearance.report.summary import json_text
+from clearance.report.terminal import print_answer
 from clearance.report.topics.pairs import PairJudge
 from clearance.world.case import Clock
 from clearance.world.placed_robot import SelfClearance
@@ -37,7 +37,7 @@ def summary(run):
 
 def printed(run) -> str:
     console = Console(file=io.StringIO(), width=240)
-    print_verdict(run, None, console)
+    print_answer(run.report, None, console)
     return console.file.getvalue()
 
 
