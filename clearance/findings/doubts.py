@@ -72,12 +72,8 @@ class Doubt:
         return same and _VARIES.sub("", self.text) == _VARIES.sub("", other.text)
 
 
-def doubts_of(record: Record, judgement: Judgement | None) -> tuple[Doubt, ...]:
-    """All of a record, those that fail it first; each once.
-
-    Args:
-        judgement: None where the case has no waivers.
-    """
+def doubts_of(record: Record, judgement: Judgement) -> tuple[Doubt, ...]:
+    """All of a record, those that fail it first; each once."""
     found = [*_of_input(record), *_of_answer(record, judgement)]
     return tuple(sorted(dict.fromkeys(found), key=lambda one: KINDS.index(one.kind)))
 
@@ -137,7 +133,7 @@ def _notes(texts: Iterable[str]) -> Iterator[Doubt]:
     return (Doubt(NOTE, "", text) for text in texts)
 
 
-def _of_answer(record: Record, judgement: Judgement | None) -> Iterator[Doubt]:
+def _of_answer(record: Record, judgement: Judgement) -> Iterator[Doubt]:
     yield from (Doubt(NOT_CHECKED, "", text) for text in not_checked(record.case))
     check = record.cross_check
     if check is not None and not check.agrees:
@@ -145,5 +141,5 @@ def _of_answer(record: Record, judgement: Judgement | None) -> Iterator[Doubt]:
         yield Doubt(
             DISPUTED, check.peer, f"{check.peer} disagrees at {n_steps} of {check.n_steps} steps"
         )
-    for fault in () if judgement is None else judgement.faults:
+    for fault in judgement.faults:
         yield Doubt(UNUSED_WAIVER, "", fault)

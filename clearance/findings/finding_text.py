@@ -130,5 +130,6 @@ def waived_text(finding: Finding) -> str:
 
 def waived_lines(judgement: Judgement) -> tuple[str, ...]:
     """What is waived, the worst first."""
-    waived = [finding for finding in judgement.findings if finding.waived is not None]
+    waived = [f for use in judgement.uses for f in use.findings if f.waived is not None]
+    waived.sort(key=lambda finding: finding.standing)
     return tuple(f"{finding_line(finding)}; {waived_text(finding)}" for finding in waived)

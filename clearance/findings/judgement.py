@@ -6,8 +6,8 @@ Not for: what a waiver is (`world.waiver`), nor the words of the verdict (`verdi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -56,24 +56,46 @@ class WaiverUse:
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """The rules of a run, with its waivers.
+    """The rules of a run, with its waivers; each part is worked out when it is asked for.
 
     Attributes:
-        findings: of all rules, the worst first. uses: of each waiver that is of this case.
-        rest: what the rules come to without the pairs that are waived.
-        n_of_others: waivers that are of other cases. is_rest: the pairs that are not waived; None where all are.
-        worst, worst_sample: the most critical moment, and step, of what decides the verdict.
-        worst_of: the same by rule; empty where no waiver is of this case.
+        rest: what the rules come to without the pairs that are waived. uses: of each waiver that is of this case.
+        is_rest: the pairs that are not waived; None where all are.
     """
 
-    findings: tuple[Finding, ...]
+    session: Session
     rest: tuple[RuleAnswer, ...]
     uses: tuple[WaiverUse, ...] = ()
-    n_of_others: int = 0
     is_rest: PairTest | None = None
-    worst: Moment | None = None
-    worst_sample: Moment | None = None
-    worst_of: Mapping[str, Moment | None] = field(default_factory=dict)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """Of all rules, the worst first."""
+        found = [
+            *of_rules(self.session, self.rest),
+            *(f for use in self.uses for f in use.findings),
+        ]
+        return tuple(sorted(found, key=lambda finding: finding.standing))
+
+    @cached_property
+    def worst(self) -> Moment | None:
+        """The most critical moment of what decides the verdict."""
+        record = self.session.record
+        return self.session.worst_among(self.judging) if self.uses else record.worst
+
+    @cached_property
+    def worst_sample(self) -> Moment | None:
+        """The most critical step of the same."""
+        record = self.session.record
+        return self.session.worst_sample_among(self.judging) if self.uses else record.worst_sample
+
+    @cached_property
+    def worst_of(self) -> dict[str, Moment | None]:
+        """By rule, the most critical moment of what decides the verdict."""
+        by_rule: dict[str, list[RuleAnswer]] = {}
+        for answer in self.judging:
+            by_rule.setdefault(answer.name, []).append(answer)
+        return {name: self.session.worst_among(answers) for name, answers in by_rule.items()}
 
     @property
     def judging(self) -> tuple[RuleAnswer, ...]:
@@ -102,30 +124,11 @@ class Judgement:
 
 def judgement_of(session: Session) -> Judgement:
     """The judgement of a run."""
-    record = session.record
-    findings = of_rules(session, record.rules)
-    own = [waiver for waiver in record.case.waivers if waiver.is_of_case(record.case.name)]
-    n_of_others = len(record.case.waivers) - len(own)
+    case = session.record.case
+    own = tuple(waiver for waiver in case.waivers if waiver.is_of_case(case.name))
     if not own:
-        return Judgement(
-            findings, record.rules, n_of_others=n_of_others,
-            worst=record.worst, worst_sample=record.worst_sample,
-        )  # fmt: skip
-    return _with_worst(session, _WaivedRun(session, findings, tuple(own)).judgement(n_of_others))
-
-
-def _with_worst(session: Session, judgement: Judgement) -> Judgement:
-    """The judgement with the most critical moments of what decides the verdict."""
-    by_rule: dict[str, list[RuleAnswer]] = {}
-    for answer in judgement.judging:
-        by_rule.setdefault(answer.name, []).append(answer)
-    worst_of = {name: session.worst_among(answers) for name, answers in by_rule.items()}
-    return replace(
-        judgement,
-        worst=session.worst_among(judgement.judging),
-        worst_sample=session.worst_sample_among(judgement.judging),
-        worst_of=worst_of,
-    )
+        return Judgement(session, session.record.rules)
+    return _WaivedRun(session, own).judgement()
 
 
 def of_rules(session: Session, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]:
@@ -136,26 +139,23 @@ def of_rules(session: Session, rules: Sequence[RuleAnswer]) -> tuple[Finding, ..
 
 @dataclass(frozen=True, eq=False)
 class _WaivedRun:
-    """A run held against the waivers that are of its case; `findings` are those without them."""
+    """A run held against the waivers that are of its case."""
 
     session: Session
-    findings: tuple[Finding, ...]
     waivers: tuple[Waiver, ...]
 
-    def judgement(self, n_of_others: int) -> Judgement:
-        broken = any(finding.broken for finding in self.findings)
+    def judgement(self) -> Judgement:
+        rules = self.session.record.rules
+        broken = any(finding.broken for finding in of_rules(self.session, rules))
         uses = tuple(self._use(i, broken) for i in range(len(self.waivers)))
         used = {i for i, use in enumerate(uses) if use.used}
         if not used:
-            return Judgement(self.findings, self.session.record.rules, uses, n_of_others)
+            return Judgement(self.session, rules, uses)
 
         def is_rest(*pair: Any) -> bool:
             return self._owner(*pair) not in used
 
-        rest = self._of_pairs(is_rest)
-        findings = [*of_rules(self.session, rest), *(f for use in uses for f in use.findings)]
-        findings.sort(key=lambda finding: finding.standing)
-        return Judgement(tuple(findings), rest, uses, n_of_others, is_rest)
+        return Judgement(self.session, self._of_pairs(is_rest), uses, is_rest)
 
     def _of_pairs(self, is_meant: PairTest, *levels: float) -> tuple[RuleAnswer, ...]:
         return self.session.of_pairs(is_meant, levels=levels)

@@ -20,7 +20,7 @@ from clearance.findings.finding import (
     FindingName,
 )
 from clearance.findings.judgement import Judgement, WaiverUse
-from clearance.findings.of_rule import code_of, joints_of
+from clearance.findings.of_rule import code_of, fields_at
 from clearance.record.budget import RuleBudget
 from clearance.record.record import Record
 from clearance.record.session import Session
@@ -32,25 +32,22 @@ from clearance.world.case import Limits
 NOT_WORKED_OUT = "the remaining clearance with tolerances was not computed"
 
 
-def of_budget(session: Session, judgement: Judgement | None) -> tuple[Finding, ...]:
+def of_budget(session: Session, judgement: Judgement) -> tuple[Finding, ...]:
     """A finding for each rule that is kept as measured, and is not proven to be with the tolerances; with waivers,
     one for each of them too whose level is not.
-
-    Args:
-        judgement: of the run; None where it has no waivers.
     """
     if session.record.case.tolerance is None:
         return ()
     return (*_of_rules(session, judgement), *_of_waivers(session, judgement))
 
 
-def _of_rules(session: Session, judgement: Judgement | None) -> Iterator[Finding]:
+def _of_rules(session: Session, judgement: Judgement) -> Iterator[Finding]:
     record = session.record
-    judging = record.rules if judgement is None else judgement.judging
-    broken = {one.name for one in judging if code_of(one) >= STATUSES.index(Status.VIOLATED)}
+    broken = {
+        one.name for one in judgement.judging if code_of(one) >= STATUSES.index(Status.VIOLATED)
+    }
     known = {one.rule: one for one in _not_waived(session, judgement)}
-    rest = record.rules if judgement is None else judgement.rest
-    for rule in rest:
+    for rule in judgement.rest:
         if rule.name in broken:
             continue
         if rule.name not in known:
@@ -59,15 +56,15 @@ def _of_rules(session: Session, judgement: Judgement | None) -> Iterator[Finding
             yield _not_kept(session, _named(record, rule.name, rule.limits), known[rule.name])
 
 
-def _not_waived(session: Session, judgement: Judgement | None) -> tuple[RuleBudget, ...]:
+def _not_waived(session: Session, judgement: Judgement) -> tuple[RuleBudget, ...]:
     """What the tolerances leave of the pairs that are not waived."""
-    if judgement is None or judgement.is_rest is None or session.record.budget is None:
+    if judgement.is_rest is None or session.record.budget is None:
         return session.record.budget or ()
     return session.budget_of_pairs(judgement.is_rest)
 
 
-def _of_waivers(session: Session, judgement: Judgement | None) -> Iterator[Finding]:
-    for use in () if judgement is None else judgement.covering:
+def _of_waivers(session: Session, judgement: Judgement) -> Iterator[Finding]:
+    for use in judgement.covering:
         if session.record.budget is not None and use.is_of is not None:
             for one in session.budget_of_pairs(use.is_of):
                 if one.limits.below(one.least, use.waiver.at_least) or one.least <= 0.0:
@@ -116,21 +113,9 @@ def _not_kept(session: Session, named: Finding, budget: RuleBudget) -> Finding:
         named,
         body_a=named.body_a or moment.link,
         body_b=named.body_b or moment.obstacle,
-        clearance=float(moment.clearance),
-        time=float(moment.time),
-        time_b=moment.time_b,
-        step=int(moment.step),
-        between=moment.between,
-        point_a=_point(moment.point_link),
-        point_b=_point(moment.point_obstacle),
-        joints=joints_of(session.record, moment),
+        **fields_at(session.record, moment),
     )
     return found.with_moves(session.record.moves)
-
-
-def _point(point: tuple[float, float, float]) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in point)
-    return x, y, z
 
 
 def budget_lines(record: Record) -> tuple[str, ...]:

@@ -130,19 +130,12 @@ class RuleFindings:
             (moment.link, moment.obstacle),
             occurrence,
             status=status_of(moment.clearance, self.rule.limits, moment.touches),
-            clearance=float(moment.clearance),
             proven=self._proven(slice(max(0, first // 2 - 1), last // 2 + 1)),
-            time=float(moment.time),
-            time_b=moment.time_b,
-            step=int(moment.step),
-            between=moment.between,
             start=start,
             end=end,
             first_step=first // 2,
             last_step=last // 2,
-            point_a=_point(moment.point_link),
-            point_b=_point(moment.point_obstacle),
-            joints=joints_of(self.session.record, moment),
+            **fields_at(self.session.record, moment),
         )
 
     def _span(self, time: float, first: int, last: int) -> tuple[float, float]:
@@ -235,7 +228,21 @@ class RuleFindings:
         ).with_moves(self.session.record.moves)
 
 
-def joints_of(record: Record, moment: Moment) -> dict[str, float]:
+def fields_at(record: Record, moment: Moment) -> dict[str, Any]:
+    """What a finding says of its worst moment: when and where that is, how near, and how the joints stand."""
+    return {
+        "clearance": float(moment.clearance),
+        "time": float(moment.time),
+        "time_b": moment.time_b,
+        "step": int(moment.step),
+        "between": moment.between,
+        "point_a": _point(moment.point_link),
+        "point_b": _point(moment.point_obstacle),
+        "joints": _joints(record, moment),
+    }
+
+
+def _joints(record: Record, moment: Moment) -> dict[str, float]:
     """The positions [rad] or [m] of all moving joints at a moment; a robot's name before each where there are
     several."""
     found: dict[str, float] = {}

@@ -1,6 +1,6 @@
 """The one verdict of a run: exit code, page, terminal, JUnit, JSON and `Run.passed` are all taken from it.
 
-Not for: measuring, and the words around it (`wording`, `cli.verdict`).
+Not for: measuring, and the words around it (`wording`, `report.terminal`).
 """
 
 from __future__ import annotations
@@ -36,7 +36,6 @@ from clearance.findings.limit_lines import (
     unproven_line,
 )
 from clearance.findings.of_budget import tolerance_lines
-from clearance.findings.of_rule import code_of
 from clearance.findings.self_clearance import left_out_lines, self_clearance_lines
 from clearance.record.moment import Moment
 from clearance.record.record import CrossCheck, Record
@@ -228,12 +227,12 @@ def _remaining(of_tolerances: Sequence[Finding]) -> str:
 
 
 def verdict_of(
-    record: Record, judgement: Judgement | None = None, of_tolerances: Sequence[Finding] = ()
+    record: Record, judgement: Judgement, of_tolerances: Sequence[Finding] = ()
 ) -> Verdict:
     """The verdict of a record.
 
     Args:
-        judgement: with the waivers of the case; None where it has none.
+        judgement: with the waivers of the case.
         of_tolerances: the limits that are not proven with the tolerances of the case, as `of_budget` finds them.
     """
     notices = record.notices
@@ -241,7 +240,7 @@ def verdict_of(
     measured = _measured(record, judgement)
     check = record.cross_check
     disputing = None if check is None or check.agrees else check
-    judging = record.rules if judgement is None else judgement.judging
+    judging = judgement.judging
     unproven = unproven_line(record, judging)
     worst, sample, is_open = _most_critical(record, judgement)
     occurring = [coded_of(moment_line(record, worst), CLEARANCE)] if is_open else []
@@ -250,8 +249,7 @@ def verdict_of(
     reasons = [*open_lines, *reasons] if measured in _PASSING else [*reasons, *open_lines]
     not_proven = tuple(one.line for one in unproven_motion(record))
     reasons = [*not_proven, *reasons] if measured in _PASSING else [*reasons, *not_proven]
-    faults = () if judgement is None else judgement.faults
-    waiver_faults = tuple(coded_of(fault, UNUSED_WAIVER) for fault in faults)
+    waiver_faults = tuple(coded_of(fault, UNUSED_WAIVER) for fault in judgement.faults)
     reasons += waiver_faults
     profiles = [coded_of(profile_text(one), PROFILE) for one in record.profiles if not one.passed]
     broken = [f"{one.kind}: {one.line}" for one in notices if one.severity is Severity.VIOLATED]
@@ -283,8 +281,8 @@ def verdict_of(
         nearest=_nearest(record, worst),
         clocks=_when(record.case),
         beyond="joints beyond their limits" if any(one.kind in BEYOND for one in notices) else "",
-        waived=() if judgement is None else waived_lines(judgement),
-        n_waivers=0 if judgement is None else len(judgement.covering),
+        waived=waived_lines(judgement),
+        n_waivers=len(judgement.covering),
         waiver_faults=waiver_faults,
         tolerances=_tolerances(record.case, measured, of_tolerances),
         remaining=_remaining(of_tolerances),
@@ -321,23 +319,18 @@ def _tolerances(case: Case, measured: str, open_limits: Sequence[Finding]) -> st
     return ACCEPTED if case.tolerance.unproven_ok else NOT_PROVEN
 
 
-def _measured(record: Record, judgement: Judgement | None) -> str:
+def _measured(record: Record, judgement: Judgement) -> str:
     """The worst that any step, the motion between, a profile or a rule of the case says, less what is waived."""
-    if judgement is None:
-        worst = max(map(code_of, record.rules))
-    else:
-        worst = STATUSES.index(Status(judgement.status))
+    worst = STATUSES.index(Status(judgement.status))
     broken = any(notice.severity is Severity.VIOLATED for notice in record.notices)
     if broken or not all(answer.passed for answer in record.profiles):
         worst = max(worst, STATUSES.index(Status.VIOLATED))
     return str(STATUSES[worst])
 
 
-def _most_critical(record: Record, judgement: Judgement | None) -> tuple[Moment, Moment, bool]:
+def _most_critical(record: Record, judgement: Judgement) -> tuple[Moment, Moment, bool]:
     """The moment and the step that decide, and whether they are below a limit; of all where nothing but what is
     waived is."""
-    if judgement is None:
-        return record.worst, record.worst_sample, record.status_of(record.worst) != Status.CLEAR
     judged = judgement.worst
     if judged is None or record.status_of(judged) == Status.CLEAR:
         return record.worst, record.worst_sample, False

@@ -113,7 +113,7 @@ def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
 def _of_rules(model: ReportModel) -> Iterator[TestResult]:
     """One case for each rule where there are any: it fails by its worst moment, or if its limit is not proven."""
     record, judgement = model.record, model.judgement
-    limits, worst_of = record.case.limits, judgement.worst_of or model.worst_of
+    limits, worst_of = record.case.limits, judgement.worst_of
     if not limits.rules:
         return
     for i, name in enumerate(limits.rule_names):

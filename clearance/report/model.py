@@ -41,29 +41,21 @@ class ReportModel:
         """The rules of the run with its waivers."""
         return judgement_of(self.session)
 
-    @property
-    def waived(self) -> Judgement | None:
-        """The same; None where the case has no waivers, and nothing is worked out then."""
-        return self.judgement if self.record.case.waivers else None
-
     @cached_property
     def of_tolerances(self) -> tuple[Finding, ...]:
         """The limits that are not proven with the case's tolerances."""
-        if self.record.case.tolerance is None:
-            return ()
-        return of_budget(self.session, self.waived)
+        return of_budget(self.session, self.judgement)
 
     @cached_property
     def verdict(self) -> Verdict:
         """What the run comes to, why, and what that rests on."""
-        return verdict_of(self.record, self.waived, self.of_tolerances)
+        return verdict_of(self.record, self.judgement, self.of_tolerances)
 
     @cached_property
     def sensitivity(self) -> Sensitivity:
         """The slopes of the clearance at the most critical moment of what decides the verdict."""
-        worst, judgement = self.verdict.worst, self.waived
-        decided = judgement is not None and worst is judgement.worst
-        rules = judgement.judging if judgement and decided else self.record.rules
+        worst, judgement = self.verdict.worst, self.judgement
+        rules = judgement.judging if worst is judgement.worst else self.record.rules
         return self.session.sensitivity(rules, worst)
 
     @cached_property

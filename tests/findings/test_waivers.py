@@ -173,7 +173,7 @@ def test_a_case_names_its_files_of_waivers(tmp_path):
     assert "waivers.yaml" in [source.path for source in case.sources]
     run = answer(Question(case, today=TODAY))
     assert run.passed and run.verdict.n_waivers == 1
-    assert run.judgement.n_of_others == 1
+    assert len(run.judgement.uses) == 1
     assert "waivers of other cases, not used here: 1 waiver" in run.summary["notes"]
 
 

@@ -458,7 +458,7 @@ def test_a_stretch_near_a_singularity_is_measured_and_not_proven(tmp_path):
     assert "not proven on part of the motion, clear as measured" in run.verdict.headline()
     told = f"LIN 1, {span.start:.3f}-{span.end:.3f} s: a singularity is too near"
     assert told in run.verdict.reasons[0] and "unproven motion" in {
-        doubt.kind for doubt in doubts_of(run.record, None) if doubt.fails
+        doubt.kind for doubt in doubts_of(run.record, run.judgement) if doubt.fails
     }
     certified = certified_text(certified_of(run.record, run.record.certificate))
     assert "at every moment that is proven" in certified
