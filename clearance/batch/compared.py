@@ -18,7 +18,7 @@ import pyarrow.parquet as pq
 
 from clearance.batch.answer import BatchAnswer
 from clearance.batch.rows import ERROR
-from clearance.batch.store_files import FINDINGS, is_store, require_no_older
+from clearance.batch.store_files import FINDINGS, is_store
 from clearance.batch.tables import written_answer
 from clearance.errors import BadBatch, Incomplete
 from clearance.findings.comparison import BatchComparison, ComparedCase, compared
@@ -31,13 +31,12 @@ def require_answer(place: Path) -> BatchAnswer:
     """The answer of a store that can be compared with another's.
 
     Raises:
-        BadInput, Unwritable: that is no store, or of another version. Incomplete: it has no answer.
+        BadInput: that is no store, or of another version. Incomplete: it has no answer.
     """
     if not is_store(place):
         raise BadBatch(
             "not a store", where=str(place), valid="the folder that a `clearance batch --out` wrote"
         )
-    require_no_older(place)
     answer = written_answer(place)
     if answer is None or not (place / FINDINGS).is_file():
         raise Incomplete(

@@ -1,4 +1,4 @@
-"""The files of a store's folder: which folder is one, which was of an older version, which is of something else.
+"""The files of a store's folder: which folder is one, and which is of something else.
 
 Not for: what is in the database (`store`), nor in the answer (`output`).
 """
@@ -14,17 +14,14 @@ FILE = "store.sqlite"
 CASES, FINDINGS = "cases.parquet", "findings.parquet"
 
 _PART = re.compile(r"^part-\d+-of-\d+\.sqlite$")
-_OLDER = "store.json"
-"""What marked a folder whose rows were segments of parquet."""
 
 _OWN = re.compile(r"^\.?(store|part-\d+-of-\d+)\.(sqlite(-journal)?|lock)$")
 """Databases and locks, one of which is the first file in a store."""
 
 
 def is_store(place: Path) -> bool:
-    """True if a folder is a store of whatever version, or holds the tables of one."""
-    names = (FILE, CASES, _OLDER)
-    return any((place / name).is_file() for name in names) or bool(parts_in(place))
+    """True if a folder is a store, or holds the tables of one."""
+    return any((place / name).is_file() for name in (FILE, CASES)) or bool(parts_in(place))
 
 
 def parts_in(place: Path) -> list[Path]:
@@ -48,21 +45,6 @@ def require_place(place: Path, *, make: bool) -> None:
     names = [path.name for path in place.iterdir()]
     if any(map(_OWN.match, names)) or (make and not names):
         return
-    require_no_older(place)
     raise Unwritable(
         "is a folder of something else", where=str(place), valid="a new folder, or a store"
     )
-
-
-def require_no_older(place: Path) -> None:
-    """Refuses a store of an older version.
-
-    Raises:
-        Unwritable: it is one, and what to do.
-    """
-    if (place / _OLDER).is_file() and not (place / FILE).is_file():
-        raise Unwritable(
-            "is a store of an older version, which is not read",
-            where=str(place),
-            valid="a new folder: the same command measures all once more",
-        )

@@ -8,7 +8,6 @@ doubt, so the greatest that holds goes); 70 a fault of this program, with its tr
 from __future__ import annotations
 
 import atexit
-import errno
 import io
 import os
 import sys
@@ -164,7 +163,7 @@ def make_streams_safe() -> None:
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
     if sys.stdout is None:
-        sys.stdout = _ClosedStream()
+        sys.stdout = open(os.devnull)  # which refuses what is written
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")
     for stream in (sys.stdout, sys.stderr):
@@ -181,18 +180,6 @@ def _in_one_line(
     line: str | None = None,
 ) -> str:
     return f"warning: {message}\n"
-
-
-class _ClosedStream(io.TextIOBase):
-    """Output that the shell has closed."""
-
-    encoding = "utf-8"
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, text: str) -> int:
-        raise OSError(errno.EBADF, "standard output is closed")
 
 
 def leave(code: int) -> NoReturn:

@@ -1,7 +1,6 @@
 """The database of a batch: what is committed comes back, what is damaged or of something else is one line."""
 
 import os
-import shutil
 import sqlite3
 from contextlib import closing
 from datetime import date
@@ -142,30 +141,6 @@ def test_a_store_of_another_format_is_one_line(manifest, tmp_path, capsys):
     changed(tmp_path / "out", f"PRAGMA user_version = {FORMAT + 1}")
     assert run(["batch", "status", str(tmp_path / "out")]) == 2
     assert f"a store of format {FORMAT + 1}; a new folder" in capsys.readouterr().err
-
-
-def test_a_store_of_an_older_version_says_what_to_do(manifest, tmp_path, capsys):
-    """It kept rows in segments of parquet; nothing of it is read."""
-    run_here(manifest, tmp_path / "new")
-    old = tmp_path / "old"
-    shutil.copytree(tmp_path / "new", old)
-    (old / FILE).unlink()
-    (old / ".store.lock").unlink(missing_ok=True)
-    (old / "store.json").write_text('{"format": 1}')
-    (old / "segments").mkdir()
-    before = sorted(path.name for path in old.iterdir())
-    for asked in (
-        ["batch", str(manifest), "--out", str(old)],
-        ["batch", "status", str(old)],
-        ["compare", str(old), str(tmp_path / "new")],
-        ["batch", str(manifest), "--out", str(tmp_path / "new"), "--baseline", str(old)],
-    ):
-        capsys.readouterr()
-        assert run(asked) == 2
-        err = capsys.readouterr().err
-        assert "a store of an older version, which is not read; a new folder" in err
-        assert err.count("\n") == 1
-    assert sorted(path.name for path in old.iterdir()) == before
 
 
 def test_a_folder_of_something_else_is_no_store(tmp_path):
