@@ -108,8 +108,8 @@ class Front:
         """How many items are still to be proven."""
         return len(self.items.pair)
 
-    def advance(self, claims: LowerableClaims) -> Items:
-        """Proves the items or cuts them in two; returns those that are proven.
+    def advance(self, claims: LowerableClaims) -> None:
+        """Proves the items or cuts them in two.
 
         Raises:
             BadInput: one that cannot be cut any further.
@@ -117,9 +117,7 @@ class Front:
         deeds, codes, u = _deeds(self.stage, self.items, self.hints, claims)
         self.found.add(deeds, codes)
         self.hints = np.repeat(u[:, deeds >= CUT_TIME], 2, axis=1)
-        proven = self.items.of(np.flatnonzero(deeds < CUT_TIME))
         self.items = cut(self.items, deeds)
-        return proven
 
     def require_outside(self) -> None:
         """Nothing, if no body is inside another.

@@ -13,7 +13,6 @@ from clearance.errors import BadInput
 from clearance.progress import Progress
 from clearance.receipt.fronts import EvidenceList, Front, LowerableClaims
 from clearance.receipt.proof.halving import Halves
-from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.motion_data import Shape, Stretch
 from clearance.receipt.proof.stage import Stage
 
@@ -73,20 +72,16 @@ class EvidenceSearch:
         """How many proofs are found so far."""
         return sum(front.found.n_items for front in self._fronts)
 
-    def foresee(self, most_items: int, progress: Progress | None = None) -> int:
+    def foresee(self, most_items: int) -> int:
         """About how many proofs there will be: where many are to be expected, some are followed to their end.
-
-        Args:
-            progress: called in thousandths of the time of all pairs.
 
         Raises:
             TooManyProofs: far more than so many. BadInput: it cannot be proven so.
         """
         total, most = 0.0, TOO_MANY * most_items
-        shares = _Shares([front.stage.stretch for front in self._fronts], progress)
         for front in self._fronts:
             while front.n_open and front.n_open < WIDE:
-                shares.add(front.advance(self._claims))
+                front.advance(self._claims)
             total += front.found.n_items + self._ahead_of(front, most - total)
             if total > most:
                 raise too_many(total, most_items)
@@ -129,22 +124,6 @@ class EvidenceSearch:
         if progress is not None:
             progress(1000, 1000)
         return found
-
-
-class _Shares:
-    """How much of all is proven: an item is a share of its pair's time, and half for each cut of its bodies."""
-
-    def __init__(self, stretches: Sequence[Stretch], progress: Progress | None) -> None:
-        self._total = float(sum(len(one.pairs) * one.n_intervals for one in stretches))
-        self._done, self._progress = 0.0, progress
-
-    def add(self, proven: Items) -> None:
-        """Adds some items."""
-        if self._progress is None:
-            return
-        cuts = [np.frexp(nodes + 1.0)[1] - 1 for nodes in (proven.node_a, proven.node_b)]
-        self._done += float((proven.span * 0.5 ** (cuts[0] + cuts[1] + proven.depth)).sum())
-        self._progress(int(1000 * min(1.0, self._done / self._total)), 1000)
 
 
 def too_many(n: float, most: int) -> TooManyProofs:

@@ -37,9 +37,6 @@ MOST_WITH_ERRORS = 1_500_000
 MANY = 500_000
 """Proofs without tolerances from which on the most is given up at once."""
 
-FORESEEN = 250
-"""Thousandths of the work, as it is told, that are done by the time that it is known how much it is."""
-
 ERRORS_TAKE = 2
 """Times as long as one without takes a proof with tolerances, about."""
 
@@ -121,23 +118,23 @@ def _proven(record: Record, kind: str, progress: Progress | None) -> _Claims:
     data = case_data(replace(record.case, tolerance=None))
     halves = halves_of(data.shapes)
     claims = _asked_claims(claims_of(record, data), data, kind)
+    if progress is not None:
+        progress(0, 1000)  # until it is known how much it is
     search = EvidenceSearch(data.stretches, data.shapes, halves, claims)
-    search.foresee(MOST_ITEMS, part_of(progress, 0, FORESEEN // 2))
-    late = part_of(progress, FORESEEN // 2, FORESEEN)
+    search.foresee(MOST_ITEMS)
     attempts: Iterator[_Attempt] = iter(())
     if with_errors.has_errors:
         attempts = _attempts(record, kind, with_errors, claims, halves, search.n_foreseen)
-    attempt = _first(attempts, late)
-    share = 1.0 if attempt is None else _share(search, attempt.search)
-    middle = FORESEEN + round((1000 - FORESEEN) * share)
-    found = search.finish(MOST_ITEMS, part_of(progress, FORESEEN, middle))
+    attempt = _first(attempts)
+    middle = 1000 if attempt is None else round(1000 * _share(search, attempt.search))
+    found = search.finish(MOST_ITEMS, part_of(progress, 0, middle))
     while attempt is not None:
         try:
             most = min(attempt.most_items, MOST_ITEMS - found.n_items)
             more = attempt.search.finish(most, part_of(progress, middle, 1000))
             return _Claims(with_errors, attempt.claims, found.and_then(more))
         except BadInput as error:
-            attempt = _first(attempts, None, error)
+            attempt = _first(attempts, error)
     return _Claims(data, claims, found)
 
 
@@ -175,9 +172,7 @@ def _attempts(
         yield _Attempt(both, search, MOST_ITEMS - n_nominal if last else MOST_WITH_ERRORS)
 
 
-def _first(
-    attempts: Iterator[_Attempt], progress: Progress | None, error: BadInput | None = None
-) -> _Attempt | None:
+def _first(attempts: Iterator[_Attempt], error: BadInput | None = None) -> _Attempt | None:
     """The first of some attempts that is not foreseen to fail; None if what is claimed cannot be proven.
 
     Args:
@@ -188,7 +183,7 @@ def _first(
     """
     for attempt in attempts:
         try:
-            attempt.search.foresee(attempt.most_items, progress)
+            attempt.search.foresee(attempt.most_items)
             return attempt
         except BadInput as failed:
             error = failed
