@@ -182,11 +182,11 @@ def test_a_shorter_run_and_fewer_moves_are_told_and_fail_nothing(tmp_path):
 
 def test_smaller_tolerances_are_less_known_and_greater_ones_are_not(tmp_path):
     case = load_gates(tmp_path, CLEAR)
-    bases = ({"xyz": 0.002}, {"xyz": 1e-4, "angle": 0.001})
+    bases = ({"xyz": 0.002, "angle": 0.001}, {"xyz": 1e-4, "angle": 0.001})
     found = [cl.check(case, tolerance={"base": base}).finding_list for base in bases]
     assert compared(*found[::-1]).passed and not compared(*found).passed
     assert doubt_lines(compared(*found)) == [
-        "less is known: tolerances are smaller (m, rad, s): place of base of box 0.0001, was 0.002"
+        "less is known: tolerances are smaller (m, rad, s): place of base of gantry_box 0.0001, was 0.002"
     ]
 
 
