@@ -6,7 +6,7 @@ what functions mean (each language).
 
 from __future__ import annotations
 
-import operator
+import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -361,32 +361,14 @@ class ExpressionReader:
 
 
 def _number(word: Token) -> float:
-    """A number, as decimals or after 0x or 0b."""
-    text = word.text.lower()
-    bases = {"0x": 16, "0b": 2, "0o": 8}
-    if text[:2] in bases:
-        return float(int(text[2:], bases[text[:2]]))
-    with on(word.line):
-        if not (value := float(text)) < 1e300:
-            raise BadSyntax(f"{text!r:.60} is given", valid="a number of this earth")
-    return value
-
-
-def numeric(act: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
-    """An operator that refuses all but numbers."""
-
-    def applied(a: Any, b: Any) -> Any:
-        for one in (a, b):
-            if not isinstance(one, float | int) or isinstance(one, bool):
-                raise TypeError
-        return act(a, b)
-
-    return applied
-
-
-COMPARED: Mapping[str, Callable[..., Any]] = {
-    "<": operator.lt,
-    ">": operator.gt,
-    "<=": operator.le,
-    ">=": operator.ge,
-}
+    """A number: decimals, or digits after 0x, 0b, 'H or 'B. Whole ones stay so, which counts in KRL."""
+    text, bases = word.text.lower().strip("'"), {"0x": 16, "0b": 2, "h": 16, "b": 2}
+    mark = next((one for one in bases if text.startswith(one)), "")
+    try:
+        value = int(text[len(mark) :], bases[mark]) if mark else float(text)
+    except ValueError:
+        value = math.inf
+    if not value < 1e300:
+        valid = "a number of this earth"
+        raise BadSyntax(f"{word.text!r:.60} is given", where=str(word.line), valid=valid)
+    return int(text) if text.isdigit() else value

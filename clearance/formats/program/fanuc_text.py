@@ -5,7 +5,6 @@ Not for: what instructions do (`fanuc`).
 
 from __future__ import annotations
 
-import math
 import operator
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,17 +13,15 @@ from dataclasses import dataclass
 from clearance.errors import BadProgram, BadSyntax
 from clearance.formats.program.blocks import BlockReader
 from clearance.formats.program.expressions import (
-    COMPARED,
     Call,
     Constant,
     Expression,
     ExpressionReader,
     Name,
     Unknown,
-    numeric,
 )
 from clearance.formats.program.fanuc_positions import Position, positions_of
-from clearance.formats.program.grammar import Grammar
+from clearance.formats.program.grammar import Grammar, ranked
 from clearance.formats.program.statements import (
     RETURN,
     STOP,
@@ -79,19 +76,7 @@ def named(text: str) -> str:
 
 
 _GRAMMAR = Grammar(
-    binary={
-        "OR": (1, lambda a, b: bool(a) or bool(b)),
-        "AND": (2, lambda a, b: bool(a) and bool(b)),
-        "=": (3, operator.eq),
-        "<>": (3, operator.ne),
-        **{word: (3, act) for word, act in COMPARED.items()},
-        "+": (4, numeric(operator.add)),
-        "-": (4, numeric(operator.sub)),
-        "*": (5, numeric(operator.mul)),
-        "/": (5, numeric(operator.truediv)),
-        "DIV": (5, numeric(lambda a, b: float(math.trunc(a / b)))),
-        "MOD": (5, numeric(math.fmod)),
-    },
+    binary=ranked("OR", "AND", "= <> < > <= >=", "+ -", "* / DIV MOD"),
     unary={"!": (6, operator.not_), "-": (6, operator.neg)},
     constants={"ON": True, "OFF": False, "TRUE": True, "FALSE": False},
     index="\0\0",

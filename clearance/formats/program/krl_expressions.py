@@ -17,15 +17,13 @@ import numpy as np
 
 from clearance.errors import BadSyntax
 from clearance.formats.program.expressions import (
-    COMPARED,
     Call,
     Constant,
     Expression,
     ExpressionReader,
     Unknown,
-    numeric,
 )
-from clearance.formats.program.grammar import Grammar
+from clearance.formats.program.grammar import Grammar, numeric, ranked
 from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 from clearance.geometry.pose import pose_from_rpy
 
@@ -139,17 +137,9 @@ SYSTEM = "IR_STOPM"
 """What every program calls where the controller stops with a message: it moves nothing."""
 
 
-def of_truths(act: Callable[..., Any]) -> Callable[..., Any]:
-    """An operator that takes truths, and raises TypeError for others, as KRL does."""
-    return _of(bool, act)
-
-
-def of_bits(act: Callable[..., Any]) -> Callable[..., Any]:
-    """An operator that takes whole numbers, bit by bit."""
-    return _of(int, act)
-
-
 def _of(kind: type, act: Callable[..., Any]) -> Callable[..., Any]:
+    """An operator that takes truths, or whole numbers bit by bit, and raises TypeError for others, as KRL does."""
+
     def acted(*given: Any) -> Any:
         if any(type(one) is not kind for one in given):
             raise TypeError
@@ -159,25 +149,18 @@ def _of(kind: type, act: Callable[..., Any]) -> Callable[..., Any]:
 
 
 GRAMMAR = Grammar(
-    binary={
-        "==": (1, operator.eq),
-        "<>": (1, operator.ne),
-        **{word: (1, act) for word, act in COMPARED.items()},
-        "OR": (2, of_truths(operator.or_)),
-        "B_OR": (2, of_bits(operator.or_)),
-        "EXOR": (3, of_truths(operator.xor)),
-        "B_EXOR": (3, of_bits(operator.xor)),
-        "AND": (4, of_truths(operator.and_)),
-        "B_AND": (4, of_bits(operator.and_)),
-        "+": (5, numeric(operator.add)),
-        "-": (5, numeric(operator.sub)),
-        "*": (6, numeric(operator.mul)),
-        "/": (6, numeric(quotient)),
-        ":": (7, composed),
-    },
+    binary=ranked(
+        *("== <> < > <= >=", "OR B_OR", "EXOR B_EXOR", "AND B_AND", "+ -", "* /", ":"),
+        own={
+            **{"OR": _of(bool, operator.or_), "B_OR": _of(int, operator.or_)},
+            **{"EXOR": _of(bool, operator.xor), "B_EXOR": _of(int, operator.xor)},
+            **{"AND": _of(bool, operator.and_), "B_AND": _of(int, operator.and_)},
+            **{"/": numeric(quotient), ":": composed},
+        },
+    ),
     unary={
-        "NOT": (8, of_truths(operator.not_)),
-        "B_NOT": (8, of_bits(operator.invert)),
+        "NOT": (8, _of(bool, operator.not_)),
+        "B_NOT": (8, _of(int, operator.invert)),
         "-": (8, operator.neg),
         "+": (8, operator.pos),
     },
@@ -196,8 +179,6 @@ class Expressions(ExpressionReader):
             return self._aggregate(word.line)
         if word.kind == "name" and word.text.startswith("#"):
             return Constant(self.cursor.take().text.upper())
-        if word.kind == "number":
-            return Constant(_number(self.cursor.take().text))
         return super()._atom()
 
     def _aggregate(self, line: Line) -> Call:
@@ -215,15 +196,6 @@ class Expressions(ExpressionReader):
                 cursor.refuse("',' or '}'")
         cursor.expect("}")
         return Call(AGGREGATE, (), found, line)
-
-
-def _number(text: str) -> float:
-    """Whole numbers stay so: their quotient is one too."""
-    if text[0] == "'":
-        return int(text[2:-1], 16 if text[1] in "Hh" else 2)
-    if not (value := float(text)) < 1e300:
-        raise BadSyntax(f"{text!r:.60} is given", valid="a number of this earth")
-    return int(text) if text.isdigit() else value
 
 
 def parameters_of(cursor: Cursor) -> tuple[tuple[str, ...], frozenset[str]]:

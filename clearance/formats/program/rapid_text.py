@@ -288,7 +288,7 @@ class _Reader(BlockReader):
 
     def _call_or_value(self, word: Token) -> Statement:
         if self.cursor.after(1).text in (":=", ".", "{"):
-            target = self.expressions.expression(7)
+            target = self.expressions.expression(5)
             self.cursor.expect(":=")
             return Assign(word.line, target, self.expression())
         name = self.name("a statement")

@@ -13,8 +13,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal, NamedTuple
 
-from clearance.formats.program.expressions import COMPARED, numeric
-from clearance.formats.program.grammar import Grammar, Spelled
+from clearance.formats.program.grammar import Grammar, Spelled, numeric, ranked
 from clearance.formats.program.rapid_data import VALUES
 
 
@@ -148,24 +147,14 @@ def _product(a: object, b: object) -> object:
 
 
 GRAMMAR = Grammar(
-    binary={
-        "OR": (1, lambda a, b: bool(a) or bool(b)),
-        "XOR": (1, lambda a, b: bool(a) != bool(b)),
-        "AND": (2, lambda a, b: bool(a) and bool(b)),
-        "=": (4, operator.eq),
-        "<>": (4, operator.ne),
-        **{word: (4, act) for word, act in COMPARED.items()},
-        "+": (5, added),
-        "-": (5, partial(_by_item, operator.sub)),
-        "*": (6, _product),
-        "/": (6, numeric(operator.truediv)),
-        "DIV": (6, numeric(lambda a, b: float(int(a / b)))),
-        "MOD": (6, numeric(lambda a, b: a - b * int(a / b))),
-    },
+    binary=ranked(
+        *("OR XOR", "AND", "= <> < > <= >=", "+ -", "* / DIV MOD"),
+        own={"+": added, "-": partial(_by_item, operator.sub), "*": _product},
+    ),
     unary={
-        "NOT": (3, operator.not_),
-        "-": (7, lambda a: _product(-1.0, a)),
-        "+": (7, lambda a: a),
+        "NOT": (2, operator.not_),
+        "-": (6, lambda a: _product(-1.0, a)),
+        "+": (6, lambda a: a),
     },
     constants={"true": True, "false": False},
     index="{}",

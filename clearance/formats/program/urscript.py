@@ -199,7 +199,7 @@ _VALUES: Mapping[str, Callable[..., Any]] = {
     **{name: getattr(math, name) for name in ("sqrt", "pow", "floor", "ceil", "log")},
     "fabs": abs,
     "abs": abs,
-    "norm": lambda a: abs(a) if isinstance(a, float) else math.hypot(*a),
+    "norm": lambda a: abs(a) if isinstance(a, float | int) else math.hypot(*a),
     "length": lambda a: float(len(a)),
     "pose_trans": _of_poses(lambda a, b: a @ b),
     "pose_inv": _of_poses(inverse),

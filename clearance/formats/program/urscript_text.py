@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import operator
 import re
 from dataclasses import dataclass, field
@@ -10,14 +9,12 @@ from dataclasses import dataclass, field
 from clearance.errors import BadSyntax, DuplicateName
 from clearance.formats.program.blocks import BlockReader
 from clearance.formats.program.expressions import (
-    COMPARED,
     Call,
     Constant,
     ExpressionReader,
     Name,
-    numeric,
 )
-from clearance.formats.program.grammar import Grammar
+from clearance.formats.program.grammar import Grammar, numeric, ranked
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -46,23 +43,11 @@ _NODE = re.compile(r'[ \t]*\$[ \t]*\d+[ \t]*"([^"]*)"')
 """A node of PolyScope with its label, above the lines that it makes."""
 
 GRAMMAR = Grammar(
-    binary={
-        "or": (1, lambda a, b: bool(a) or bool(b)),
-        "xor": (1, lambda a, b: bool(a) != bool(b)),
-        "and": (2, lambda a, b: bool(a) and bool(b)),
-        "==": (4, operator.eq),
-        "!=": (4, operator.ne),
-        **{word: (4, act) for word, act in COMPARED.items()},
-        "+": (5, numeric(operator.add)),
-        "-": (5, numeric(operator.sub)),
-        "*": (6, numeric(operator.mul)),
-        "/": (6, numeric(operator.truediv)),
-        "%": (6, numeric(math.fmod)),
-    },
+    binary=ranked("or xor", "and", "== != < > <= >=", "+ -", "* / %"),
     unary={
-        "not": (3, operator.not_),
-        "-": (7, lambda a: numeric(operator.mul)(-1.0, a)),
-        "+": (7, lambda a: numeric(operator.mul)(1.0, a)),
+        "not": (2, operator.not_),
+        "-": (6, lambda a: numeric(operator.mul)(-1.0, a)),
+        "+": (6, lambda a: numeric(operator.mul)(1.0, a)),
     },
     constants={"True": True, "False": False, "true": True, "false": False},
     before_items=("p",),
@@ -154,7 +139,7 @@ class _Reader(BlockReader):
     def _assignment(self, word: Token) -> Statement | None:
         """A variable's value, or a call."""
         scope = self.cursor.accept("global", "local")
-        target = self.expressions.expression(5)
+        target = self.expressions.expression(4)
         if not self.cursor.accept("="):
             if isinstance(target, Call):
                 return Do(word.line, target)

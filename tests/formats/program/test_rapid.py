@@ -213,7 +213,7 @@ FAULTS = {
     f"MoveL {P},v100,fine,tool0\\WObj:=desk;": "line 3: the work object is not known: 'desk'",
     "MoveL p10,v100,fine,tool0;": "line 3: the target is not known: 'p10'",
     f"MoveL {P},v100,fine,tool0\\Corr;": "line 3: \\corr changes the way",
-    "MoveL [[0,0,0],[0.5,0,0,0],[0,0,0,0],[0,0,0,0,0,0]],v100,fine,tool0;": "0.0] has length 0.5; length 1, q1",
+    "MoveL [[0,0,0],[0.5,0,0,0],[0,0,0,0],[0,0,0,0,0,0]],v100,fine,tool0;": "0] has length 0.5; length 1, q1",
     f"MoveL {P},fine,v100,tool0;": "line 3: MoveL is given data of another kind",
     f"MoveJ {P},[0,500,0,0],fine,tool0;": "line 3: the speed is 0 m/s; more than 0",
     "IF di1=1 THEN\nMoveL p,v100,fine,tool0;\nENDIF": "line 3: if decides on MoveL at line 4",

@@ -156,7 +156,7 @@ FAULTS = {
     "movej(1 / 0)": "this has no value",
     "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
     "RPC = rpc_factory(1)\nRPC.grip(20)": "line 2: 'RPC.grip' is no known instruction",
-    "while 1 == 1:\nx = [1]\nx[3] = 2\nend": "line 3: there is no part 3.0",
+    "while 1 == 1:\nx = [1]\nx[3] = 2\nend": "line 3: there is no part 3",
     "movej([0,0,0,0,0,1e999])": "a number of this earth",
     "a b": "line 1: 'b' is given; the end of the line is needed",
 }
