@@ -14,7 +14,13 @@ import numpy as np
 from clearance.case.motion_notes import check_not_given_twice
 from clearance.errors import BadInput, BadTime, MissingKey, at
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.robot.srdf import StatePositions, positions_in_states, states_known
+from clearance.formats.robot.srdf import (
+    NamedStates,
+    StatePositions,
+    bases_in_states,
+    positions_in_states,
+    states_known,
+)
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.case import states_of
 from clearance.formats.schema.timed import TrajectoryFile
@@ -60,12 +66,33 @@ def positions_asked(
     Raises:
         MissingKey: no file names states. BadInput: no such state, or two that do not agree.
     """
-    given = entry.robot
-    if given.srdf is None and not robot.states:
+    if entry.robot.srdf is None and not robot.states:
         raise MissingKey(f"state {names[0]!r} is in no file", valid=f"{entry.field}.srdf: the file")
-    srdf = None if given.srdf is None else resolved(given.srdf, folder)
-    known = states_known(srdf, robot, resolved(given.urdf, folder), files)
+    known = _known(entry, robot, folder, files)
     return known.shown, positions_in_states(known, names, robot)
+
+
+def bases_asked(
+    entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles
+) -> dict[str, np.ndarray]:
+    """(4, 4) [m] by virtual joint: where the states that the entry takes put the robot's base.
+
+    Raises:
+        BadInput: two that do not agree.
+    """
+    start = entry.trajectory.start_state if entry.trajectory else None
+    starts = [start] if isinstance(start, str) else start if isinstance(start, list) else []
+    names = [*states_of(entry.robot.joints), *starts]
+    if not names:
+        return {}
+    with at(entry.field):
+        return bases_in_states(_known(entry, robot, folder, files), names, robot)
+
+
+def _known(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles) -> NamedStates:
+    given = entry.robot
+    srdf = None if given.srdf is None else resolved(given.srdf, folder)
+    return states_known(srdf, robot, resolved(given.urdf, folder), files)
 
 
 def _note(

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.case.driven_robots import ProgrammedMotion, Surroundings
-from clearance.case.resting import positions_asked, resting_positions, with_start
+from clearance.case.resting import bases_asked, positions_asked, resting_positions, with_start
 from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore
@@ -18,7 +18,7 @@ from clearance.formats.robot.formats import read_robot
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
 from clearance.formats.robot.request import RobotRequest, checked_args
 from clearance.formats.robot.robot_element import XACRO
-from clearance.formats.robot.srdf import read_srdf
+from clearance.formats.robot.srdf import read_srdf, virtual_joints
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.case import states_of
 from clearance.formats.text.notes import note_on_rounded
@@ -79,12 +79,20 @@ class RobotReader:
             padding=padding,
             motion_limits=limits.motion_limits,
             path_tolerances=limits.path_tolerances,
+            bases=dict.fromkeys(self._unplaced(given, field)),
         )
         if given.base.is_rounded:
             self.notes.append(f"{field}.base: {note_on_rounded(1)[0]}")
         if given.base.on is not None:
             return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
         return replace(placed, world_from_base=given.base.matrix())
+
+    def _unplaced(self, given: schema.Robot, field: str) -> list[str]:
+        """The virtual joints that move a base which the case does not place."""
+        if given.srdf is None or "base" in given.model_fields_set:
+            return []
+        with at(f"{field}.srdf"):
+            return virtual_joints(resolved(given.srdf, self._folder), self._files)
 
     def _request(self, given: schema.Robot, field: str) -> RobotRequest:
         package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
@@ -190,6 +198,7 @@ def in_motion(
     resting = resting_positions(entry, placed.robot, moved, folder, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)
     moves["fixed_positions"] = resting.positions
+    moves["bases"] = placed.bases | bases_asked(entry, placed.robot, folder, files)
     return InMotion(replace(placed, **moves), (*notes, *resting.notes, *on_limits), driven)
 
 

@@ -19,6 +19,7 @@ from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
+from clearance.world.plausible_rest import misplaced
 from clearance.world.robot import JointKind
 from clearance.world.rules import Allowance, matches
 from clearance.world.timeline import timeline_of
@@ -26,9 +27,6 @@ from clearance.world.timing import Window
 
 ORIGIN = 1e-9
 """[m] and [-] How far a link's pose may be off the world's and count as the same."""
-
-NEAR_BASE = 1e-4
-"""[m] and [-] How far a robot's base may be from where a scene's file has it, whose numbers may be rounded."""
 
 WORLD_FRAMES = ("world", "map", "odom", "earth")
 """Names of frames that stand, beside those of links. Source: ROS, REP 105."""
@@ -101,15 +99,8 @@ def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
 def _on_bases(case: Case, content: SceneContent) -> Iterator[Notice]:
     """A notice for each place where the scene's file says that a robot stands, and no robot of the case does."""
     for joint, pose in content.bases.items():
-        standing = [placed.world_from_base for placed in case.robots if placed.mount is None]
-        if not any(np.allclose(pose, one, rtol=0.0, atol=NEAR_BASE) for one in standing):
-            place = ", ".join(f"{one:g}" for one in pose[:3, 3])
-            yield Notice(
-                Severity.SUSPECT,
-                "frame",
-                f"CHECK FRAME: the scene's file has its robot at ({place}) m by joint {joint!r}, and "
-                "the case does not; give it as the robot's base",
-            )
+        standing = (placed.world_from_base for placed in case.robots if placed.mount is None)
+        yield from misplaced("the scene's file", joint, pose, standing)
 
 
 def _on_frames_of_poses(case: Case) -> Iterator[Notice]:

@@ -58,6 +58,7 @@ class PlacedRobot:
         path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
         trajectory_path: the file that the trajectory is from; empty where it is from none.
         recording: whose measured motion the trajectory is; None where the trajectory is commanded.
+        bases: (4, 4) [m] by virtual joint where states put the base; None where neither they nor the case say so.
     """
 
     robot: Robot
@@ -75,6 +76,7 @@ class PlacedRobot:
     path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
     trajectory_path: str = ""
     recording: Recording | None = None
+    bases: Mapping[str, np.ndarray | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.self_clearance, bool):

@@ -1,12 +1,50 @@
-"""Notices on joints that a trajectory leaves out and nobody else gives: they stay at 0."""
+"""Notices on joints that a trajectory leaves out and nobody else gives: they stay at 0; and on such bases."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+
+import numpy as np
 
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, Robot
+
+NEAR_BASE = 1e-4
+"""[m] and [-] How far a robot's base may be from where a file has it, whose numbers may be rounded."""
+
+
+def notices_on_bases(placed: PlacedRobot) -> list[Notice]:
+    """Notices on a base that a virtual joint moves: nobody says where it is, or states have it elsewhere."""
+    found, about = [], placed.robot.name
+    for joint, pose in placed.bases.items():
+        if pose is not None:
+            found += misplaced("a state of the SRDF", joint, pose, [placed.world_from_base])
+        else:
+            text = (
+                f"virtual joint {joint!r} of the SRDF moves the base of robot {about!r}, and nobody says where "
+                "it is: it stands at the origin of the world; robot: {base: …} says where"
+            )
+            found.append(Notice(Severity.WARNING, "rest", text, about))
+    return found
+
+
+def misplaced(
+    said_by: str, joint: str, pose: np.ndarray, bases: Iterable[np.ndarray]
+) -> list[Notice]:
+    """Suspect input, if a file puts a robot's base elsewhere than the case puts any; its own origin says nothing.
+
+    Args:
+        joint: by which it does. pose: (4, 4) [m]. bases: those of the case, alike.
+    """
+    if any(np.allclose(pose, one, rtol=0.0, atol=NEAR_BASE) for one in (np.eye(4), *bases)):
+        return []
+    place = ", ".join(f"{one:g}" for one in pose[:3, 3])
+    text = (
+        f"CHECK FRAME: {said_by} has its robot at ({place}) m by joint {joint!r}, and the case does not; "
+        "give it as the robot's base"
+    )
+    return [Notice(Severity.SUSPECT, "frame", text)]
 
 
 def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:

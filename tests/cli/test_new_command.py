@@ -294,6 +294,22 @@ def test_states_of_the_srdf_make_a_motion_and_rest(capsys):
     assert "# state: home  # where a state says; there are [home, out]" in text
 
 
+def test_the_base_is_where_the_states_put_it(capsys):
+    srdf = Path("cell/arm.srdf")
+    text, root = srdf.read_text(), '<joint name="root" value="0 0 0.5 0 0 0 1"/>'
+    srdf.write_text(text.replace('name="home" group="arm">', f'name="home" group="arm">{root}'))
+    assert new("--srdf", "cell/arm.srdf", "--states", "home,out") == 0
+    assert "link 'base' stands at the origin" not in capsys.readouterr().out
+    case = load_case("out/case.yaml")
+    assert case.robots[0].world_from_base[:3, 3].tolist() == [0.0, 0.0, 0.5]
+    moved = srdf.read_text().replace(
+        'name="out" group="arm">', f'name="out" group="arm">{root.replace("0.5", "0.6")}'
+    )
+    srdf.write_text(moved)
+    assert new("--srdf", "cell/arm.srdf", "--states", "home,out", "--force") == 2
+    assert "joint 'root': it puts the robot's base elsewhere" in capsys.readouterr().err
+
+
 def test_what_a_scene_says_is_held_is_carried_also_between_states():
     words = ["--srdf", "cell/arm.srdf", "--states", "home,out", "--scene", "cell/held.yaml"]
     assert new(*words) == 0

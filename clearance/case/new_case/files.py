@@ -22,7 +22,13 @@ from clearance.errors import BadInput, MissingKey, NothingToMeasure, at
 from clearance.formats.files.input_files import InputFiles, path_from, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.motion.trajectory_writer import written
-from clearance.formats.robot.srdf import NamedStates, names_of, positions_in_states, states_known
+from clearance.formats.robot.srdf import (
+    NamedStates,
+    bases_in_states,
+    names_of,
+    positions_in_states,
+    states_known,
+)
 from clearance.formats.text.notes import counted
 from clearance.formats.text.yaml_text import flow
 from clearance.world.case import Case, Source
@@ -83,6 +89,11 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
     meshes = MeshStore(files)
     robot = new_robot(given, meshes)
     trajectory, source = _motion(given, robot, files)
+    with at("states"):
+        taken = bases_in_states(
+            _states(given, robot, files), [*given.states, *given.rest], robot.placed.robot
+        )
+    robot = robot.standing(taken)
     with at("scene"):
         moving = replace(robot.placed, trajectory=trajectory)
         scene = new_scene(given, moving, meshes, folder)

@@ -6,15 +6,18 @@ Not for: its motion and its scene (`files`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from clearance.case.driven_robots import Surroundings
 from clearance.case.robots import RobotReader
 from clearance.errors import NothingToMeasure
 from clearance.formats.files.input_files import path_from, resolved
 from clearance.formats.mesh_store import MeshStore
+from clearance.formats.scene.request import pose_row
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.timed import TrajectoryFile
@@ -112,9 +115,18 @@ class NewRobot:
         if "package_dirs" in keys:
             keys["package_dirs"] = [path_from(folder, one) for one in keys["package_dirs"]]
         first = {key: keys.pop(key) for key in ("urdf", *_FIRST) if key in keys}
-        base = {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 0.0, 0.0]}
+        base = pose_row(self.placed.world_from_base)
+        base = {"base": base if "quat_xyzw" in base else {**base, "rpy": [0.0, 0.0, 0.0]}}
+        if self._is_placed is None:  # each check warns
+            base = {}
         keys.pop("joints", None)
-        return {**first, "base": base, "geometry": keys.pop("geometry", "collision"), **keys}
+        return {**first, **base, "geometry": keys.pop("geometry", "collision"), **keys}
+
+    def standing(self, bases: Mapping[str, np.ndarray]) -> NewRobot:
+        """The robot where states put its base, by the virtual joint that does."""
+        bases = {**self.placed.bases, **bases}
+        where = next((one for one in bases.values() if one is not None), np.eye(4))
+        return replace(self, placed=replace(self.placed, bases=bases, world_from_base=where))
 
     def resting(self, trajectory: Trajectory) -> dict[str, Any]:
         """What stands under `joints` for those that a trajectory does not move."""
@@ -131,11 +143,13 @@ class NewRobot:
             + (", and so the robot's file has it" if reference.get(joint.name) else "")
             for joint in self._unset_joints(trajectory)
         }
-        return {"base": f"assumed: {self._stands}", **left}
+        said_by = "by the states" if self._is_placed else "assumed"
+        return {"base": f"{said_by}: {self._stands}", **left}
 
     def assumed(self, trajectory: Trajectory, is_alone: bool) -> Iterator[str]:
         """A line each on what nobody said."""
-        yield self._stands
+        if not self._is_placed:
+            yield self._stands
         if self.is_seen_only:
             yield "no link has a collision shape: the visual shapes are measured"
         if is_alone:
@@ -160,7 +174,15 @@ class NewRobot:
 
     @property
     def _stands(self) -> str:
-        return f"link {self.root!r} stands at the origin of the world"
+        x, y, z = self.placed.world_from_base[:3, 3]
+        where = f"({x:g}, {y:g}, {z:g}) m" if x or y or z else "the origin of the world"
+        return f"link {self.root!r} stands at {where}"
+
+    @property
+    def _is_placed(self) -> bool | None:
+        """True if states put its base somewhere; None if a virtual joint moves it, and no state says where."""
+        said = [one is not None for one in self.placed.bases.values()]
+        return None if False in said else True in said
 
     def _rest(self, joint: Joint) -> float:
         """[rad] or [m] where its own file has it, or 0; else the limit that is nearest to that."""

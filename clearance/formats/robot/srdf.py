@@ -1,7 +1,8 @@
 """SRDF, MoveIt's file of which links of a robot may touch, to a `CollisionMatrix`; and its named states, or
 those of the robot's own file, to positions of its joints.
 
-Groups, end effectors and virtual joints are passed over. Not for: what an excuse is worth.
+A planar or floating virtual joint is the place of the base. Groups and end effectors are passed over. Not for:
+what an excuse is worth.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from clearance.errors import (
     BadRobot,
@@ -23,6 +26,8 @@ from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.robot_element import robot_element
 from clearance.formats.text.numbers import finite_numbers
 from clearance.formats.text.unread import Format, Row, unread
+from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.geometry.quaternions import of_unit_length
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.names import checked_name
 from clearance.world.notice import listed
@@ -242,6 +247,52 @@ def positions_in_states(known: NamedStates, names: Sequence[str], robot: Robot) 
         f"{shown}: of state {listed(states_text)}, joints that cannot be set are left out: {listed(unsettable, 8)}"
     ]
     return StatePositions(positions, tuple(notes if unsettable else ()))
+
+
+def bases_in_states(
+    known: NamedStates, names: Sequence[str], robot: Robot
+) -> dict[str, np.ndarray]:
+    """(4, 4) [m] where states put the robot's base, by the virtual joint that does.
+
+    Raises:
+        UnknownState: as `positions_in_states`. BadInput: two that put it at different places, or no pose.
+    """
+    own = {joint.name.partition("/")[0] for joint in robot.joints}
+    bases: dict[str, np.ndarray] = {}
+    with at(known.shown):
+        for state in (_chosen(name, known.states) for name in names):
+            for joint, values in state.positions.items():
+                if joint in own or len(values) not in (3, 7):
+                    continue
+                with at(f"state {state.full_name!r}: joint {joint!r}"):
+                    pose = _base(values)
+                    if not np.array_equal(bases.setdefault(joint, pose), pose):
+                        raise BadRobot(
+                            "it puts the robot's base elsewhere than a state before",
+                            valid="one place; a base that moves is a planar or floating joint of the URDF",
+                        )
+    return bases
+
+
+def _base(values: Sequence[float]) -> np.ndarray:
+    """(4, 4) [m] of a planar joint (x, y, theta) or a floating one (x, y, z and a quaternion xyzw).
+
+    Source: MoveIt 2, planar_joint_model and floating_joint_model.
+    """
+    if len(values) == 3:
+        return pose_from_rpy([*values[:2], 0.0], [0.0, 0.0, values[2]])
+    return pose_from_quaternion(values[:3], of_unit_length(np.array([values[3:]]))[0][0])
+
+
+def virtual_joints(path: Path, files: InputFiles) -> list[str]:
+    """The planar and floating virtual joints of an SRDF file: they say that the robot's base moves.
+
+    Raises:
+        BadInput: as `srdf_root`.
+    """
+    with at(files.shown(path)):
+        found = srdf_root(path, files).iterfind("virtual_joint")
+        return [_named(one, "name") for one in found if one.get("type") in ("planar", "floating")]
 
 
 def read_states(path: Path, files: InputFiles) -> list[GroupState]:

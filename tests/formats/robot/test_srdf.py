@@ -1,10 +1,13 @@
 """SRDF files: which pairs they excuse, where named states let joints rest, and which are refused."""
 
+import numpy as np
 import pytest
 
 from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, UnknownState
 from clearance.formats.robot.srdf import load_srdf
 from clearance.world.collision_matrix import BY_DEFAULT
+from clearance.world.notice import Severity
+from clearance.world.plausibility import notices_of
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_urdf import collision, joint, link, load_robot, robot
 
@@ -204,6 +207,50 @@ def test_joints_that_cannot_be_set_are_left_out_with_a_note(tmp_path):
     assert any("cannot be set are left out: flange, root_joint" in note for note in case.notes)
     with pytest.raises(BadInput, match="'arm/home' speaks of no joint that robot 'arm' can move"):
         load(tmp_path, document=srdf(state(more)))
+
+
+TURNED = "{xyz: [1, 2, 0], rpy: [0, 0, 0.5]}"
+
+
+@pytest.mark.parametrize(
+    ("value", "base", "is_told"),
+    [
+        ("0 0 0.4792 0 0 0 1", "{}", True),
+        ("0 0 0.4792 0 0 0 1", "{xyz: [0, 0, 0.4792]}", False),
+        ("1 2 0.5", "{xyz: [1, 2, 0]}", True),
+        ("1 2 0.5", TURNED, False),
+        (f"1 2 0 0 0 {np.sin(0.25)} {np.cos(0.25)}", TURNED, False),
+        ("0 0 0", "{xyz: [1, 2, 0]}", False),
+    ],
+)
+@pytest.mark.parametrize("asked", ["joints", "start_state"])
+def test_a_state_that_puts_the_base_elsewhere_than_the_case_is_suspect(
+    tmp_path, asked, value, base, is_told
+):
+    at_home = state(f'{JOINTS}<joint name="root" value="{value}"/>')
+    keys, start = (
+        ("joints: {state: home}", "") if asked == "joints" else ("", ", start_state: home")
+    )
+    case = changed("urdf: arm.urdf", f"urdf: arm.urdf, srdf: arm.srdf, base: {base}, {keys}")
+    case = case.replace("path.csv", f"path.csv{start}")
+    table = "time,shoulder\n0.5,0\n1,0.5\n" if start else "time,shoulder\n0,0\n1,0.5\n"
+    read = load_small(tmp_path, case, urdf=TWO_JOINTS, arm__srdf=srdf(at_home), trajectory=table)
+    told = [one for one in notices_of(read) if one.kind == "frame"]
+    assert [(one.severity, "joint 'root'" in one.text) for one in told] == (
+        [(Severity.SUSPECT, True)] * is_told
+    )
+
+
+@pytest.mark.parametrize("kind", ["planar", "floating", "fixed"])
+@pytest.mark.parametrize("base", ["", ", base: {xyz: [0, 0, 0]}"])
+def test_a_base_that_moves_by_the_srdf_and_is_placed_by_nobody_is_warned_of(tmp_path, kind, base):
+    document = srdf(
+        f'<virtual_joint name="root" type="{kind}" parent_frame="odom" child_link="base"/>'
+    )
+    case = changed("urdf: arm.urdf", f"urdf: arm.urdf, srdf: arm.srdf, self_clearance: true{base}")
+    read = load_small(tmp_path, case, arm__srdf=document)
+    told = [one for one in notices_of(read) if "virtual joint 'root'" in one.text]
+    assert len(told) == (kind != "fixed" and not base)
 
 
 @pytest.mark.parametrize(
