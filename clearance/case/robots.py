@@ -198,7 +198,7 @@ def in_motion(
     resting = resting_positions(entry, placed.robot, moved, folder, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)
     moves["fixed_positions"] = resting.positions
-    moves["bases"] = placed.bases | bases_asked(entry, placed.robot, folder, files)
+    moves["bases"] = {**placed.bases, **bases_asked(entry, placed.robot, folder, files)}
     return InMotion(replace(placed, **moves), (*notes, *resting.notes, *on_limits), driven)
 
 

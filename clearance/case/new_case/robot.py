@@ -115,8 +115,8 @@ class NewRobot:
         if "package_dirs" in keys:
             keys["package_dirs"] = [path_from(folder, one) for one in keys["package_dirs"]]
         first = {key: keys.pop(key) for key in ("urdf", *_FIRST) if key in keys}
-        base = pose_row(self.placed.world_from_base)
-        base = {"base": base if "quat_xyzw" in base else {**base, "rpy": [0.0, 0.0, 0.0]}}
+        pose = pose_row(self.placed.world_from_base)
+        base = {"base": pose if "quat_xyzw" in pose else {**pose, "rpy": [0.0, 0.0, 0.0]}}
         if self._is_placed is None:  # each check warns
             base = {}
         keys.pop("joints", None)
@@ -124,9 +124,9 @@ class NewRobot:
 
     def standing(self, bases: Mapping[str, np.ndarray]) -> NewRobot:
         """The robot where states put its base, by the virtual joint that does."""
-        bases = {**self.placed.bases, **bases}
-        where = next((one for one in bases.values() if one is not None), np.eye(4))
-        return replace(self, placed=replace(self.placed, bases=bases, world_from_base=where))
+        known = {**self.placed.bases, **bases}
+        where = next((one for one in known.values() if one is not None), np.eye(4))
+        return replace(self, placed=replace(self.placed, bases=known, world_from_base=where))
 
     def resting(self, trajectory: Trajectory) -> dict[str, Any]:
         """What stands under `joints` for those that a trajectory does not move."""
