@@ -153,7 +153,7 @@ class Execution(Remarks):
             case Assign():
                 self._assign(one)
             case Do():
-                return self._do(one.call)
+                return self._called(one.call, False)[1]
             case If():
                 return self._branch(one)
             case While():
@@ -194,17 +194,24 @@ class Execution(Remarks):
         Raises:
             BadInput: none of them, which may move the robot.
         """
+        return self._called(call, True)[0]
+
+    def _called(self, call: Call, has_value: bool) -> tuple[Any, Leave | None]:
+        """The value of a call, if it has one, and the end of the program if it comes in it."""
         call = with_passed(call, self.frames[-1])
         if call.name in self.skip:
             self._leave_out(call)
-            return Unknown(f"{call.name} ({call.line}) is left out")
+            return Unknown(f"{call.name} ({call.line}) is left out"), None
         if call.name in self.routines:
-            return self._called(self.routines[call.name], call)[0]
-        if (moves := self.language.moves(call.name)) is not False:
+            return self._run_routine(self.routines[call.name], call)
+        moves = self.language.moves(call.name)
+        if moves is None or (moves and has_value):
             raise unknown_word(call.name, self.language.suffix, moves)
+        if not has_value:
+            return self.language.instruct(call, self), None  # type: ignore[func-returns-value]
         if self.language.waits(call):
             self.note(WAITS, f"{call.name} ({call.line})")
-        return self.language.result_of(call, self)
+        return self.language.result_of(call, self), None
 
     def _assign(self, one: Assign) -> None:
         name = assigned(one.target)
@@ -250,22 +257,10 @@ class Execution(Remarks):
 
     def enter(self, routine: Routine) -> None:
         """Runs a routine that takes no arguments."""
-        self._called(routine, Call(routine.name, (), {}, routine.line))
+        self._run_routine(routine, Call(routine.name, (), {}, routine.line))
 
-    def _do(self, call: Call) -> Leave | None:
-        call = with_passed(call, self.frames[-1])
-        if call.name in self.skip:
-            self._leave_out(call)
-        elif call.name in self.routines:
-            return self._called(self.routines[call.name], call)[1]
-        elif self.language.moves(call.name) is None:
-            raise unknown_word(call.name, self.language.suffix)
-        else:
-            self.language.instruct(call, self)
-        return None
-
-    def _called(self, routine: Routine, call: Call) -> tuple[Any, Leave | None]:
-        """The value of a routine, and the end of the program if it comes in it.
+    def _run_routine(self, routine: Routine, call: Call) -> tuple[Any, Leave | None]:
+        """As `_called`, of a routine.
 
         Raises:
             BadInput: other arguments than it has; too many routines in one another.
@@ -296,19 +291,19 @@ class Execution(Remarks):
         return value, left if left is not None and left.what == STOP else None
 
     def _branch(self, one: If) -> Leave | None:
-        for n_asked, (condition, body) in enumerate(one.branches, 1):
-            value = True if condition is None else value_of(condition, self)
+        asked, way = list[Expression](), tuple[Statement, ...]()
+        for condition, body in one.branches:
+            value = True
+            if condition is not None:
+                asked.append(condition)
+                value = value_of(condition, self)
             if isinstance(value, Unknown):
                 self._pass_branches(one, value)
                 return None
             if value:
-                return self._way(one, n_asked, body)
-        return self._way(one, len(one.branches), ())
-
-    def _way(self, one: If, n_asked: int, body: tuple[Statement, ...]) -> Leave | None:
-        """Runs one way of a branch, of which so many conditions were looked at."""
-        asked = [condition for condition, _ in one.branches[:n_asked] if condition is not None]
-        origin, left = self.persistent.origin_of(asked), self.run(body)
+                way = body
+                break
+        origin, left = self.persistent.origin_of(asked), self.run(way)
         self._doubt(one, origin)
         return left
 

@@ -6,6 +6,7 @@ aggregates, approximation, status and turn); KUKA's own `bas.src` 8.3 (what `BAS
 
 from __future__ import annotations
 
+import copy
 import math
 import re
 from collections.abc import Mapping
@@ -190,7 +191,7 @@ class _Krl(Language):
         first = call.args[0]
         if isinstance(first, Name) and first.name in STANDS and len(call.args) == 1:
             return
-        saved = {name: run.variables[name] for name in SAVED}
+        saved = {name: copy.deepcopy(run.variables[name]) for name in SAVED}
         settings = Settings(run, call.line)
         for name, word_value in call.named.items():
             if name.startswith("WITH"):

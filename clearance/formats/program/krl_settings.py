@@ -27,6 +27,7 @@ from clearance.formats.program.krl_expressions import (
     matrix_of,
     why,
 )
+from clearance.formats.program.statements import Assign, assigned
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 
@@ -92,14 +93,11 @@ class Settings:
 
     def assign(self, target: Expression, value: Expression) -> None:
         """Sets what `WITH` says of a move."""
-        parts = []
-        while not isinstance(target, Name):
-            parts.append(target.by if isinstance(target.by, str) else self.run.evaluated(target.by))  # type: ignore[union-attr]
-            target = target.of  # type: ignore[union-attr]
-        if target.name == "$VEL_AXIS":
+        name = assigned(target)
+        if name is not None and name.name == "$VEL_AXIS":
             self.share(self.run.evaluated(value))
-        elif target.name in SAVED:
-            self.set(target.name, self.run.evaluated(value), *(key_of(part) for part in parts))
+        elif name is None or name.name in SAVED:
+            self.run.run([Assign(self.line, target, value, is_of_all=True)])
 
     def share(self, value: Any) -> None:
         """Sets the speed of all axes [%]."""
