@@ -7,6 +7,7 @@ Not for: the proof (`verification`), nor the comparison of files (`remade_report
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -19,7 +20,7 @@ from clearance.case.packed import require_entry, unpacked
 from clearance.errors import BadSyntax, MissingFile, NoReceipt, Unavailable, at, shown
 from clearance.extras import require
 from clearance.files import LAST
-from clearance.findings.verdict import KEPT, Verdict
+from clearance.findings.verdict import KEPT
 from clearance.receipt.asked import changed_options, question_of
 from clearance.receipt.case_data import CaseData, case_data
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
@@ -138,7 +139,7 @@ def _compared_with_report(
     unproven = next(_not_borne(run, data, receipt), "")
     if why:
         reasons = {why: sorted(different)} | reasons
-        failure = _other_verdict(run.verdict, place) or unproven
+        failure = _other_answer(run, place) or unproven
         return replace(found, failure=failure, not_verified=_by_reason(reasons))
     if receipt.head["compared"] and different.pop(PAGE, ""):
         reasons = {"it shows a comparison with another run": [PAGE]} | reasons
@@ -190,15 +191,35 @@ def _beyond(run: Run, data: CaseData, receipt: Receipt) -> dict[str, float]:
     }
 
 
-def _other_verdict(verdict: Verdict, place: Path) -> str:
-    """That the summary in a folder has another verdict; empty if it has not."""
+AGREES = 1e-6
+"""[m] How far clearances of a summary may be off those of a fresh run with other versions of libraries."""
+
+
+def _other_answer(run: Run, place: Path) -> str:
+    """That the summary in a folder has another verdict or other clearances; empty if it has not."""
     try:
-        reported = json.loads((place / LAST).read_bytes())["verdict"]
-    except (OSError, ValueError, TypeError, KeyError, RecursionError):
-        reported = "nothing"
-    if reported == verdict.status:
-        return ""
-    return f"{LAST} says {shown(repr(reported))[:60]}, a fresh run says {verdict.status}"
+        reported = json.loads((place / LAST).read_bytes())
+        verdict, found = reported["verdict"], dict(_clearances(reported))
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        verdict, found = "nothing", {}
+    if verdict != run.status:
+        return f"{LAST} says {shown(repr(verdict))[:60]}, a fresh run says {run.status}"
+    for name, fresh in _clearances(run.summary):
+        if not abs(found.get(name, math.nan) - fresh) <= AGREES:
+            given = found.get(name, "nothing")
+            return f"{LAST} says {shown(repr(given))[:60]} for {name}, a fresh run says {fresh}"
+    return ""
+
+
+def _clearances(content: object, name: str = "") -> Iterator[tuple[str, float]]:
+    """Each clearance and proven bound [m] of a summary, by where it stands."""
+    rows = content.items() if isinstance(content, dict) else ()
+    for key, value in enumerate(content) if isinstance(content, list) else rows:
+        place = f"{name}.{key}".lstrip(".")
+        if key in ("clearance", "lower_bound") and isinstance(value, int | float):
+            yield place, float(value)
+        else:
+            yield from _clearances(value, place)
 
 
 def cases_of(

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import UnknownLink, UnknownObstacle
+from clearance.findings.limit_lines import profile_text
 from clearance.profiles.answer import answer_profiles
 from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
@@ -218,6 +219,7 @@ def test_a_reserved_outline_is_held_against_what_is_in_hand_too(top, kept):
     case = replace(case, obstacles=(*case.obstacles, wall), profiles=(space,))
     (answer,) = cl.check(case).record.profiles
     assert answer.passed == answer.contained == kept
+    assert f": {'kept' if kept else 'NOT KEPT'}, gap " in profile_text(answer)
     assert (answer.link, answer.step) in {("part", 1), ("part", 2)}
     assert answer.gap == pytest.approx(top - 1.1, abs=1e-3)
     line = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])

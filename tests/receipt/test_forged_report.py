@@ -164,7 +164,8 @@ def test_no_value_of_the_summary_passes_as_made_elsewhere(report, tmp_path, answ
         hashed(folder, path.name, maker=maker)
         line = first_line(folder)
         assert line.startswith("PROVEN, NOT VERIFIED: summary.json (made by numpy 1.0, here") or (
-            line.startswith("NOT PROVEN: summary.json says") and way[-1] == "verdict"
+            line.startswith("NOT PROVEN: summary.json says")
+            and way[-1] in ("verdict", "clearance", "lower_bound")
         ), way
 
 
@@ -272,6 +273,19 @@ def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
     hashed(tmp_path, maker=read_receipt(tmp_path / FILE_NAME).head["maker"] | OTHER)
     told = "NOT PROVEN: summary.json says 'clear', a fresh run says violated"
     assert first_line(tmp_path, violated()) == told
+
+
+@pytest.mark.slow
+def test_a_clearance_that_was_raised_is_found_whatever_made_the_report(tmp_path):
+    saved(turning_arm(), tmp_path)
+
+    def raised(summary):
+        summary["worst"]["clearance"] += 0.8
+
+    with_summary(tmp_path, raised)
+    hashed(tmp_path, maker=read_receipt(tmp_path / FILE_NAME).head["maker"] | OTHER)
+    told = r"NOT PROVEN: summary\.json says \S+ for worst\.clearance, a fresh run says \S+"
+    assert re.fullmatch(told, first_line(tmp_path, turning_arm()))
 
 
 @pytest.mark.slow

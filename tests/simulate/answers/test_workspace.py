@@ -33,6 +33,7 @@ from tests import cells
 from tests.examples import examples
 from tests.made_cases import l_prism
 from tests.report.records import arm, moved
+from tests.world.test_shortfall import off
 
 WITH_MANIFOLD = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
 
@@ -67,6 +68,15 @@ def test_two_sliders_that_cross_share_a_cube():
     assert found.leaves == 0.0  # sliding is straight
     (pair,) = found.links
     assert (pair.robot_a, pair.link_a, pair.robot_b, pair.link_b) == ("one", "cube", "two", "cube")
+
+
+@WITH_MANIFOLD
+def test_a_body_that_may_stand_outside_its_facets_is_refused():
+    one, two = slider("one", (1, 0, 0), -1.0, 1.0), slider("two", (0, 1, 0), -1.0, 1.0)
+    cad = Obstacle(Body("cad", off(cl.box((0.1, 0.1, 0.1)), 0.001)))
+    cases = [replace(case, obstacles=(cad,)) for case in (one, two)]
+    with pytest.raises(BadInput, match="'cad' may stand 1 mm outside its facets, which a shared w"):
+        shared_workspace(cases)
 
 
 @WITH_MANIFOLD
