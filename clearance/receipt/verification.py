@@ -15,8 +15,8 @@ import numpy as np
 from clearance.errors import refuse_truth, shown
 from clearance.receipt.case_data import CaseData
 from clearance.receipt.claims import judged, missing
-from clearance.receipt.proof.depths import depths_reached
 from clearance.receipt.proof.halving import halves_of
+from clearance.receipt.proof.items import depths_reached
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import EvidenceReader, Receipt

@@ -250,7 +250,7 @@ def test_clouds_are_balls(tmp_path):
 
 PROVES = """
 import sys
-import clearance.receipt.proof.proving, clearance.receipt.proof.depths
+import clearance.receipt.proof.proving, clearance.receipt.proof.items
 rooms = ("kernels", "compile", "query", "simulate", "world")
 barred = {"numba", *("clearance." + room for room in rooms)}
 print(*sorted(barred & {".".join(name.split(".")[:2]) for name in sys.modules}))

@@ -6,15 +6,24 @@ left out. Not for: proving (`proof`).
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
+from clearance.receipt.proof.motion_data import Stretch
 
 BALLS, BYTE_DIRECTION, SHORT_DIRECTION, LONG_DIRECTION, CUT_TIME, CUT_A, CUT_B = range(7)
 """What is done with an item: proven as balls or along a direction of 1, 2 or 4 bytes a coordinate; or cut."""
 
 DEEPEST = 36
 """Halvings of an interval at most: pieces begin and end at floats, and their numbers are 64 bits long."""
+
+EIGHTHS = 3
+"""Cuts below a node that its bound looks at (`halving.over_corners`)."""
+
+MOST_CUTS = 40
+"""Of a body; more than any has that fits in memory."""
 
 
 class Items(NamedTuple):
@@ -70,3 +79,24 @@ def cut(items: Items, deeds: np.ndarray) -> Items:
         np.where(inside, 2 * found.part + second, found.part),
         np.where(inside, found.depth + 1, found.depth),
     )
+
+
+def depths_reached(
+    stretches: Sequence[Stretch], n_bodies: int, deeds: Callable[[int], np.ndarray]
+) -> np.ndarray:
+    """(bodies,) how often the finest node of each that is spoken of, or looked at for it, is cut out of the body.
+
+    Args:
+        deeds: what is done with the next so many items.
+    """
+    found = np.zeros(n_bodies, dtype=np.int64)
+    for stretch in stretches:
+        items = first_items(len(stretch.pairs), stretch.n_intervals)
+        while len(items.pair) and found.max() < MOST_CUTS:
+            done = deeds(len(items.pair))
+            for k, nodes, deed in ((0, items.node_a, CUT_A), (1, items.node_b, CUT_B)):
+                rows = np.flatnonzero(done == deed)
+                depth = np.frexp(nodes[rows] + 1.0)[1]  # of the halves
+                np.maximum.at(found, stretch.pairs[items.pair[rows], k], depth)
+            items = cut(items, done)
+    return found + EIGHTHS
