@@ -58,24 +58,12 @@ def batch() -> None:
     require("tables", "clearance batch")
 
 
-class _ShardParamType(click.ParamType):
-    """A part of several, as 2/5."""
-
-    name = "i/n"
-
-    def convert(
-        self,
-        value: str | tuple[int, int],
-        param: click.Parameter | None,
-        ctx: click.Context | None,
-    ) -> tuple[int, int]:
-        """The two numbers."""
-        if isinstance(value, tuple):
-            return value
-        first, _, second = value.partition("/")
-        if not (first.isdecimal() and second.isdecimal() and 1 <= int(first) <= int(second)):
-            self.fail(f"{value!r} is no part; i/n with i from 1 to n, as 2/5", param, ctx)
-        return int(first), int(second)
+def _part(value: str) -> tuple[int, int]:
+    """The two numbers of a part of several, as 2/5."""
+    first, _, second = value.partition("/")
+    if not (first.isdecimal() and second.isdecimal() and 1 <= int(first) <= int(second)):
+        raise click.BadParameter(f"{value!r} is no part; i/n with i from 1 to n, as 2/5")
+    return int(first), int(second)
 
 
 def _report_unread(given: dict[str, Any], error: click.UsageError) -> None:
@@ -112,7 +100,7 @@ def _withdraw(place: Path, error: Exception | None = None) -> None:
 )
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler.")
 @click.option(
-    "--shard", type=_ShardParamType(), help="Measure every n-th case only, from the i-th on."
+    "--shard", type=_part, metavar="I/N", help="Measure every n-th case only, from the i-th on."
 )
 @click.option("--fresh", is_flag=True, help="Measure all again, whatever the store has.")
 @click.option(

@@ -10,13 +10,13 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.new_given import (
-    KeysParamType,
-    NamesParamType,
-    StartParamType,
     given_of,
+    keys_in,
     merged,
     motion_of,
+    names_in,
     naming_options,
+    start_in,
 )
 from clearance.cli.notices import say_notices
 from clearance.cli.options import INCLUDE_OPTION, OutputPath, SortParamType, xacro_options
@@ -64,7 +64,7 @@ _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
 )
 @click.option(
     "--joints",
-    type=NamesParamType(),
+    type=names_in,
     metavar="A,B,…",
     help="Joints of the columns of a CSV without a header, in order.",
 )
@@ -76,7 +76,7 @@ _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
 )
 @click.option(
     "--states",
-    type=NamesParamType(),
+    type=names_in,
     metavar="A,B,…",
     help="Move through these states of the SRDF (or keyframes of MJCF), in place of a trajectory.",
 )
@@ -98,13 +98,13 @@ _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
 @click.option(
     "--program-keys",
     multiple=True,
-    type=KeysParamType(),
+    type=keys_in,
     metavar="YAML",
     help="Other keys of the program: 'axes_as: abb, zones: {CNT: 0.05}'. May be given again.",
 )
 @click.option(
     "--start",
-    type=StartParamType(),
+    type=start_in,
     metavar="JOINT=VALUE,…|STATE",
     help="Joint positions at the start of the program [rad or m], or a state of the SRDF.",
 )

@@ -36,61 +36,41 @@ _KEYS_OF_PROGRAM = re.compile(r"program: (\{.*\})")
 """Keys of a program as errors name them."""
 
 
-class NamesParamType(click.ParamType):
+def names_in(value: str) -> list[str]:
     """Names with commas between them."""
-
-    name = "names"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> list[str]:
-        """The names."""
-        names = [name.strip() for name in value.split(",")]
-        if not all(names):
-            self.fail(f"{value!r} has an empty name; names with commas between them", param, ctx)
-        return names
+    names = [name.strip() for name in value.split(",")]
+    if not all(names):
+        raise click.BadParameter(f"{value!r} has an empty name; names with commas between them")
+    return names
 
 
-class KeysParamType(click.ParamType):
-    """Keys of a case file, as YAML."""
+def keys_in(value: str) -> dict[str, Any]:
+    """Keys of a case file, as YAML, with their values."""
+    from clearance.errors import ClearanceError
+    from clearance.plain_yaml import plain_data
 
-    name = "keys"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, Any]:
-        """The keys with their values."""
-        from clearance.errors import ClearanceError
-        from clearance.plain_yaml import plain_data
-
-        try:
-            found = plain_data(value.encode())
-        except ClearanceError as error:
-            try:  # several keys, with commas between them
-                found = plain_data(f"{{{value}}}".encode())
-            except ClearanceError:
-                self.fail(f"{value!r}: {error}", param, ctx)
-        if not isinstance(found, dict):
-            self.fail(f"{value!r} has no keys; as in 'zones: {{CNT: 0.05}}'", param, ctx)
-        return found
+    try:
+        found = plain_data(value.encode())
+    except ClearanceError as error:
+        try:  # several keys, with commas between them
+            found = plain_data(f"{{{value}}}".encode())
+        except ClearanceError:
+            raise click.BadParameter(f"{value!r}: {error}") from None
+    if not isinstance(found, dict):
+        raise click.BadParameter(f"{value!r} has no keys; as in 'zones: {{CNT: 0.05}}'")
+    return found
 
 
-class StartParamType(click.ParamType):
-    """Positions of joints, or the name of a state."""
-
-    name = "start"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, float] | str:
-        """The positions by joint, or the name."""
-        if "=" not in value:
-            return str(value)
-        pairs = [one.partition("=") for one in value.split(",")]
-        try:
-            return {name.strip(): float(number) for name, _, number in pairs}
-        except ValueError:
-            self.fail(f"{value!r} is given; joint_1=0.5,joint_2=0, or a state", param, ctx)
+def start_in(value: str) -> dict[str, float] | str:
+    """Positions by joint, or the name of a state."""
+    if "=" not in value:
+        return value
+    pairs = [one.partition("=") for one in value.split(",")]
+    try:
+        return {name.strip(): float(number) for name, _, number in pairs}
+    except ValueError:
+        fault = f"{value!r} is given; joint_1=0.5,joint_2=0, or a state"
+        raise click.BadParameter(fault) from None
 
 
 @contextmanager

@@ -113,19 +113,12 @@ def package_dir_option(what: str) -> Callable[..., Any]:
     )
 
 
-class IncludeParamType(click.ParamType):
-    """A model that a scene includes, and what is taken for it: `URI=skip`, `URI=PATH`."""
-
-    name = "include"
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, str]:
-        """Both; the URI may hold the sign too."""
-        uri, _, model = value.rpartition("=")
-        if not uri or not model:
-            self.fail(f"{value!r} is not URI=skip or URI=PATH", param, ctx)
-        return uri, model
+def _include(value: str) -> tuple[str, str]:
+    """A model that a scene includes, and what is taken for it; the URI may hold the sign too."""
+    uri, _, model = value.rpartition("=")
+    if not uri or not model:
+        raise click.BadParameter(f"{value!r} is not URI=skip or URI=PATH")
+    return uri, model
 
 
 INCLUDE_OPTION = click.option(
@@ -133,7 +126,7 @@ INCLUDE_OPTION = click.option(
     "includes",
     metavar="URI=skip|PATH",
     multiple=True,
-    type=IncludeParamType(),
+    type=_include,
     help="Leave out a model that the SDF scene includes, or use the one at PATH instead; may be given again.",
 )
 
@@ -202,19 +195,12 @@ def spelled_by(kind: type, arguments: Mapping[str, str] = {}) -> Spelling:
     return spelled
 
 
-class XacroArgumentParamType(click.ParamType):
-    """One argument of a xacro file, as xacro's own command line writes it."""
-
-    name = "name:=value"
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, str]:
-        """Name and value."""
-        name, separator, given = value.partition(":=")
-        if not separator or not name:
-            self.fail(f"{value!r} is not an argument; name:=value", param, ctx)
-        return name, given
+def _xacro_argument(value: str) -> tuple[str, str]:
+    """Name and value of one argument, as xacro's own command line writes it."""
+    name, separator, given = value.partition(":=")
+    if not separator or not name:
+        raise click.BadParameter(f"{value!r} is not an argument; name:=value")
+    return name, given
 
 
 def _by_name(
@@ -237,7 +223,7 @@ xacro_options = in_order(
         "xacro_args",
         metavar="NAME:=VALUE",
         multiple=True,
-        type=XacroArgumentParamType(),
+        type=_xacro_argument,
         callback=_by_name,
         help="An argument of the xacro file; may be given again.",
     ),
