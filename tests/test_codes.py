@@ -132,8 +132,8 @@ def test_explain_prints_what_the_table_has_and_names_the_nearest_code(capsys):
     assert "`clearance explain` lists all" in capsys.readouterr().err
 
 
-def test_suspect_input_is_accepted_by_the_code_of_its_kind():
-    assert CheckOptions(accept=["CL120", "gaps"]).accept == ("units", "gaps")
+def test_suspect_input_is_accepted_by_the_code_of_its_kind_where_no_warning_has_that():
+    assert CheckOptions(accept=["CL120", "gaps", "CL320"]).accept == ("CL120", "gaps", "inside")
     case = YAML(typ="safe").load(CASE) | {"accept": ["CL320", "axis"]}
     assert validated(schema.Case, case, "case.yaml").accept == ["inside", "axis"]
     for other in ("CL101", "CL425", "CL999"):  # an error, a rule that is broken, nothing

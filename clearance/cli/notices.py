@@ -16,5 +16,5 @@ def say_notices(case: Case) -> None:
     from clearance.world.plausibility import notices_of
 
     for notice in notices_of(case):
-        if notice.severity is not Severity.SUSPECT or notice.kind not in case.accept:
+        if notice.severity is not Severity.SUSPECT or not notice.accepted_by(case.accept):
             click.echo(f"{notice.severity}: {case.name}: {notice.line}", err=True)

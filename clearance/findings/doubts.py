@@ -81,14 +81,14 @@ def doubts_of(record: Record, judgement: Judgement) -> tuple[Doubt, ...]:
 def open_suspects(record: Record) -> tuple[Notice, ...]:
     """The notices of suspect input that the case does not accept."""
     suspects = (one for one in record.notices if one.severity is Severity.SUSPECT)
-    return tuple(one for one in suspects if one.kind not in record.case.accept)
+    return tuple(one for one in suspects if not one.accepted_by(record.case.accept))
 
 
 def open_warnings(record: Record) -> tuple[Notice, ...]:
     """The notices that are warnings and that the case does not accept, with motion of which no proof is asked."""
     severities = {Severity.WARNING} | ({Severity.UNPROVEN} if record.certificate is None else set())
     found = (one for one in record.notices if one.severity in severities)
-    return tuple(one for one in found if one.kind not in record.case.accept)
+    return tuple(one for one in found if not one.accepted_by(record.case.accept))
 
 
 def unproven_motion(record: Record) -> tuple[Notice, ...]:
@@ -123,7 +123,7 @@ def _of_input(record: Record) -> Iterator[Doubt]:
             yield Doubt(UNPROVEN_MOTION, notice.about, notice.text)
         elif notice.severity is not Severity.VIOLATED:
             kind = SUSPECT if notice.severity is Severity.SUSPECT else WARNING
-            kind = ACCEPTED if notice.kind in record.case.accept else kind
+            kind = ACCEPTED if notice.accepted_by(record.case.accept) else kind
             yield Doubt(kind, notice.kind, notice.text)
     robots = (note for placed in record.case.robots for note in placed.robot.notes)
     yield from _notes([*record.case.notes, *robots, *record.notes])

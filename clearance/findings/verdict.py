@@ -352,8 +352,9 @@ def _warnings(record: Record) -> list[str]:
     """Warnings, then those and suspect input that are accepted; each once."""
     lines = [one.line for one in open_warnings(record)]
     lines += [
-        f"{one.line} (accepted: {one.kind})"
+        f"{one.line} (accepted: {entry})"
         for one in record.notices
-        if one.severity in (Severity.SUSPECT, Severity.WARNING) and one.kind in record.case.accept
+        if one.severity in (Severity.SUSPECT, Severity.WARNING)
+        and (entry := one.accepted_by(record.case.accept))
     ]
     return list(dict.fromkeys(lines))

@@ -239,7 +239,7 @@ def _of_notices(record: Record) -> Iterator[TestResult]:
     warned = open_warnings(record) if record.case.fail_on_warning else ()
     for notice in record.notices:
         fault = "Warning" if notice in warned else _FAULTS.get(notice.severity, "")
-        if notice.severity is Severity.SUSPECT and notice.kind in record.case.accept:
+        if notice.severity is Severity.SUSPECT and notice.accepted_by(record.case.accept):
             fault = ""
         if notice.severity is Severity.UNPROVEN and notice not in (
             *unproven_motion(record),

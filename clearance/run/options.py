@@ -198,7 +198,7 @@ class CheckOptions(QuestionOptions):
     accept: tuple[str, ...] = option(
         (),
         KIND,
-        f"Accept suspect input of this kind ({', '.join(KINDS)}), or a warning, by its code.",
+        f"Accept suspect input of this kind ({', '.join(KINDS)}), or warnings of this code.",
         many=True,
     )
     fail_on_warning: bool = option(

@@ -5,7 +5,7 @@ Not for: errors (`clearance.errors`), and notes on what loading mended, which ar
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -31,6 +31,9 @@ that could go either way (then as written), and goals without a start (then sing
 
 WRAP, START = "wrap", "start"
 
+WARNED_TOO = ("units", "limits", "gaps", "clocks", START)
+"""Those whose lesser cases are warnings: their code accepts the warnings alone, their name suspect input too."""
+
 WARNINGS = (
     "geometry", "equality", "scene", "padding", "reach", "scan", "program", "carry", "rest", "neighbours",
     "columns", "recorded run", "pairs", "rules", "paper", "certificate", "contact", "cross-check",
@@ -42,7 +45,7 @@ CODES_OF_KINDS = tuple(codes()[kind] for kind in (*KINDS, *WARNINGS))
 
 
 def accepted_kind(given: object) -> str:
-    """The kind of suspect input, or of a warning, that is given by its name or its code.
+    """The kind of suspect input, or of a warning, that is given by its name or its code; of `WARNED_TOO` the code.
 
     Raises:
         BadInput: no kind that can be accepted.
@@ -51,7 +54,7 @@ def accepted_kind(given: object) -> str:
     if kind not in (*KINDS, *WARNINGS):
         valid = f"kinds of suspect input: {', '.join(KINDS)}, their codes, or the code of a warning"
         raise BadInput(f"{given!r:.60} is given", valid=valid)
-    return kind
+    return str(given) if kind in WARNED_TOO else kind
 
 
 HOLD, LINEAR, NOT_MEASURED = GAPS = ("hold", "linear", "not_measured")
@@ -64,7 +67,7 @@ class Notice:
     """One thing that was found in the input, or while measuring, that bears on the verdict.
 
     Attributes:
-        severity: a suspect input makes the verdict suspect unless its kind is accepted; a rule of the case that
+        severity: a suspect input makes the verdict suspect unless it is accepted; a rule of the case that
             is broken makes it violated; what is not proven of the motion fails it, unless only samples are asked
             for; a warning stands in the headline.
         kind: one of `KINDS`, or a word of its own for the others ("joint limits", "geometry", "package", …).
@@ -81,6 +84,11 @@ class Notice:
     def code(self) -> str:
         """The stable code of its kind: `CL120`."""
         return codes()[self.kind]
+
+    def accepted_by(self, accept: Collection[str]) -> str:
+        """The entry of a case's `accept` that accepts it: its kind or, unless suspect, its code; else empty."""
+        entries = [self.kind] if self.severity is Severity.SUSPECT else [self.kind, self.code]
+        return next((entry for entry in entries if entry in accept), "")
 
     @property
     def line(self) -> str:

@@ -25,6 +25,7 @@ from tests.report.test_page import data_in
 NO_LIMITS = Limits()
 UNITS = Notice(Severity.SUSPECT, "units", "post.stl: 589 m away; is its scale missing?")
 RULE = Notice(Severity.VIOLATED, "joint limits", "elbow leaves its limits by 0.1 rad")
+FAR = Notice(Severity.WARNING, "units", "gate is 40 m from the arm, 20 times its reach")
 WARNING = Notice(Severity.WARNING, "geometry", "links without a collision shape: antenna")
 NOT_KEPT = ProfileAnswer(
     "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7
@@ -57,6 +58,13 @@ CASES = {
     "warned where that fails": (made(notices=(WARNING,), strict=True), "warning", 1),
     "warned and accepted": (made(notices=(WARNING,), accept=("geometry",), strict=True), "clear", 0),
     "accepted where warnings fail": (made(notices=(UNITS,), accept=("units",), strict=True), "clear", 0),
+    "warned and accepted by code": (made(notices=(FAR,), accept=("CL120",), strict=True), "clear", 0),
+    "suspect of an accepted code": (
+        made(notices=(FAR, UNITS), accept=("CL120",), strict=True), "suspect", 2,
+    ),
+    "accepted by kind, both": (
+        made(notices=(FAR, UNITS), accept=("units",), strict=True), "clear", 0,
+    ),
     "suspect and warned": (made(notices=(UNITS, WARNING), strict=True), "suspect", 2),
     "disputed": (made(cross_check=disagreeing()), "clear", 3),
     "disputed and suspect": (made(notices=(UNITS,), cross_check=disagreeing()), "suspect", 3),

@@ -15,12 +15,11 @@ import pytest
 import clearance as cl
 from clearance.batch.manifest_file import manifest_of
 from clearance.cli.options import asked_options, said, spelled_by
-from clearance.codes import codes
 from clearance.errors import BadDimension, BadInput, UnknownKey
 from clearance.options import LENGTH, SWITCH, check_values, made, option, options_in
 from clearance.pytest_plugin import PREFIX, pytest_addoption
 from clearance.run import CheckOptions, Question
-from clearance.world.notice import accepted_kind
+from clearance.world.notice import KINDS, START, WARNED_TOO, Notice, Severity, accepted_kind
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 
@@ -86,9 +85,11 @@ def words(name: str) -> str:
 
 def test_each_kind_of_warning_that_is_made_can_be_accepted_by_its_code():
     sources = (path.read_text() for path in Path(cl.__file__).parent.rglob("*.py"))
-    made_of = re.compile(r'Severity\.WARNING[^,]*,\s*"([^"]+)"')
-    kinds = {kind for text in sources for kind in made_of.findall(text)}
-    assert len(kinds) > 10 and {accepted_kind(codes()[kind]) for kind in kinds} == kinds
+    made_of = re.compile(r'(?:Severity\.WARNING[^,]*|severity), *\s*(?:"([^"]+)"|START)')
+    kinds = {kind or START for text in sources for kind in made_of.findall(text)}
+    one = (Notice(Severity.WARNING, kind, "") for kind in kinds)
+    assert len(kinds) > 10 and all(it.accepted_by((accepted_kind(it.code),)) for it in one)
+    assert kinds & set(KINDS) == set(WARNED_TOO)
 
 
 def test_the_table_here_is_of_all_options():

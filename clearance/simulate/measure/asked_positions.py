@@ -62,7 +62,7 @@ class AskedPositions:
             SuspectInput: the first that is not.
         """
         for one in notices:
-            if one.severity is Severity.SUSPECT and one.kind not in self._accept:
+            if one.severity is Severity.SUSPECT and not one.accepted_by(self._accept):
                 raise SuspectInput(one.text, valid=f"correct it, or accept=[{one.kind!r}]")
 
     def require_decided(self, undecided: Sequence[tuple[str, str]]) -> None:
@@ -88,10 +88,11 @@ class AskedPositions:
         """
         notices = list(self._notices(given))
         self.require_not_suspect(notices)
-        texts = [one.line for one in notices if one.severity is not Severity.SUSPECT]
-        if texts and "limits" not in self._accept:
+        beyond = [one for one in notices if one.severity is not Severity.SUSPECT]
+        if beyond and "limits" not in self._accept:
             self._far = True
-            warnings.warn(f"{texts[0]}; further ones are not reported", stacklevel=4)
+            if not beyond[0].accepted_by(self._accept):
+                warnings.warn(f"{beyond[0].line}; further ones are not reported", stacklevel=4)
         for one in self._neighbours.meeting_at(given):
             warnings.warn(one.line, stacklevel=4)
         self._set_usual()

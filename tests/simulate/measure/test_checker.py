@@ -217,6 +217,13 @@ def test_configurations_in_degrees_are_suspect_each_time():
     assert own.distance([0.0, 45.0]).distance == meant.distance([0.0, 45.0]).distance
 
 
+def test_the_code_of_a_limit_accepts_joints_a_little_beyond_it_and_no_others(recwarn):
+    checker = cl.Checker(limited(), accept=["CL424"])
+    assert checker.distance([0.0, 1.05]).distance > 0.0 and not recwarn
+    with pytest.raises(SuspectInput, match=r"up to 1\.9 rad.*accept=\['limits'\]"):
+        checker.distance([0.0, 2.9])
+
+
 def test_a_joint_a_little_beyond_its_limits_is_warned_of_once(recwarn):
     checker = cl.Checker(limited())
     checker.distance([0.0, 1.0])
