@@ -65,10 +65,8 @@ def trajectory_of(
     wrapping = frozenset() if given.wrap == AS_WRITTEN else wrapping_joints(robot)
     follow = {joint.name: turns(joint) for joint in robot.joints if joint.mimic is not None}
 
-    def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
-        request = TrajectoryRequest(
-            opened, n_bytes, bool(kinds), given.choice, kinds | follow, robot
-        )
+    def read(opened: Opener, shown: str) -> ReadTrajectory:
+        request = TrajectoryRequest(opened, bool(kinds), given.choice, kinds | follow, robot)
         found = read_trajectory(request, shown)
         return as_recorded(found, given.gaps) if recorded or given.gaps else found
 
@@ -115,8 +113,8 @@ def load_trajectory(path: Path, choice: Choice, files: InputFiles | None = None)
     if is_bag(path):
         return _of_bag(path, files, choice, {})
 
-    def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
-        return read_trajectory(TrajectoryRequest(opened, n_bytes, choice=choice), shown)
+    def read(opened: Opener, shown: str) -> ReadTrajectory:
+        return read_trajectory(TrajectoryRequest(opened, choice=choice), shown)
 
     return _read(path, files, read, Kind.TRAJECTORY)
 
@@ -131,8 +129,8 @@ def load_samples(path: Path, files: InputFiles, length: str | None = None) -> Re
         BadInput: with the place in the file.
     """
 
-    def read(opened: Opener, n_bytes: int, shown: str) -> ReadSamples:
-        return read_samples(PoseRequest(opened, n_bytes, length), shown)
+    def read(opened: Opener, shown: str) -> ReadSamples:
+        return read_samples(PoseRequest(opened, length), shown)
 
     return _read(path, files, read, Kind.POSES)
 
@@ -174,14 +172,12 @@ def pose_table_of(
         return replace(samples.table(), timing=given.timing), notes
 
 
-def _read(
-    path: Path, files: InputFiles, read: Callable[[Opener, int, str], Table], kind: Kind
-) -> Table:
+def _read(path: Path, files: InputFiles, read: Callable[[Opener, str], Table], kind: Kind) -> Table:
     """What is in a file, which is not kept; where it cannot be read, its content may say why."""
     shown = files.shown(path)
-    opened, n_bytes = files.unread(path)
+    opened = files.unread(path)
     try:
-        return read(opened, n_bytes, shown)
+        return read(opened, shown)
     except BadInput:
         with opened() as file:
             refuse_foreign(file.read(65536), shown, kind)

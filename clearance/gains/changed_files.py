@@ -225,8 +225,7 @@ class _Files:
         )
         assert given.moves is not None
         path = resolved(given.moves.file, self.scene_at.folder)
-        opened, n_bytes = self.read.unread(path)
-        asked = PoseRequest(opened, n_bytes, given.moves.length)
+        asked = PoseRequest(self.read.unread(path), given.moves.length)
         samples = read_samples(asked, self.read.shown(path)).samples
         plain = replace(samples, positions=made.positions, frame="", child="", stamp=0)
         turn, change = self.gain.request.turn, self.gain.change

@@ -37,7 +37,7 @@ def convert(*arguments: object) -> int:
 
 
 def samples_in(content: bytes, name: str) -> PoseSamples:
-    return read_samples(PoseRequest(lambda: BytesIO(content), len(content)), name).samples
+    return read_samples(PoseRequest(lambda: BytesIO(content)), name).samples
 
 
 def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):

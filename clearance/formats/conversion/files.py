@@ -172,8 +172,7 @@ def kind_of(path: Path, files: InputFiles) -> Kind:
 
 
 def _head(path: Path, files: InputFiles) -> bytes:
-    opened, _ = files.unread(path)
-    with opened() as file:
+    with files.unread(path)() as file:
         return file.read(LONGEST)
 
 

@@ -81,9 +81,8 @@ class InputFiles:
         """Whether a file is not on disk."""
         return Path(os.path.abspath(path)) in self._in_memory
 
-    def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
-        """Opens a file, again and again, and how many bytes it has; its checksum is remembered, its content only
-        while a short one is read.
+    def unread(self, path: Path) -> Callable[[], BinaryIO]:
+        """Opens a file, again and again; its checksum is remembered, its content only while a short one is read.
 
         Raises:
             MissingFile: it is not there, is no file on disk, or cannot be read.
@@ -91,7 +90,7 @@ class InputFiles:
         path = Path(os.path.abspath(path))
         if path in self._in_memory:
             data = self._contents[path]
-            return lambda: BytesIO(data), len(data)
+            return lambda: BytesIO(data)
         content = b""
         with _openable(self.shown(path)), regular_file(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
@@ -102,7 +101,7 @@ class InputFiles:
             else:
                 digest = hashlib.file_digest(file, "sha256").hexdigest()
         self._note(path, digest, n_bytes)
-        return (lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)), n_bytes
+        return lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)
 
     def of_more(self) -> InputFiles:
         """The same folder, for further files: none is read yet."""

@@ -64,9 +64,9 @@ def read_json_trajectory(request: TrajectoryRequest) -> ReadTrajectory:
 def _read(request: TrajectoryRequest, documents_in: Callable[[bytes], list[Any]]) -> ReadTrajectory:
     request.choice.refuse_others({"which"}, "a trajectory message")
     with request.opened() as file:
-        documents = documents_in(file.read(MOST_JSON + 1))
-    message = chosen(messages_in(documents, request.n_bytes), request.choice.which)
-    return trajectory_of_message(message, request.n_bytes, request.joints_needed)
+        data = file.read(MOST_JSON + 1)
+    message = chosen(messages_in(documents_in(data), len(data)), request.choice.which)
+    return trajectory_of_message(message, len(data), request.joints_needed)
 
 
 _VALUES = ("positions", "velocities", "accelerations", "effort")

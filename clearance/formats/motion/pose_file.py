@@ -22,12 +22,11 @@ class PoseRequest:
     """A file to read.
 
     Attributes:
-        opened: opens the file, `n_bytes` long, again and again.
+        opened: opens the file, again and again.
         length: of lengths that name no unit themselves, "m" or "mm"; None where the case says nothing.
     """
 
     opened: Opener
-    n_bytes: int
     length: str | None = None
 
 

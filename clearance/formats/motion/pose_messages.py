@@ -73,12 +73,12 @@ def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
         fault = "'units' is given, and messages are in metres"
         raise BadMotion(fault, valid="leave 'units' out of moves")
     with request.opened() as file:
-        documents = documents_in(file.read(MOST_JSON + 1))
+        data = file.read(MOST_JSON + 1)
     stamped: list[_StampedPose] = []
-    for i, document in enumerate(documents):
+    for i, document in enumerate(documents_in(data)):
         with at(f"message {i + 1}"):
             for one in _poses_in(document):
-                if len(stamped) >= min(MOST, request.n_bytes):
+                if len(stamped) >= min(MOST, len(data)):
                     raise BadShape("aliases repeat more than the file holds")
                 _refuse_standing(stamped, one)
                 stamped.append(one)

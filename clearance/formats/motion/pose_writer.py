@@ -117,7 +117,7 @@ def _lost_in_messages(samples: PoseSamples) -> list[str]:
 def _refuse_other(samples: PoseSamples, content: bytes, shown: str) -> None:
     """Nothing, if the file is read back as what was written."""
     try:
-        back = read_samples(PoseRequest(lambda: io.BytesIO(content), len(content)), shown).samples
+        back = read_samples(PoseRequest(lambda: io.BytesIO(content)), shown).samples
     except ClearanceError as error:
         raise BadMotion(f"the poses cannot be written as {shown!r}: {error}") from None
     same = back.positions.tobytes() == samples.positions.tobytes()

@@ -64,14 +64,13 @@ class TrajectoryRequest:
     """A file to read.
 
     Attributes:
-        opened: opens the file, `n_bytes` long, again and again.
+        opened: opens the file, again and again.
         joints_needed: False for a robot that has no joint to move, for which times alone do.
         turns: of each joint that moves, whether it turns; empty where the robot is not known.
         robot: whose joints those of a table must be; None where it is not known.
     """
 
     opened: Opener
-    n_bytes: int
     joints_needed: bool = True
     choice: Choice = Choice()
     turns: Mapping[str, bool] = field(default_factory=dict)
@@ -103,7 +102,7 @@ def read_trajectory(request: TrajectoryRequest, shown: str) -> ReadTrajectory:
 
 def parse_trajectory(data: bytes, shown: str, choice: Choice | None = None) -> Trajectory:
     """The samples in the content of a file, as `read_trajectory` finds them in the file."""
-    request = TrajectoryRequest(lambda: io.BytesIO(data), len(data), choice=choice or Choice())
+    request = TrajectoryRequest(lambda: io.BytesIO(data), choice=choice or Choice())
     return read_trajectory(request, shown).trajectory
 
 

@@ -150,7 +150,7 @@ def bag_folder(path: Path) -> object:
 def poses(data: bytes, folder: Path, name: str) -> object:
     from clearance.formats.motion.pose_file import PoseRequest, read_samples
 
-    return read_samples(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
+    return read_samples(PoseRequest(lambda: io.BytesIO(data)), name)
 
 
 def xacro(path: Path) -> object:

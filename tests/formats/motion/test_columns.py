@@ -25,9 +25,7 @@ TURNS = {"shoulder": True, "lift": False}
 
 def read(text, turns=TURNS, **choice):
     data = text.encode()
-    request = TrajectoryRequest(
-        lambda: io.BytesIO(data), len(data), choice=Choice(**choice), turns=turns
-    )
+    request = TrajectoryRequest(lambda: io.BytesIO(data), choice=Choice(**choice), turns=turns)
     return read_trajectory(request, "path.csv")
 
 

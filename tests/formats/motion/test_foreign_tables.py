@@ -21,9 +21,7 @@ DEGREES = ("deg", "mm")
 
 def read(text: str | bytes, turns=TURNS, **choice):
     data = text.encode() if isinstance(text, str) else text
-    request = TrajectoryRequest(
-        lambda: io.BytesIO(data), len(data), choice=Choice(**choice), turns=turns
-    )
+    request = TrajectoryRequest(lambda: io.BytesIO(data), choice=Choice(**choice), turns=turns)
     return read_trajectory(request, "path.csv")
 
 

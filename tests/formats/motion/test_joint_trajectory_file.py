@@ -72,9 +72,7 @@ def test_times_as_people_write_them_by_hand():
         {"positions": [0, 0], "time_from_start": {"sec": 2}},
     ]}  # fmt: skip
     data = dumped(document).encode()
-    trajectory, notes = read_trajectory(
-        TrajectoryRequest(lambda: BytesIO(data), len(data)), "path.json"
-    )
+    trajectory, notes = read_trajectory(TrajectoryRequest(lambda: BytesIO(data)), "path.json")
     assert trajectory.times.tolist() == [5e-9, 2.0]
     assert "path.json: 1 times are seconds without nanoseconds, which are taken as 0" in notes
 

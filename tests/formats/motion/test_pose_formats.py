@@ -49,7 +49,7 @@ pose:
 
 def read(text: str | bytes, name: str = "door.yaml", length: str | None = None):
     data = text if isinstance(text, bytes) else text.encode()
-    samples, notes = read_samples(PoseRequest(lambda: BytesIO(data), len(data), length), name)
+    samples, notes = read_samples(PoseRequest(lambda: BytesIO(data), length), name)
     return samples.table(), notes
 
 

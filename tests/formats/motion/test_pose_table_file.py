@@ -25,7 +25,7 @@ TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,
 
 def read(text, name):
     data = text.encode()
-    return read_samples(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
+    return read_samples(PoseRequest(lambda: io.BytesIO(data)), name)
 
 
 def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():

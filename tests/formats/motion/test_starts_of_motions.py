@@ -41,7 +41,7 @@ def displayed(trajectory, start, **more):
 def read(message, which=None):
     data = json.dumps(message).encode()
     choice = Choice(which)
-    request = TrajectoryRequest(lambda: io.BytesIO(data), len(data), choice=choice)
+    request = TrajectoryRequest(lambda: io.BytesIO(data), choice=choice)
     return read_trajectory(request, "path.json")
 
 
