@@ -57,12 +57,13 @@ def convert(
     from clearance.formats.conversion.files import Conversion, converted, kind_of
     from clearance.formats.files.input_files import InputFiles
     from clearance.formats.known_formats import Kind
-    from clearance.formats.motion.trajectory_file import Choice
     from clearance.formats.scene.request import includes_of
+    from clearance.formats.schema.timed import Choice
 
     _require_place(in_file, out_file)
     refuse_there([out_file], force=force)
-    files, choice = InputFiles(in_file.parent), Choice(which, topic=topic)
+    files = InputFiles(in_file.parent)
+    choice = Choice.model_construct(which=which, topic=topic)
     said = includes_of(dict(includes), Path())
     asked = Conversion(in_file, out_file, files, choice, package_dirs, said)
     found = kind_of(in_file, asked.files) if kind is None else Kind(kind)

@@ -20,14 +20,13 @@ from clearance.formats.motion.pose_file import (
 )
 from clearance.formats.motion.recording_gaps import as_recorded
 from clearance.formats.motion.trajectory_file import (
-    Choice,
     ReadTrajectory,
     TrajectoryRequest,
     files_of,
     is_bag,
     read_trajectory,
 )
-from clearance.formats.schema.timed import PoseFile, TrajectoryFile
+from clearance.formats.schema.timed import Choice, PoseFile, TrajectoryFile
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import counted
 from clearance.world.joint_positions import turns
@@ -66,14 +65,14 @@ def trajectory_of(
     follow = {joint.name: turns(joint) for joint in robot.joints if joint.mimic is not None}
 
     def read(opened: Opener, shown: str) -> ReadTrajectory:
-        request = TrajectoryRequest(opened, bool(kinds), given.choice, kinds | follow, robot)
+        request = TrajectoryRequest(opened, bool(kinds), given, kinds | follow, robot)
         found = read_trajectory(request, shown)
         return as_recorded(found, given.gaps) if recorded or given.gaps else found
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
         found = (
-            _of_bag(path, files, given.choice, kinds | follow, wrapping)
+            _of_bag(path, files, given, kinds | follow, wrapping)
             if is_bag(path)
             else _read(path, files, read, Kind.TRAJECTORY)
         )

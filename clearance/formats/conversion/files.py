@@ -16,8 +16,9 @@ from clearance.formats.conversion.scene import ConvertedFiles, converted_scene
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import FORMATS, WANTED, Kind, foreign, formats_in, written_as
 from clearance.formats.motion import pose_writer, trajectory_writer
-from clearance.formats.motion.trajectory_file import Choice, is_bag
+from clearance.formats.motion.trajectory_file import is_bag
 from clearance.formats.scene.request import SceneRequest
+from clearance.formats.schema.timed import Choice
 from clearance.formats.text.file_start import LONGEST
 from clearance.formats.text.notes import counted
 from clearance.formats.timed_files import load_samples, load_trajectory

@@ -21,7 +21,8 @@ from clearance.formats.motion.joint_columns import (
     require_joints,
     turned_joints,
 )
-from clearance.formats.motion.trajectory_file import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.formats.motion.trajectory_file import ReadTrajectory, TrajectoryRequest
+from clearance.formats.schema.timed import Choice
 from clearance.formats.table.column_units import (
     VELOCITY,
     Column,
@@ -115,11 +116,11 @@ def _columns(header: list[str], request: TrajectoryRequest) -> list[Column]:
     """What is meant of a header."""
     choice = request.choice
     if choice.columns is not None:
-        return chosen_columns(header, dict(choice.columns), request.turns, choice.units)
+        return chosen_columns(header, choice.columns, request.turns, choice.unit_pair)
     nameless = [i for i, name in enumerate(header) if name.startswith(UNNAMED)]
     if request.robot is None and nameless:
         raise BadSyntax(f"column {nameless[0] + 1} of the header has no name")
-    return with_time(columns_in(header, request.turns, choice.units), request.turns)
+    return with_time(columns_in(header, request.turns, choice.unit_pair), request.turns)
 
 
 def _refuse_numbers(table: TextTable) -> None:
@@ -139,7 +140,7 @@ def _names_given(choice: Choice) -> tuple[str, ...] | None:
     has_time = choice.period is not None or any(
         column.name == TIME for column in columns_in(choice.joints, {}, None)
     )
-    return choice.joints if has_time else (TIME, *choice.joints)
+    return tuple(choice.joints) if has_time else (TIME, *choice.joints)
 
 
 def _require_times(names: list[str], choice: Choice) -> None:

@@ -7,56 +7,18 @@ Not for: the formats (`known_formats`), nor which joints the robot has (`world.m
 from __future__ import annotations
 
 import io
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from clearance.errors import BadMotion, at
+from clearance.errors import at
 from clearance.formats.known_formats import BAGS, Kind, format_of, function_at
+from clearance.formats.schema.timed import Choice
 from clearance.formats.table.csv_table import Opener, first_row, line_of_row
 from clearance.formats.table.table_start import as_written
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
-
-
-@dataclass(frozen=True)
-class Choice:
-    """What a case file says about a trajectory file beside its path; None where it says nothing.
-
-    Attributes:
-        which: the number of the trajectory that is meant, from 1, in a file that holds several.
-        units: of angles and lengths that name no unit themselves: keys of `column_units.UNITS`.
-        joints: the columns beside time of a table without a header.
-        period: [s] from row to row of a table without times.
-        topic: of a bag.
-        gaps: what joints do in holes of a recording: one of `world.notice.GAPS`.
-        columns: of a table, pairs of `time`, a joint, or a joint and `/velocity`, and the column that it is; other
-            columns are left out.
-    """
-
-    which: int | None = None
-    units: tuple[str, str] | None = None
-    joints: tuple[str, ...] | None = None
-    period: float | None = None
-    topic: str | None = None
-    gaps: str | None = None
-    columns: tuple[tuple[str, str], ...] | None = None
-
-    def refuse_others(self, used: Collection[str], what: str) -> None:
-        """Nothing, if all that is said is of use.
-
-        Args:
-            used: names of attributes. what: the kind of file, for the message.
-
-        Raises:
-            BadInput: the first that says nothing about such a file.
-        """
-        for name in (one.name for one in fields(self)):
-            if name not in used and getattr(self, name) is not None:
-                raise BadMotion(
-                    f"{name!r} says nothing about {what}", valid=f"leave {name!r} out of trajectory"
-                )
 
 
 @dataclass(frozen=True)
@@ -72,7 +34,7 @@ class TrajectoryRequest:
 
     opened: Opener
     joints_needed: bool = True
-    choice: Choice = Choice()
+    choice: Choice = field(default_factory=Choice)
     turns: Mapping[str, bool] = field(default_factory=dict)
     robot: Robot | None = None
 

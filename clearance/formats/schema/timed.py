@@ -5,12 +5,12 @@ Not for: reading those files (`timed_files`).
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from clearance.errors import Contradiction
-from clearance.formats.motion.trajectory_file import Choice
+from clearance.errors import BadMotion, Contradiction
 from clearance.formats.schema.program import Program
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import Name, StrictModel, validated
@@ -70,14 +70,13 @@ def _by_itself(given: Any) -> Any:
     return {name: name for name in given}
 
 
-class TrajectoryFile(TimedFile):
-    """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
-    `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
-    `columns` names the columns of a table to read, and no others; `{joint: column}` if names differ. `topic` is
-    a topic of a bag. `gaps` says how joints move in holes of a recording: they hold, go straight (linear), or are
-    not measured. `wrap` says which way a continuous joint goes in a step of more than half a turn. `start_state`
-    is the start at 0 s if the first sample is later: positions, or names of states. `program` is a robot
-    program instead of a file, or the path of one; it starts in `start_state`.
+class Choice(StrictModel):
+    """What is said of a trajectory's file beside its path and times; None where nothing is.
+
+    `which` of those in a file of several, from 1. A table may be in other `units`, have no header but `joints`
+    for its columns, and no times but a `period` [s] from row to row. `columns` names the columns of a table to
+    read, and no others; `{joint: column}` if names differ. `topic` is a topic of a bag. `gaps` says how joints
+    move in holes of a recording: they hold, go straight (linear), or are not measured.
     """
 
     which: Annotated[int | None, Field(ge=1)] = None
@@ -86,10 +85,39 @@ class TrajectoryFile(TimedFile):
     period: Annotated[float | None, Field(gt=0)] = None
     topic: Name | None = None
     gaps: Literal["hold", "linear", "not_measured"] | None = None
-    wrap: Literal["shortest", "as_written"] | None = None
     columns: (
         Annotated[dict[Name, Name], BeforeValidator(_by_itself), Field(min_length=1)] | None
     ) = None
+
+    @property
+    def unit_pair(self) -> tuple[str, str] | None:
+        """The units of angles and lengths that name none themselves: keys of `column_units.UNITS`."""
+        return None if self.units is None else (self.units.angle, self.units.length)
+
+    def refuse_others(self, used: Collection[str], what: str) -> None:
+        """Nothing, if all that is said is of use.
+
+        Args:
+            used: names of attributes. what: the kind of file, for the message.
+
+        Raises:
+            BadInput: the first that says nothing about such a file.
+        """
+        for name in Choice.model_fields:
+            if name not in used and getattr(self, name) is not None:
+                raise BadMotion(
+                    f"{name!r} says nothing about {what}", valid=f"leave {name!r} out of trajectory"
+                )
+
+
+class TrajectoryFile(Choice, TimedFile):
+    """A trajectory, when it is followed, and what is said of its file. `wrap` says which way a continuous joint
+    goes in a step of more than half a turn. `start_state` is the start at 0 s if the first sample is later:
+    positions, or names of states. `program` is a robot program instead of a file, or the path of one; it starts
+    in `start_state`.
+    """
+
+    wrap: Literal["shortest", "as_written"] | None = None
     start_state: dict[Name, float] | Name | list[Name] | None = None
     program: Name | ProgramFile | Program | None = None
 
@@ -119,11 +147,3 @@ class TrajectoryFile(TimedFile):
             if isinstance(self.program, str)
             else (self.program if isinstance(self.program, ProgramFile) else None)
         )
-
-    @property
-    def choice(self) -> Choice:
-        """What is said beside path and times."""
-        units = None if self.units is None else (self.units.angle, self.units.length)
-        joints = None if self.joints is None else tuple(self.joints)
-        columns = None if self.columns is None else tuple(self.columns.items())
-        return Choice(self.which, units, joints, self.period, self.topic, self.gaps, columns)

@@ -14,7 +14,8 @@ from clearance.errors import (
     MissingKey,
     UnknownJoint,
 )
-from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
+from clearance.formats.motion.trajectory_file import TrajectoryRequest, read_trajectory
+from clearance.formats.schema.timed import Choice
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.world.plausible_motion import notices_on_motion
 from tests.formats.making import ARM
@@ -199,7 +200,7 @@ def test_columns_of_a_base_that_moves_stand_in_the_headline_if_left_out(tmp_path
 
 def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():
     text = "stamp_ms,q0 [deg],q1_mm\n0,90,20\n1000,180,30\n"
-    columns = (("time", "stamp_ms"), ("shoulder", "q0 [deg]"), ("lift", "q1_mm"))
+    columns = {"time": "stamp_ms", "shoulder": "q0 [deg]", "lift": "q1_mm"}
     trajectory, _ = read(text, columns=columns)
     assert trajectory.times.tolist() == [0, 1]
     assert trajectory.positions == pytest.approx(np.array([[np.pi / 2, 0.02], [np.pi, 0.03]]))

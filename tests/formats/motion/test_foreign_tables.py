@@ -12,11 +12,12 @@ from clearance.errors import (
     BadSyntax,
     DuplicateName,
 )
-from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
+from clearance.formats.motion.trajectory_file import TrajectoryRequest, read_trajectory
+from clearance.formats.schema.timed import Choice
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 
 TURNS = {"shoulder": True, "lift": False}
-DEGREES = ("deg", "mm")
+DEGREES = {"angle": "deg", "length": "mm"}
 
 
 def read(text: str | bytes, turns=TURNS, **choice):
@@ -33,11 +34,11 @@ WAYS = {
     "units": ("time,shoulder,lift\n0,10,5\n1,20,7\n", {"units": DEGREES}),
     "semicolons": ("time;shoulder [deg];lift\n0;10.0;0.005\n1;20;0.007\n", {}),
     "decimal commas": ("time;shoulder_deg;lift\n0;10,0;0,005\n1,0;2e1;7e-3\n", {}),
-    "no header": ("0,10,5\n1,20,7\n", {"joints": ("shoulder_deg", "lift [mm]")}),
-    "time last": ("10,5,0\n20,7,1\n", {"joints": ("shoulder", "lift", "time"), "units": DEGREES}),
+    "no header": ("0,10,5\n1,20,7\n", {"joints": ["shoulder_deg", "lift [mm]"]}),
+    "time last": ("10,5,0\n20,7,1\n", {"joints": ["shoulder", "lift", "time"], "units": DEGREES}),
     "period": ("shoulder [deg],lift\n10,0.005\n20,0.007\n", {"period": 1.0}),
-    "numbers alone": ("\n10;5\n\n20;7\n", {"joints": ("shoulder", "lift"), "period": 1.0, "units": DEGREES}),
-    "commas alone": ("0,0;10,0;5\n1;20;7,0", {"joints": ("shoulder", "lift"), "units": DEGREES}),
+    "numbers alone": ("\n10;5\n\n20;7\n", {"joints": ["shoulder", "lift"], "period": 1.0, "units": DEGREES}),
+    "commas alone": ("0,0;10,0;5\n1;20;7,0", {"joints": ["shoulder", "lift"], "units": DEGREES}),
 }  # fmt: skip
 
 
@@ -104,9 +105,9 @@ def test_numbers_with_commas_are_read_to_the_last_bit():
         ("time,shoulder [deg],shoulder/velocity\n0,1,2\n", {}, BadInput, "units of both, or of none"),
         ("time;shoulder;lift\n0;1,5;2.5\n", {}, BadSyntax, "'2.5' in column 'lift' is not a number; decimals"),
         ("time,shoulder\n0,1\n", {"period": 0.1}, BadInput, "a column 'time', and a period of 0.1 s"),
-        ("time,shoulder\n0,1\n", {"joints": ("shoulder",)}, BadSyntax, "line 1: 'time' in column 'time'"),
-        ("0,1,2\n", {"joints": ("shoulder",)}, BadShape, "line 1: 3 columns; there are 2 names"),
-        ("1\n2\n3\n", {"joints": ("shoulder",), "period": 1e308}, BadInput, "a time or a position is NaN"),
+        ("time,shoulder\n0,1\n", {"joints": ["shoulder"]}, BadSyntax, "line 1: 'time' in column 'time'"),
+        ("0,1,2\n", {"joints": ["shoulder"]}, BadShape, "line 1: 3 columns; there are 2 names"),
+        ("1\n2\n3\n", {"joints": ["shoulder"], "period": 1e308}, BadInput, "a time or a position is NaN"),
     ],
 )  # fmt: skip
 def test_each_fault_is_one_line_with_its_place(text, choice, fault, says):
@@ -131,7 +132,7 @@ def test_a_case_says_how_its_table_is_written(tmp_path):
 
 
 def test_a_table_in_radians_that_is_read_in_degrees_is_odd():
-    turns, units = {"a": True, "b": True}, ("deg", "m")
+    turns, units = {"a": True, "b": True}, {"angle": "deg"}
     table = "time,a,b\n0,0.3,{}\n1,1.0,-6.2\n".format
     (told,) = read(table(-1.5), turns, units=units)[0].odd
     assert "within 6.28 degrees of 0: is the table in radians" in told

@@ -15,11 +15,11 @@ from clearance.errors import (
     UnknownKey,
 )
 from clearance.formats.motion.trajectory_file import (
-    Choice,
     TrajectoryRequest,
     parse_trajectory,
     read_trajectory,
 )
+from clearance.formats.schema.timed import Choice
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_messages import (
     MESSAGE,
@@ -47,7 +47,7 @@ SECOND = with_points({"positions": [0.0, 0.0], "time_from_start": 0.0})
 
 
 def parse(text: str, name: str = "path.yaml", which: int | None = None):
-    return parse_trajectory(text.encode(), name, Choice(which))
+    return parse_trajectory(text.encode(), name, Choice.model_construct(which=which))
 
 
 def names_of(text: str) -> list[str]:

@@ -7,7 +7,7 @@ import pytest
 from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadTime, NotFinite
-from clearance.formats.motion.trajectory_file import Choice
+from clearance.formats.schema.timed import Choice
 from clearance.formats.timed_files import load_trajectory
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed
@@ -71,7 +71,7 @@ def test_of_several_topics_one_is_chosen(tmp_path, container):
     with pytest.raises(BadInput, match="'which' says nothing about recorded joint states"):
         read(path, topic="/joint_states", which=1)
     with pytest.raises(BadInput, match="'units' says nothing about messages in a bag"):
-        read(path, topic="/plan", units=("deg", "m"))
+        read(path, topic="/plan", units={"angle": "deg"})
 
 
 @pytest.mark.parametrize("container", first_fast(CONTAINERS[1:], 1))

@@ -9,7 +9,8 @@ import pytest
 from clearance import check, load_case
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime, MissingKey, UnknownJoint
-from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
+from clearance.formats.motion.trajectory_file import TrajectoryRequest, read_trajectory
+from clearance.formats.schema.timed import Choice
 from clearance.world.cubic import positions_along
 from clearance.world.plausibility import notices_of
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
@@ -40,7 +41,7 @@ def displayed(trajectory, start, **more):
 
 def read(message, which=None):
     data = json.dumps(message).encode()
-    choice = Choice(which)
+    choice = Choice.model_construct(which=which)
     request = TrajectoryRequest(lambda: io.BytesIO(data), choice=choice)
     return read_trajectory(request, "path.json")
 
