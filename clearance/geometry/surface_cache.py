@@ -75,7 +75,7 @@ def _write(path: Path, surface: Surface) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         whole = Path(folder) / path.name
-        np.savez(whole, **surface._asdict(), **{_NAME: np.array(path.name)})
+        np.savez(whole, allow_pickle=False, **surface._asdict(), **{_NAME: np.array(path.name)})
         os.replace(whole, path)
 
 
