@@ -2,8 +2,8 @@
 
 Loaders usually cut every polygon as a fan from its first corner, which covers wrong ground when it
 is concave. Here a fan is used only where all its triangles turn the polygon's way; any other
-polygon loses its ears one by one (Meisters, Polygons have ears, 1975), in some n^1.5 steps
-(`kernels.mesh.ears`). Not for: polygons with holes.
+polygon loses its ears one by one (Meisters, Polygons have ears, 1975; `kernels.mesh.ears`).
+Not for: polygons with holes.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import numpy as np
 from clearance.errors import BadPolygon
 from clearance.kernels.mesh.ears import TOO_MUCH, cut_ears
 
-MOST_WORK = 30_000_000
+MOST_WORK = 1_000_000_000
 """Corners that cutting the polygons of a piece may look at: some 3 s. A star of 100,000 corners takes
-24,000,000."""
+270,000,000."""
 
 
 def cut_rings(vertices: np.ndarray, corners: np.ndarray, counts: np.ndarray) -> np.ndarray:

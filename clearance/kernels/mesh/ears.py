@@ -1,7 +1,7 @@
-"""Compiled ear cutting of one polygon in the plane: exact turns, and a grid of the corners that can block an ear.
+"""Compiled ear cutting of one polygon in the plane: exact turns, and a list of the corners that can block an ear.
 
 A corner that turns left is an ear if its triangle has no corner that does not turn left (Meisters, Polygons have
-ears, 1975). In a simple polygon, corners that turn left still do so after ears are cut. So the grid is made once
+ears, 1975). In a simple polygon, corners that turn left still do so after ears are cut. So the list is sorted once
 and only loses corners. All triangles turn left or are flat, and their boundaries add up to the polygon's: they
 cover a simple polygon exactly. Not for: which polygons need this (`formats.mesh.polygon_cut`).
 """
@@ -32,7 +32,7 @@ class CornerRing(NamedTuple):
         turns: (n,) `LEFT`, `STRAIGHT`, `RIGHT` or `GONE`.
         touched: (n,) the round in which a neighbour was cut off.
         waiting: (n,) the corners touched in this round, `counts[N_WAITING]` of them.
-        counts: (3,) by `N_WAITING` corners in `waiting`, `N_TRIANGLES` written, `N_VISITED` corners and cells.
+        counts: (3,) by `N_WAITING` corners in `waiting`, `N_TRIANGLES` written, `N_VISITED` corners.
     """
 
     ahead: np.ndarray
@@ -52,31 +52,13 @@ def _turn(points, i, j, k, terms):
 
 
 @inline
-def _cell(value, least, per_length, n_side, axis):
-    """The column or row of the grid that a coordinate is in; the same or a later one for a greater coordinate."""
-    return int(min(n_side - 1.0, max(0.0, (value - least[axis]) * per_length[axis])))
-
-
-@inline
-def _grid(points, turns, frame):
-    """The corners that may block an ear, sorted by cell: (starts, corners)."""
-    least, per_length, n_side = frame
-    starts = np.zeros(n_side * n_side + 1, dtype=np.int64)
-    cells = np.full(len(points), -1)
-    for i in range(len(points)):
-        if turns[i] != LEFT:
-            column = _cell(points[i, 0], least, per_length, n_side, 0)
-            cells[i] = column * n_side + _cell(points[i, 1], least, per_length, n_side, 1)
-            starts[cells[i] + 1] += 1
-    for c in range(n_side * n_side):
-        starts[c + 1] += starts[c]
-    corners = np.empty(starts[-1], dtype=np.int64)
-    filled = starts[:-1].copy()
-    for i in range(len(points)):
-        if cells[i] >= 0:
-            corners[filled[cells[i]]] = i
-            filled[cells[i]] += 1
-    return starts, corners
+def _blocking(points, turns):
+    """The corners that may block an ear, in order along the polygon's longer side: (axis, places, corners)."""
+    x, y = points[:, 0], points[:, 1]
+    axis = 0 if x.max() - x.min() >= y.max() - y.min() else 1
+    corners = np.flatnonzero(turns != LEFT)
+    corners = corners[np.argsort(points[corners, axis])]
+    return axis, points[corners, axis], corners
 
 
 @inline
@@ -111,45 +93,20 @@ def _contains(points, a, b, c, p, terms):
 
 
 @inline
-def _rows_within(points, a, b, c, left, right):
-    """The least and greatest ordinate that the triangle has between two abscissae, give or take a rounding."""
-    low, high = np.inf, -np.inf
-    for i, j in ((a, b), (b, c), (c, a)):
-        if points[i, 0] > points[j, 0]:
-            i, j = j, i
-        if points[j, 0] < left or points[i, 0] > right:
-            continue
-        width = points[j, 0] - points[i, 0]
-        for x in (left, right):
-            share = (x - points[i, 0]) / width if width > 0.0 else 0.0
-            y = points[i, 1] + min(1.0, max(0.0, share)) * (points[j, 1] - points[i, 1])
-            low, high = min(low, y), max(high, y)
-        if width == 0.0:
-            low, high = min(low, points[j, 1]), max(high, points[j, 1])
-    return low, high
-
-
-@inline
-def _is_blocked(b, points, ring, grid, frame, terms):
+def _is_blocked(b, points, ring, blocking, terms):
     """Whether a corner that does not turn left lies in the triangle of corner b and its neighbours."""
     a, c = ring.behind[b], ring.ahead[b]
-    starts, corners = grid
-    least, per_length, n_side = frame
-    first = _cell(min(points[a, 0], points[b, 0], points[c, 0]), least, per_length, n_side, 0)
-    last = _cell(max(points[a, 0], points[b, 0], points[c, 0]), least, per_length, n_side, 0)
-    for column in range(first, last + 1):
-        left = least[0] + (column - 0.5) / per_length[0] if column > first else -np.inf
-        right = least[0] + (column + 1.5) / per_length[0] if column < last else np.inf
-        low, high = _rows_within(points, a, b, c, left, right)
-        bottom = max(0, _cell(low, least, per_length, n_side, 1) - 1)
-        top = min(n_side - 1, _cell(high, least, per_length, n_side, 1) + 1)
-        begin, end = starts[column * n_side + bottom], starts[column * n_side + top + 1]
-        ring.counts[N_VISITED] += 1 + end - begin
-        for k in range(begin, end):
-            p = corners[k]
-            if ring.turns[p] == STRAIGHT or ring.turns[p] == RIGHT:
-                if p != a and p != c and _contains(points, a, b, c, p, terms):
-                    return True
+    axis, places, corners = blocking
+    low = min(points[a, axis], points[b, axis], points[c, axis])
+    high = max(points[a, axis], points[b, axis], points[c, axis])
+    for k in range(np.searchsorted(places, low), len(places)):
+        if places[k] > high:
+            break
+        p = corners[k]
+        ring.counts[N_VISITED] += 1
+        if ring.turns[p] == STRAIGHT or ring.turns[p] == RIGHT:
+            if p != a and p != c and _contains(points, a, b, c, p, terms):
+                return True
     return False
 
 
@@ -178,7 +135,7 @@ def _cut_straight(points, ring, triangles, stamp, terms):
 
 
 @inline
-def _cut_ears(visited, points, ring, triangles, grid, frame, stamp, terms):
+def _cut_ears(visited, points, ring, triangles, blocking, stamp, terms):
     """One round: cuts off the ears among some corners, but no two neighbours, which would make needles."""
     ring.counts[N_WAITING] = 0
     for i in visited:
@@ -186,7 +143,7 @@ def _cut_ears(visited, points, ring, triangles, grid, frame, stamp, terms):
             return
         ring.counts[N_VISITED] += 1
         if ring.turns[i] == LEFT and ring.touched[i] != stamp:
-            if not _is_blocked(i, points, ring, grid, frame, terms):
+            if not _is_blocked(i, points, ring, blocking, terms):
                 _cut_off(i, points, ring, triangles, stamp, terms)
 
 
@@ -203,25 +160,13 @@ def _ring_of(points, terms):
 
 
 @inline
-def _frame_of(points, turns):
-    """The grid's corner, its cells per length, and how many there are a side: one for each blocking corner."""
-    n_side = int(np.sqrt(np.count_nonzero(turns != LEFT))) + 1
-    least, per_length = np.empty(2), np.empty(2)
-    for axis in range(2):
-        least[axis] = points[:, axis].min()
-        size = points[:, axis].max() - least[axis]
-        per_length[axis] = n_side / size if size > 0.0 else 1.0
-    return least, per_length, n_side
-
-
-@inline
-def _cut_rounds(points, ring, triangles, grid, frame, most, terms):
+def _cut_rounds(points, ring, triangles, blocking, most, terms):
     """Cuts ears, round after round, until three corners remain; then `CUT`."""
     visited, all_are = np.flatnonzero(ring.turns == LEFT), True
     stamp = 0
     while ring.counts[N_TRIANGLES] < len(triangles) - 1:
         n_before = ring.counts[N_TRIANGLES]
-        _cut_ears(visited, points, ring, triangles, grid, frame, stamp, terms)
+        _cut_ears(visited, points, ring, triangles, blocking, stamp, terms)
         stamp += 1
         if ring.counts[N_VISITED] > most:
             return TOO_MUCH
@@ -243,16 +188,15 @@ def cut_ears(points: Floats2, triangles: Integers2, most: int) -> tuple[int, int
 
     Args:
         points: all within 1 of 0, so that products of coordinates do not overflow.
-        most: corners and cells to visit.
+        most: corners to visit.
 
     Returns:
         The outcome: `CUT`, `CROSSES` without an ear, `TOO_MUCH` where `most` was reached; and the number visited.
     """
     terms = np.empty(N_TERMS)
     ring = _ring_of(points, terms)
-    frame = _frame_of(points, ring.turns)
-    grid = _grid(points, ring.turns, frame)
-    outcome = _cut_rounds(points, ring, triangles, grid, frame, most, terms)
+    blocking = _blocking(points, ring.turns)
+    outcome = _cut_rounds(points, ring, triangles, blocking, most, terms)
     if outcome == CUT:
         i, j, k = np.flatnonzero(ring.turns != GONE)  # three in the ring's order
         triangles[len(triangles) - 1] = (i, j, k)
