@@ -12,7 +12,6 @@ from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_s
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.worst import WorstMoments
 from clearance.errors import BadTolerance
-from clearance.kernels.budget.sweep_state import SearchMemory
 from clearance.record.budget import RuleBudget
 from clearance.simulate.measure.resources import Resources
 from clearance.simulate.measure.section_answer import SectionAnswer
@@ -43,8 +42,7 @@ def budget_answers(
     if budget is None:
         raise ValueError("a case without tolerances")
     require_budget(case, budget, plan)
-    memories: list[SearchMemory] = []
-    sections = [_of_section(budget, answer, resources, memories) for answer in answers]
+    sections = [_of_section(budget, answer, resources) for answer in answers]
     n_steps = max(section.section.steps.stop for section in sections)
     names = case.limits.rule_names
     return tuple(
@@ -94,17 +92,16 @@ def _require_no_loops(case: Case, late: Sequence[str]) -> None:
             )
 
 
-def _of_section(
-    budget: Budget, answer: SectionAnswer, resources: Resources, memories: list[SearchMemory]
-) -> SectionBudget:
+def _of_section(budget: Budget, answer: SectionAnswer, resources: Resources) -> SectionBudget:
     what, found = answer.section.in_motion, answer.found
-    pairs = PairsWithErrors(what, budget, resources.n_threads, memories)
+    pairs = PairsWithErrors(what, budget, resources.n_threads)
     steps = proven_of_steps(pairs, found)
     between = expected_there = None
     expected = expected_of_steps(what.case, budget, what.motions, what.pairs, found)
     if answer.certificate is not None:
         between = proven_between(pairs, steps, answer.certificate.gap)
         expected_there = expected_between(found, answer.certificate, expected)
+    pairs.idle.clear()  # hundreds of sections follow each other
     expected = np.where(found.touches(slice(None)), 0.0, expected)  # nothing is left of contact
     expected = np.maximum(expected, steps.proven)  # no estimate says less than a proof
     return SectionBudget(answer, pairs, steps, between, expected, expected_there)

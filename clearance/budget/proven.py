@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 
@@ -22,13 +21,7 @@ from clearance.kernels.budget.sweep import (
     budget_intervals,
     budget_moments,
 )
-from clearance.kernels.budget.sweep_state import (
-    BudgetScene,
-    SearchMemory,
-    new_memory,
-    new_state,
-    with_memory,
-)
+from clearance.kernels.budget.sweep_state import BudgetScene, new_state
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.record.measurement import Measurement
 from clearance.simulate.measure.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
@@ -36,8 +29,6 @@ from clearance.simulate.measure.layout import PairsInMotion, positions_at
 from clearance.simulate.measure.parts import in_order, parts
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions
-
-Idle = TypeVar("Idle")
 
 ROUNDED_DOWN = 2.0**-48
 """Relative rounding of the sums that make a proven number, beyond the slacks of the bounds."""
@@ -67,14 +58,12 @@ class PairsWithErrors:
 
     Attributes:
         n_threads: the most threads.
-        memories: for searches, not in use by a thread; pairs that are proven in turn may share them.
         but_for: a moment, as `CarrierError` calls it, and the budget for errors made then.
     """
 
     what: PairsInMotion
     budget: Budget
     n_threads: int = 1
-    memories: list[SearchMemory] = field(default_factory=list)
     but_for: tuple[str, Budget] | None = None
 
     @cached_property
@@ -99,28 +88,26 @@ class PairsWithErrors:
 
     def of(self, budget: Budget, but_for: tuple[str, Budget] | None = None) -> PairsWithErrors:
         """The same with another budget."""
-        other = PairsWithErrors(self.what, budget, self.n_threads, self.memories, but_for)
+        other = PairsWithErrors(self.what, budget, self.n_threads, but_for)
         other.__dict__["path"] = self.path  # errors are no part of it
         return other
 
     @cached_property
-    def _idle(self) -> list[BudgetScene]:
-        """Scenes not in use by a thread."""
+    def idle(self) -> list[BudgetScene]:
+        """Scenes not in use by a thread, some MB each; without one, the next question makes its own."""
         return []
 
     @contextmanager
     def _scene(self) -> Iterator[BudgetScene]:
         """A scene for one thread."""
-        memory = _last_of(self.memories) or new_memory()
-        scene = _last_of(self._idle) or self._new_scene(memory)
-        yield scene._replace(state=with_memory(scene.state, memory))
-        self._idle.append(scene)
-        self.memories.append(memory)
+        scene = _last_of(self.idle) or self._new_scene()
+        yield scene
+        self.idle.append(scene)
 
-    def _new_scene(self, memory: SearchMemory) -> BudgetScene:
+    def _new_scene(self) -> BudgetScene:
         layout = self.what.layout
         world = with_turning_balls(layout.world)  # no two threads share it
-        state = new_state(world, self.errors, memory)
+        state = new_state(world, self.errors)
         return BudgetScene(layout.whole_faces, world, self.path, self.errors, state)
 
     @property
@@ -268,7 +255,7 @@ def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> Bud
     return BudgetRows(*(np.concatenate(both) for both in zip(found, last, strict=True)))
 
 
-def _last_of(idle: list[Idle]) -> Idle | None:
+def _last_of(idle: list[BudgetScene]) -> BudgetScene | None:
     """Takes the last item, if there is one; other threads may do the same."""
     try:
         return idle.pop()

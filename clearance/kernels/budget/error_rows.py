@@ -1,13 +1,21 @@
 """The errors of a machine as a displacement of both bodies of a pair, with the motion of an interval.
 
 Along the direction of a search boxes are bounded by a tilted direction, and by the rows that the tilt does not
-cover, the separate rows (`tilted`). Not for: the rows (`rows`), and choosing pairs and moments (`sweep`).
+cover, the separate rows (`along_rows`). Not for: the rows (`rows`), and choosing pairs and moments (`sweep`).
 """
 
 import math
 from typing import NamedTuple
 
 from clearance.compile.decorators import inline
+from clearance.kernels.budget.along_rows import (
+    AlongRows,
+    moved_of_point,
+    project_errors,
+    separate_of_box,
+    separate_of_point,
+    tilted,
+)
 from clearance.kernels.budget.errors import REACH, RESIDUAL, TURNED, BodyRows
 from clearance.kernels.budget.reach import (
     BodyReach,
@@ -16,8 +24,6 @@ from clearance.kernels.budget.reach import (
     reach_of_box,
     reach_of_point,
 )
-from clearance.kernels.budget.tilted import separate_of_box, separate_of_point, tilted
-from clearance.kernels.budget.view import AlongRows, moved_of_point, project_errors
 from clearance.kernels.features.bounds import rounding_slack
 from clearance.kernels.mesh.surface import Box, box_of
 from clearance.kernels.search.displacement import (

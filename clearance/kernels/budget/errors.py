@@ -84,20 +84,6 @@ OFFSETS, REST, REST_AT_REST, REACH, TURNED, SURFACE, RESIDUAL = range(7)
 N_SUMS = 7
 
 
-class JointMotion(NamedTuple):
-    """The motion of joints without their errors, over half an interval of time and the errors of clocks.
-
-    Attributes:
-        swing, bend: (links,) as in `IntervalMiddle`. turned: (links,) [rad] further turns about any axis.
-        half: [s] half of the interval.
-    """
-
-    swing: np.ndarray
-    bend: np.ndarray
-    turned: np.ndarray
-    half: float
-
-
 @inline
 def new_body_rows(n_bodies, most_rows):
     """Empty rows."""

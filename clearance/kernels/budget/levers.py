@@ -12,10 +12,8 @@ import numpy as np
 
 from clearance.compile.declared import Floats, Floats2
 from clearance.compile.decorators import inline
-from clearance.kernels.arithmetic.vec3 import Vec3, dot, rigid, sub
-from clearance.kernels.budget.rows import chord
-from clearance.kernels.features.bounds import LEAN
-from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.arithmetic.vec3 import dot, rigid, row, sub
+from clearance.kernels.budget.rows import ball_of, chord
 from clearance.kernels.motion.joint_path import ANGLE, OUTWARD
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 
@@ -100,18 +98,16 @@ def _length(v):
 @inline
 def _size(surface, world, body):
     """[m] the greatest distance of any point of a body from its origin."""
-    box = box_of(surface, surface.roots[world.solids[body]])
-    return _length(box.centre) + _length(box.half) * (1.0 + LEAN)
+    ball = ball_of(surface, surface.roots[world.solids[body]])
+    return _length(ball.t) + ball.radius
 
 
 @inline
 def _reach_of_standing(surface, world, body, errors):
-    box = box_of(surface, surface.roots[world.solids[body]])
-    extras = errors.of_bodies
+    ball, extras = ball_of(surface, surface.roots[world.solids[body]]), errors.of_bodies
     reach = 0.0
     for k in range(extras.starts[body], extras.starts[body + 1]):
-        o = extras.origins[k]
-        far = _length(sub(box.centre, Vec3(o[0], o[1], o[2]))) + _length(box.half) * (1.0 + LEAN)
+        far = _length(sub(ball.t, row(extras.origins, k))) + ball.radius
         reach += chord(extras.angle[k]) * (far + reach) + extras.xyz[k]
     return reach * OUTWARD
 
@@ -150,8 +146,7 @@ def _fill(surface, world, body, errors, levers):
         far += errors.xyz[i]
         extras = errors.of_links
         for k in range(extras.starts[i], extras.starts[i + 1]):
-            o = extras.origins[k]
-            arm = far + _length(Vec3(o[0], o[1], o[2]))
+            arm = far + _length(row(extras.origins, k))
             reach += chord(extras.angle[k]) * (arm + reach) + extras.xyz[k]
             far += extras.xyz[k]
         far += _length(rigid(links.parent_from_joint[i]).t)
@@ -222,11 +217,11 @@ def excess_of_motion(world, path, before, step, body, levers):
 
 
 @inline(force=True)
-def moved_in_part(world, motion, body, levers):
-    """[m] the greatest motion of any point of a body from the middle of a part of an interval."""
+def moved_in_part(world, middle, body, levers):
+    """[m] the greatest motion of any point of a body from the middle of a part of an interval, without errors."""
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:
-        moved += (abs(motion.swing[i]) + motion.bend[i]) * levers.of_links[body, i]
+        moved += (abs(middle.swing[i]) + middle.bend[i]) * levers.of_links[body, i]
         i = links.parents[i]
     return moved * (1.0 + 1e-9)

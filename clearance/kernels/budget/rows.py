@@ -11,6 +11,7 @@ from typing import NamedTuple
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
+    along,
     cross,
     dot,
     move,
@@ -113,7 +114,8 @@ def _frame(rows, n, origin, angle, xyz, ball, chain):
 
 
 @inline
-def _ball_of(surface, root):
+def ball_of(surface, root):
+    """The `Ball` about the box of a body."""
     box = box_of(surface, root)
     return Ball(box.centre, math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN))
 
@@ -148,25 +150,25 @@ def _extras(extras, i, pose, tip_pose, rows, n, ball, chain):
 
 
 @inline
-def _share_of_clock(errors, motion, link):
+def _share_of_clock(errors, half, link):
     """The share of a joint's motion that an error of its clock causes: 0 to 1."""
     delay = errors.delay[link]
-    return delay / (delay + motion.half) if delay > 0.0 else 0.0
+    return delay / (delay + half) if delay > 0.0 else 0.0
 
 
 @inline
-def _turns_above(links, errors, motion, link):
+def _turns_above(links, errors, middle, half, link):
     """[rad] all turns of a chain, with motion and of the errors alone."""
     moving = still = 0.0
     i = link
     while i != NO_PARENT:
-        extra = errors.angle[i] + motion.turned[i]
+        extra = errors.angle[i] + middle.turned[i]
         for k in range(errors.of_links.starts[i], errors.of_links.starts[i + 1]):
             extra += errors.of_links.angle[k]
         if links.parents[i] != NO_PARENT and links.kinds[i] == TURNING:
-            size = abs(motion.swing[i]) + motion.bend[i]
+            size = abs(middle.state.swing[i]) + middle.state.bend[i]
             moving += errors.joint[i] + size
-            still += errors.joint[i] + size * _share_of_clock(errors, motion, i)
+            still += errors.joint[i] + size * _share_of_clock(errors, half, i)
         moving += extra
         still += extra
         i = links.parents[i]
@@ -182,27 +184,27 @@ def _joint_origin(links, poses, i):
 
 
 @inline
-def fill_rows(surface, world, body, errors, motion, poses, found):
-    """Writes the rows of a body that a link carries, with the links at `poses` (links, 4, 4) [m]."""
-    links, link = world.links, world.frames[body]
+def fill_rows(surface, world, body, errors, middle, half, found):
+    """Writes the rows of a body that a link carries, about the `Middle` of a part; `half` [s] is half of that."""
+    links, link, poses = world.links, world.frames[body], middle.state.poses
     rows = found.rows[body]
-    ball = _ball_of(surface, surface.roots[world.solids[body]])
+    ball = ball_of(surface, surface.roots[world.solids[body]])
     pose = rigid(poses[link])
     n = 0
-    turns, turns_still = _turns_above(links, errors, motion, link)
+    turns, turns_still = _turns_above(links, errors, middle, half, link)
     chain = _Chain(turns, 0.0, 0.0, turns_still, 0.0, 0.0)
     nothing = Vec3(0.0, 0.0, 0.0)
     velocity, spin, clock, share, moves = nothing, nothing, -1, 0.0, False
     i = link
     while i != NO_PARENT:
-        joint, swing, bend = errors.joint[i], motion.swing[i], motion.bend[i]
+        joint, swing, bend = errors.joint[i], middle.state.swing[i], middle.state.bend[i]
         size = joint + abs(swing) + bend
         has_joint = links.parents[i] != NO_PARENT
         if has_joint and size > 0.0 and (links.kinds[i] == TURNING or links.kinds[i] == SLIDING):
             if moves and clock != errors.owner[i]:
                 n = _write(rows, n, velocity, spin, TOGETHER, share, 0.0)
                 velocity, spin = nothing, nothing
-            clock, moves, share = errors.owner[i], True, _share_of_clock(errors, motion, i)
+            clock, moves, share = errors.owner[i], True, _share_of_clock(errors, half, i)
             still = joint + share * (size - joint)
             axis = turn_back(pose, world_axis(links, poses, i))
             at = poses[i]
@@ -211,26 +213,17 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
                 n = _write(rows, n, origin, axis, TURN, joint + bend, 0.0)
                 rows[n - 1, CHORD] = chord(size)
                 chain = _turned(chain, size, still, from_axis(ball, origin, axis))
-                spin = Vec3(
-                    spin.x + swing * axis.x, spin.y + swing * axis.y, spin.z + swing * axis.z
-                )
-                c = cross(origin, axis)
-                velocity = Vec3(
-                    velocity.x + swing * c.x, velocity.y + swing * c.y, velocity.z + swing * c.z
-                )
+                spin = along(spin, swing, axis)
+                velocity = along(velocity, swing, cross(origin, axis))
             else:
                 n = _write(rows, n, origin, axis, SLIDE, joint + bend, 0.0)
                 rows[n - 1, SLIDE_LENGTH] = size * OUTWARD
                 chain = _slid(chain, size, still)
-                velocity = Vec3(
-                    velocity.x + swing * axis.x,
-                    velocity.y + swing * axis.y,
-                    velocity.z + swing * axis.z,
-                )
+                velocity = along(velocity, swing, axis)
             rows[n - 1, FIRST_AT_REST] = joint + share * bend
-        if errors.angle[i] > 0.0 or errors.xyz[i] > 0.0 or motion.turned[i] > 0.0:
+        angle = errors.angle[i] + middle.turned[i]
+        if angle > 0.0 or errors.xyz[i] > 0.0:
             origin = move_back(pose, _joint_origin(links, poses, i))
-            angle = errors.angle[i] + motion.turned[i]
             n, chain = _frame(rows, n, origin, angle, errors.xyz[i], ball, chain)
         n, chain = _extras(errors.of_links, i, rigid(poses[i]), pose, rows, n, ball, chain)
         i = links.parents[i]
@@ -242,7 +235,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
 @inline
 def fill_rows_of_standing(surface, world, body, errors, found):
     """The same for a standing body."""
-    ball = _ball_of(surface, surface.roots[world.solids[body]])
+    ball = ball_of(surface, surface.roots[world.solids[body]])
     rows = found.rows[body]
     turned = 0.0
     extras = errors.of_bodies
@@ -260,13 +253,9 @@ def _sum_up(rows, n, ball, chain, turned, surface, body, found):
     for k in range(n):
         offsets += rows[k, OFFSET]
     sums = found.sums[body]
-    sums[OFFSETS], sums[REST], sums[REST_AT_REST] = (
-        offsets,
-        chain.rest * OUTWARD,
-        chain.rest_still * OUTWARD,
-    )
+    sums[OFFSETS], sums[SURFACE], sums[TURNED] = offsets, surface, turned
+    sums[REST], sums[REST_AT_REST] = chain.rest * OUTWARD, chain.rest_still * OUTWARD
     sums[REACH] = reach_of_ball(rows, n, ball) * OUTWARD
     residual = residual_of_velocity(rows, n, ball)
     sums[RESIDUAL] = (residual + chain.rest) * OUTWARD if residual >= 0.0 else -1.0
-    sums[TURNED], sums[SURFACE] = turned, surface
     found.n_rows[body] = n

@@ -1,6 +1,6 @@
 """The state of a sweep from one moment to the next, and the starts of its searches.
 
-Not for: one pair (`pair_proof`), and choosing moments and intervals (`sweep`).
+Not for: one pair, and choosing moments and intervals (`sweep`).
 """
 
 import math
@@ -18,6 +18,7 @@ from clearance.kernels.arithmetic.vec3 import (
     row,
     turn_back,
 )
+from clearance.kernels.budget.along_rows import new_along_rows
 from clearance.kernels.budget.error_rows import SeenErrors
 from clearance.kernels.budget.errors import (
     REACH,
@@ -25,7 +26,6 @@ from clearance.kernels.budget.errors import (
     REST,
     REST_AT_REST,
     Errors,
-    JointMotion,
     new_body_rows,
 )
 from clearance.kernels.budget.levers import (
@@ -39,7 +39,6 @@ from clearance.kernels.budget.levers import (
 )
 from clearance.kernels.budget.middle import WANTED, Middle, begin_middle, new_middle_of
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
-from clearance.kernels.budget.view import new_along_rows
 from clearance.kernels.features.bounds import displacement
 from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.body_boxes import (
@@ -54,8 +53,8 @@ from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import copy_pose
 from clearance.kernels.motion.world import World, pose_of
 from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.carried import NO_FACE, Carried
-from clearance.kernels.search.front import POOL, Fronts, no_fronts
+from clearance.kernels.search.carried import Carried, nothing_carried
+from clearance.kernels.search.front import POOL
 from clearance.kernels.search.proof import CHAIN_SLACK, Proof, ProofStart
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
@@ -94,7 +93,7 @@ class BudgetSweepState(NamedTuple):
 
 
 class BudgetScene(NamedTuple):
-    """The bodies, motion and errors of a sweep, and its state; it is lent.
+    """The bodies, motion and errors of a sweep, and its state; it is scene.
 
     Attributes:
         surface: every face owns all its features. world, path: as of a certificate. errors: `Errors`.
@@ -117,53 +116,20 @@ LITTLE = 0.02
 """[m] A bound by boxes is tightened up to this much more than is enough, so that it lasts."""
 
 
-class SearchMemory(NamedTuple):
-    """Memory for the searches of a sweep, the same for all scenes.
-
-    Attributes:
-        entries, lower_bounds: the pool of `Fronts`. scratch: of a search.
-    """
-
-    entries: np.ndarray
-    lower_bounds: np.ndarray
-    scratch: Scratch
-
-
 @inline
-def new_memory():
-    """Memory for one sweep at a time."""
-    pool = no_fronts(0, POOL)
-    return SearchMemory(pool.entries, pool.lower_bounds, new_scratch())
-
-
-def with_memory(state, memory):
-    """A state with other memory for its searches, whose content is ignored."""
-    fronts = state.carried.fronts._replace(entries=memory.entries, lower_bounds=memory.lower_bounds)
-    return state._replace(
-        carried=state.carried._replace(fronts=fronts),
-        scratch=memory.scratch,
-    )
-
-
-@inline
-def new_state(world, errors, memory):
+def new_state(world, errors):
     """An empty state."""
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     seen = SeenErrors(
         new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows),
         new_along_rows(errors.most_rows),
     )  # fmt: skip
-    spans, used = np.zeros((n_pairs, 6), dtype=np.int64), np.zeros(1, dtype=np.int64)
-    carried = Carried(
-        np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), NO_FACE),
-        Fronts(memory.entries, memory.lower_bounds, spans, used),
-    )  # fmt: skip
     return BudgetSweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)),
-        np.zeros(n_bodies, dtype=np.int64), carried, np.full((n_pairs, 6), -1.0),
-        np.empty((DEPTH, 2)), seen, memory.scratch,
+        np.zeros(n_bodies, dtype=np.int64), nothing_carried(n_bodies, n_pairs, POOL),
+        np.full((n_pairs, 6), -1.0), np.empty((DEPTH, 2)), seen, new_scratch(),
     )  # fmt: skip
 
 
@@ -183,29 +149,21 @@ def begin_anew(world, state):
 
 
 @inline
-def fill_body(lent, body, half, number):
+def fill_body(scene, body, half, number):
     """Writes the rows of a body about the middle, once for each number of a part."""
-    asked = lent
-    surface, world, errors, path, state = (
-        asked.surface,
-        asked.world,
-        asked.errors,
-        asked.path,
-        asked.state,
-    )
+    surface, world, errors, state = scene.surface, scene.world, scene.errors, scene.state
     frame = world.frames[body]
     if state.filled[body] == number or (frame < 0 and state.filled[body] >= 0):
         return
     state.filled[body] = number
-    found, middle = state.seen.found, state.middle.state
+    found, middle, balls = state.seen.found, state.middle, scene.path.balls
     if frame < 0:
         fill_rows_of_standing(surface, world, body, errors, found)
         return
-    motion = JointMotion(middle.swing, middle.bend, state.middle.turned, half)
-    fill_rows(surface, world, body, errors, motion, middle.poses, found)
-    if len(path.balls.links) > 0:
+    fill_rows(surface, world, body, errors, middle, half, found)
+    if len(balls.links) > 0:
         box = box_of(surface, surface.roots[world.solids[body]])
-        rounding = orientation_rounding(box, world.links, frame, path.balls, middle)
+        rounding = orientation_rounding(box, world.links, frame, balls, middle.state)
         for column in (REST, REST_AT_REST, REACH):
             found.sums[body, column] += rounding
         if found.sums[body, RESIDUAL] >= 0.0:
@@ -223,60 +181,53 @@ def _place_body(surface, world, body, number, state):
 
 
 @inline(force=True)
-def skin_of(lent, pair):
+def skin_of(scene, pair):
     """[m] the skin of a pair: radii of balls and errors of surfaces of both bodies."""
-    asked = lent
-    surface, world, errors = asked.surface, asked.world, asked.errors
+    surface, world, errors = scene.surface, scene.world, scene.errors
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     radii = radii_of(surface, world.solids[body_a], surface, world.solids[body_b])
     return radii.both + errors.surface[body_a] + errors.surface[body_b]
 
 
 @inline(force=True)
-def _reach(lent, body, half, number):
+def _reach(scene, body, half, number):
     """[m] the greatest motion of any point of a body from the middle, by errors and joints."""
-    asked = lent
-    state = asked.state
+    state = scene.state
     if state.late:
-        fill_body(lent, body, half, number)
+        fill_body(scene, body, half, number)
         return state.seen.found.sums[body, REACH]
     moved = 0.0
     if half > 0.0:
-        middle = state.middle
-        motion = JointMotion(middle.state.swing, middle.state.bend, middle.turned, half)
-        moved = moved_in_part(asked.world, motion, body, state.levers)
+        moved = moved_in_part(scene.world, state.middle.state, body, state.levers)
     return state.levers.reach[body] + moved
 
 
 @inline
-def bound_by_boxes(lent, pair, half, number, enough):
+def bound_by_boxes(scene, pair, half, number, enough):
     """[m] a bound on the distance of a pair under errors by both bodies' boxes; one above `enough` will do."""
-    asked = lent
-    surface, world, state = asked.surface, asked.world, asked.state
+    surface, world, state = scene.surface, scene.world, scene.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    loss = skin_of(lent, pair)
+    loss = skin_of(scene, pair)
     for body in (body_a, body_b):
         _place_body(surface, world, body, number, state)
-        loss += _reach(lent, body, half, number)
+        loss += _reach(scene, body, half, number)
     separation = bound_of_bodies(state.boxes, body_a, body_b, enough + loss + LITTLE)
     slacks = state.boxes.slacks[body_a] + state.boxes.slacks[body_b]
     return separation - CHAIN_SLACK * slacks - loss
 
 
 @inline
-def start_at(lent, pair, points):
+def start_at(scene, pair, points):
     """A start at the nearest points of a pair, (2, 3) [m] at the poses of the links."""
-    asked = lent
-    pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state.middle.state.poses)
+    pose = pose_of(scene.world, scene.world.pairs[pair, 0], scene.state.middle.state.poses)
     p, q = row(points, 0), row(points, 1)
     return ProofStart(move_back(pose, p), move_back(pose, q), math.sqrt(gap_sq(p, q)), -1, -1)
 
 
 @inline
-def start_before(lent, pair):
+def start_before(scene, pair):
     """A start along the last direction of a pair, from centre to centre without one."""
-    asked = lent
-    surface, world, state = asked.surface, asked.world, asked.state
+    surface, world, state = scene.surface, scene.world, scene.state
     seen = row(state.directions, pair)
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     poses = state.middle.state.poses
@@ -290,10 +241,9 @@ def start_before(lent, pair):
 
 
 @inline
-def go_on(lent, before, step):
+def go_on(scene, before, step):
     """Adds the motion of bodies from one step to a later one; infinite where unknown."""
-    asked = lent
-    world, state = asked.world, asked.state
+    world, state = scene.world, scene.state
     for body in range(len(world.frames)):
         if world.frames[body] < 0:
             continue
@@ -302,7 +252,7 @@ def go_on(lent, before, step):
         else:
             for between in range(before, step):
                 state.carried.moved[body] += moved_from_step(
-                    world, asked.path, between, body, state.levers
+                    world, scene.path, between, body, state.levers
                 )
 
 
@@ -312,18 +262,17 @@ def _far(pose):
 
 
 @inline
-def go_on_to_step(lent, before, step):
+def go_on_to_step(scene, before, step):
     """Adds the motion of bodies from one step to a later one, the current one; infinite where unknown.
 
     Args:
         before: the step of the last call, or -1.
     """
-    asked = lent
-    surface, world, state = asked.surface, asked.world, asked.state
+    surface, world, state = scene.surface, scene.world, scene.state
     poses, levers = state.middle.state.poses, state.levers
     goes_on = before >= 0 and not state.late and step >= before
     if goes_on:
-        fill_steps(world, asked.path, before, step, levers)
+        fill_steps(world, scene.path, before, step, levers)
     for body in range(len(world.frames)):
         frame = world.frames[body]
         if frame < 0 or before < 0:
@@ -334,7 +283,7 @@ def go_on_to_step(lent, before, step):
         if goes_on:
             root = surface.roots[world.solids[body]]
             moved = displacement(surface, root, state.poses[frame], poses[frame])
-            moved += excess_of_motion(world, asked.path, before, step, body, levers)
+            moved += excess_of_motion(world, scene.path, before, step, body, levers)
             moved += ROUNDED * (levers.sizes[body] + _far(poses[frame]))
         state.carried.moved[body] += moved
         state.n_moves[body] += 1
@@ -344,17 +293,16 @@ def go_on_to_step(lent, before, step):
 
 
 @inline(force=True)
-def _moves_of_pair(asked, pair):
+def _moves_of_pair(scene, pair):
     """The number of moves of both bodies of a pair."""
-    pairs, moves = asked.world.pairs, asked.state.n_moves
+    pairs, moves = scene.world.pairs, scene.state.n_moves
     return np.float64(moves[pairs[pair, 0]] + moves[pairs[pair, 1]])
 
 
 @inline(force=True)
-def note_answer(lent, pair, target, proof):
+def note_answer(scene, pair, target, proof):
     """Stores the answer of a pair for a target [m]."""
-    asked = lent
-    answer, moves = asked.state.answers[pair], _moves_of_pair(asked, pair)
+    answer, moves = scene.state.answers[pair], _moves_of_pair(scene, pair)
     again = answer[MOVES] == moves and answer[TARGET] == target
     answer[MOVES], answer[TARGET], answer[TWICE] = moves, target, 1.0 if again else 0.0
     answer[LOWER_BOUND], answer[LEAST] = proof.lower_bound, proof.least
@@ -362,21 +310,20 @@ def note_answer(lent, pair, target, proof):
 
 
 @inline(force=True)
-def is_answered(lent, pair, target):
+def is_answered(scene, pair, target):
     """True if no body of a pair has moved since two searches with the same target [m].
 
     The second begins at the front of the first and may prove more; a third would repeat its result.
     """
-    asked = lent
-    answer = asked.state.answers[pair]
-    is_same = answer[MOVES] == _moves_of_pair(asked, pair) and answer[TARGET] == target
+    answer = scene.state.answers[pair]
+    is_same = answer[MOVES] == _moves_of_pair(scene, pair) and answer[TARGET] == target
     return is_same and answer[TWICE] == 1.0
 
 
 @inline(force=True)
-def answer_of(lent, pair):
+def answer_of(scene, pair):
     """The last answer of a pair."""
-    answer = lent.state.answers[pair]
+    answer = scene.state.answers[pair]
     nowhere = Vec3(0.0, 0.0, 0.0)
     return Proof(
         answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, False, nowhere, -1, -1, 0, 0, 0
