@@ -20,8 +20,8 @@ from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes, place
 from clearance.kernels.motion.interval_middle import (
     begin_arcs,
     go_to_middle,
-    loosened_motion_bound_in,
     motion_bound_at,
+    motion_bound_in,
     new_middle,
     note_motion_bound,
 )
@@ -173,7 +173,7 @@ def fill_clock_tree(
             root = surface.roots[world.solids[body]]
             place_box(surface, root, row, rigid(tree.poses[row]), tree.boxes)
             if not of_steps:
-                bound = loosened_motion_bound_in(surface, world, path.balls, body, middle)
+                bound = motion_bound_in(surface, world, path.balls, body, middle)
                 note_motion_bound(bound, tree.motion_bounds[row])
     _fill_moved(surface, world, bodies, tree)
     for node in range(len(tree.first)):

@@ -21,7 +21,7 @@ from clearance.kernels.motion.body_boxes import bound_between
 from clearance.kernels.motion.interval_middle import (
     IntervalMiddle,
     begin_arcs,
-    loosened_motion_bound_in,
+    motion_bound_in,
 )
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.placed import GROWTH
@@ -98,7 +98,7 @@ def _side_of(surface, clocks, tree, body, span, part):
     begin_arcs(
         world.links, balls, tree.start + tree.first[node]
     )  # the other side may have overwritten them
-    motion = loosened_motion_bound_in(surface, world, balls, body, part)
+    motion = motion_bound_in(surface, world, balls, body, part)
     box = box_of(surface, surface.roots[world.solids[body]])
     return pose_of(world, body, part.poses), motion, GROWTH * motion_bound_of_box(box, motion)
 

@@ -30,12 +30,7 @@ from clearance.kernels.motion.interval_middle import (
     new_middle,
     note_motion_bound,
 )
-from clearance.kernels.motion.joint_motion_bound import (
-    PairMotion,
-    loosened,
-    motion_bound_of_box,
-    orientation_rounding,
-)
+from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL
 from clearance.kernels.motion.placed import GROWTH
@@ -104,8 +99,7 @@ class CertifyState(NamedTuple):
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
-        motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] the rounding of
-            orientations in it, which is the same in all parts.
+        motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
         carried: of all pairs, without fronts; a bound is over an interval.
         waiting: (DEPTH, 2) parts of an interval.
     """
@@ -124,19 +118,10 @@ def _go_on(surface, world, path, step, state):
     begin_arcs(world.links, path.balls, step)
     go_to_middle(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
-        numbers = state.motion_bounds[body]
-        numbers[8] = 0.0
-        if len(path.balls.links) > 0 and world.frames[body] >= 0:
-            box = box_of(surface, surface.roots[world.solids[body]])
-            numbers[8] = orientation_rounding(
-                box, world.links, world.frames[body], path.balls, state.whole
-            )
-        about_middle = motion_bound_in(surface, world, body, state.whole)
-        motion_bound = loosened(about_middle, numbers[8])
-        note_motion_bound(motion_bound, numbers)
-        if world.frames[body] >= 0:
-            box = box_of(surface, surface.roots[world.solids[body]])
-            state.carried.moved[body] += 2.0 * GROWTH * motion_bound_of_box(box, motion_bound)
+        bound = motion_bound_in(surface, world, path.balls, body, state.whole)
+        note_motion_bound(bound, state.motion_bounds[body])
+        box = box_of(surface, surface.roots[world.solids[body]])
+        state.carried.moved[body] += 2.0 * GROWTH * motion_bound_of_box(box, bound)
 
 
 class MovingPair(NamedTuple):
@@ -157,12 +142,11 @@ class MovingPair(NamedTuple):
 
 @inline
 def _motion_of(asked, body, is_whole):
-    """The motion bound of a body about the middle of the interval or a part, with the rounding of the interval."""
-    state = asked.state
+    """The motion bound of a body about the middle of the interval or a part."""
+    motion, state = asked.motion, asked.state
     if is_whole:
         return motion_bound_at(state.motion_bounds, body)
-    bound = motion_bound_in(asked.surface, asked.motion.world, body, state.part)
-    return loosened(bound, state.motion_bounds[body, 8])
+    return motion_bound_in(asked.surface, motion.world, motion.path.balls, body, state.part)
 
 
 @prove_part.register
@@ -210,16 +194,15 @@ def certify(
         raise AssertionError("a joint that turns takes its place")
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = lend(CertifyState(
-        new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 9)),
+        new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 8)),
         nothing_carried(n_bodies, n_pairs, 0), np.empty((DEPTH, 2)), new_scratch(),
     ))  # fmt: skip
     _certify(lend(surface), motion, steps, aim, bounds, tally, state)
 
 
 @inline
-def _certify(lent, motion, steps, aim, bounds, tally, state):
+def _certify(surface, motion, steps, aim, bounds, tally, state):
     """`certify`, with the arrays of its state."""
-    surface = lent
     world, order, clearance = motion.world, steps.order, steps.clearance
     pairs, carried = world.pairs, state.carried
     for i in range(len(tally)):
@@ -238,7 +221,7 @@ def _certify(lent, motion, steps, aim, bounds, tally, state):
                 lower_bound = min(lower_bound, bound)
                 tally[0] += 1
                 continue
-            asked = MovingPair(lent, state, motion, step, pair, aim, tally)
+            asked = MovingPair(surface, state, motion, step, pair, aim, tally)
             over = prove_interval(asked, least, aim.gap, aim.most_parts, state.waiting)
             carry(pairs, pair, over.lower_bound, carried)
             if over.share >= 0.0:

@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.compile.declared import Floats, Floats3
 from clearance.compile.decorators import inline
-from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.arithmetic.vec3 import Vec3
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_motion_bound import (
     AT_REST,
@@ -23,12 +23,19 @@ from clearance.kernels.motion.kinematics import orient, place_by_link
 
 
 class IntervalMiddle(NamedTuple):
-    """The state in the middle of an interval or of a part of it."""
+    """The state in the middle of an interval or of a part of it.
 
-    positions: Floats  # (links,)
-    swing: Floats  # (links,)
-    bend: Floats  # (links,)
-    poses: Floats3  # (links, 4, 4)
+    Attributes:
+        positions: (links,) [rad or m] of the joint above each link.
+        swing: (links,) [rad or m] half of its motion in the interval, to first order.
+        bend: (links,) [rad or m] the greatest deviation from that; 0 for linear motion.
+        poses: (links, 4, 4) `world_from_link` [m].
+    """
+
+    positions: Floats
+    swing: Floats
+    bend: Floats
+    poses: Floats3
 
 
 @inline
@@ -64,27 +71,16 @@ def new_middle(n_links):
 
 
 @inline
-def motion_bound_in(surface, world, body, middle):
-    """The motion bound of a body about `middle`, without the rounding of orientations."""
+def motion_bound_in(surface, world, balls, body, middle):
+    """The motion bound of a body about `middle`; ball joints must have the arcs of the interval."""
     link = world.frames[body]
     if link < 0:
         return AT_REST
-    root = surface.roots[world.solids[body]]
-    pose = rigid(middle.poses[link])
-    return motion_bound_of(
-        surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
-    )
-
-
-@inline
-def loosened_motion_bound_in(surface, world, balls, body, middle):
-    """The same with the rounding of orientations; ball joints must have the arcs of the interval."""
-    bound = motion_bound_in(surface, world, body, middle)
-    if len(balls.links) == 0 or world.frames[body] < 0:
-        return bound
     box = box_of(surface, surface.roots[world.solids[body]])
-    rounding = orientation_rounding(box, world.links, world.frames[body], balls, middle)
-    return loosened(bound, rounding)
+    bound = motion_bound_of(box, world.links, link, middle)
+    if len(balls.links) == 0:
+        return bound
+    return loosened(bound, orientation_rounding(box, world.links, link, balls, middle))
 
 
 @inline

@@ -19,12 +19,13 @@ from clearance.kernels.arithmetic.vec3 import (
     along,
     cross,
     dot,
+    move,
     rigid,
     sub,
     turn_back,
 )
 from clearance.kernels.features.bounds import LEAN, box_reach
-from clearance.kernels.mesh.surface import box_of, corner_of
+from clearance.kernels.mesh.surface import corner_of
 from clearance.kernels.motion.joint_path import BALL_ROUNDING
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING, world_axis
 
@@ -61,32 +62,20 @@ class PairMotion(NamedTuple):
 
 
 @inline
-def _farthest_from_axis(surface, root, pose, origin, axis):
+def _farthest_from_axis(box, pose, origin, axis):
     """[m] an upper bound on the distance of the body's points from a line, by the corners of its box."""
     far_sq = 0.0
-    box = box_of(surface, root)
     for corner in range(8):
-        x = corner_of(box, corner)
-        world = Vec3(
-            pose[0, 0] * x.x + pose[0, 1] * x.y + pose[0, 2] * x.z + pose[0, 3],
-            pose[1, 0] * x.x + pose[1, 1] * x.y + pose[1, 2] * x.z + pose[1, 3],
-            pose[2, 0] * x.x + pose[2, 1] * x.y + pose[2, 2] * x.z + pose[2, 3],
-        )
-        away = cross(sub(world, origin), axis)
+        away = cross(sub(move(pose, corner_of(box, corner)), origin), axis)
         far_sq = max(far_sq, dot(away, away))
     return math.sqrt(far_sq)
 
 
 @inline
-def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_body):
-    """The motion bound of a body that is fixed to `link`.
-
-    Args:
-        poses: (n_links, 4, 4) in the middle of the interval.
-        swing: (n_links,) [rad or m] half of the motion of each link's joint in the interval, to first order.
-        bend: (n_links,) [rad or m] the greatest deviation from that; 0 for linear motion.
-        world_from_body: the pose of the link as `Rigid`.
-    """
+def motion_bound_of(box, links, link, middle):
+    """The motion bound of a body with a box, fixed to `link`, about the `IntervalMiddle` of an interval."""
+    poses, swing, bend = middle.poses, middle.swing, middle.bend
+    world_from_body = rigid(poses[link])
     shallower = 0.0  # sum of the motions of the turning joints between here and the base
     i = link
     while links.parents[i] != NO_PARENT:
@@ -104,7 +93,7 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
             shallower = max(0.0, shallower - size)
             axis = world_axis(links, poses, i)
             origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
-            arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
+            arm = _farthest_from_axis(box, world_from_body, origin, axis) + moved
             rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
             moved += size * arm
             spin = along(spin, swing[i], axis)

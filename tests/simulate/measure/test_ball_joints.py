@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.geometry.tree import surface_of
-from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.interval_middle import IntervalMiddle
 from clearance.kernels.motion.joint_motion_bound import (
@@ -110,10 +109,8 @@ def test_no_body_moves_farther_than_its_columns_say(seed, above, below, size, le
 
 def bound_about(surface, links, link, balls, middle):
     place_by_link(links, middle.positions, middle.poses)
-    pose, box = rigid(middle.poses[link]), box_of(surface, 0)
-    bound = motion_bound_of(
-        surface, surface.roots[0], links, link, middle.poses, middle.swing, middle.bend, pose
-    )
+    box = box_of(surface, 0)
+    bound = motion_bound_of(box, links, link, middle)
     rounding = orientation_rounding(box, links, link, balls, middle)
     return motion_bound_of_box(box, loosened(bound, rounding)), rounding
 

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
-from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.arithmetic.vec3 import Vec3
 from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.interval_middle import IntervalMiddle
 from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of,
     motion_bound_of_box,
@@ -30,8 +31,8 @@ def standing(robot):
 
 
 def drifts(surface, chain, link, poses, swing, bend, direction):
-    pose = rigid(poses[link])
-    drift = motion_bound_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)
+    middle = IntervalMiddle(np.zeros(len(swing)), swing, bend, poses)
+    drift = motion_bound_of(box_of(surface, surface.roots[0]), chain, link, middle)
     along = motion_bound_of_box_along(
         box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift
     )
