@@ -150,11 +150,12 @@ class Arm:
         return found
 
     def sums(self, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) [rad] what all joints that turn, and (n,) [m] what all that slide, move by together, with ways (n,
-        k)."""
-        turned, slid = np.zeros(len(ways)), np.zeros(len(ways))
+        """(...) [rad] what all joints that turn, and (...) [m] what all that slide, move by together, with ways
+        (..., k)."""
+        turned, slid = np.zeros((2, *ways.shape[:-1]))
         for one in self.chain.joints:
-            (turned if one.turns else slid)[:] += abs(one.factor) * ways[:, one.column]
+            moved = turned if one.turns else slid
+            moved += abs(one.factor) * ways[..., one.column]
         return turned, slid
 
     def series(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

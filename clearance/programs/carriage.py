@@ -20,9 +20,9 @@ from clearance.programs.series import (
     ORDER,
     half_skew,
     majorant_of_turns,
-    majorant_product,
     matrix_product,
     moved,
+    product,
     turns_about,
 )
 from clearance.world.kinematic_chain import ChainJoint
@@ -195,8 +195,8 @@ class Carried(NamedTuple):
 
     def majorants(self, turn: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The majorants of a pose on it, seen from the root."""
-        way = majorant_product(self.turn_majorant, origin)
-        return majorant_product(self.turn_majorant, turn), self.way_majorant + way
+        way = product(self.turn_majorant, origin)
+        return product(self.turn_majorant, turn), self.way_majorant + way
 
     @property
     def poses(self) -> np.ndarray:
@@ -352,4 +352,4 @@ def _series(steps: Sequence[Step], times: np.ndarray, half: np.ndarray, before: 
         off[1] += one.off
     majorant = majorant_of_turns(turns)
     turned = turns[1:].sum(axis=0)
-    return Carried(turn, origin, majorant, majorant_product(majorant, lengths), turned, off)
+    return Carried(turn, origin, majorant, product(majorant, lengths), turned, off)

@@ -25,9 +25,9 @@ from clearance.programs.series import (
     greatest,
     half_skew,
     majorant_of_turns,
-    majorant_product,
     matrix_product,
     moved,
+    product,
 )
 from clearance.programs.tool_path import Stretch
 
@@ -129,7 +129,9 @@ def enclosed(
     _, rates = arm.tool.poses_and_rates(joints[0])
     rates[:, 3:] = np.swapaxes(path_turn[0], 1, 2) @ rates[:, 3:]
     inverse, is_regular = _inverses(rates, free)
-    longest = arm.longest(np.concatenate([given.before, given.after])) + _slid(arm, joints)
+    within = np.abs(joints[1:]).sum(axis=0)
+    longest = arm.longest(np.concatenate([given.before, given.after]))
+    longest += float(arm.sums(within.max(axis=0, initial=0.0))[1])
     longest += float(arm.sums(np.abs(spread.joints))[1].max(initial=0.0))
     unknown = _remainders(arm, stretch, joints, strokes, longest, given.carried)
     error = greatest((inverse @ off[..., None])[..., 0])
@@ -140,7 +142,6 @@ def enclosed(
     by_spread, turned = _of_spread(
         stretch, spread, of_point, inverse, sizes, own_turn, off_middle, given.carried
     )
-    within = np.abs(joints[1:]).sum(axis=0)
     varied = np.einsum("nkc,ncji->nkji", inverse, arm.second_rates(joints[0], path_turn[0]))
     variation = _Variation(np.abs(varied), sizes, within, off_middle + turned, longest)
     box = _closed(arm, error + by_spread, variation, is_regular, free, spread.held)
@@ -226,14 +227,6 @@ def _inverses(seen: np.ndarray, free: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return found, is_regular
 
 
-def _slid(arm: Arm, joints: np.ndarray) -> float:
-    """[m] How far slides go within an interval, at most, all together."""
-    within = np.abs(joints[1:]).sum(axis=0).max(axis=0, initial=0.0)
-    return float(
-        sum(abs(one.factor) * within[one.column] for one in arm.chain.joints if not one.turns)
-    )
-
-
 def _remainders(
     arm: Arm,
     stretch: Stretch,
@@ -243,11 +236,8 @@ def _remainders(
     carried: Carried | None,
 ) -> np.ndarray:
     """(n, 6) [m] and [-] what the series leave out and round away."""
-    own = moved(joints)
-    turned = sum(abs(one.factor) * own[:, :, one.column] for one in arm.chain.joints if one.turns)
-    slid = sum(abs(one.factor) * own[:, :, one.column] for one in arm.chain.joints if not one.turns)
-    turn = majorant_of_turns(turned + np.zeros(own.shape[:2]))
-    lengths = slid + np.zeros(own.shape[:2])
+    turned, lengths = arm.sums(moved(joints))
+    turn = majorant_of_turns(turned)
     lengths[0] = longest
     path_turn, path_origin = stretch.majorants(strokes)
     way, angle = ROUNDING * longest, ROUNDING
@@ -256,9 +246,9 @@ def _remainders(
         path_turn, path_origin = carried.majorants(path_turn, path_origin)
         way = way + carried.off[0] + (carried.off[1] + ROUNDING) * path_origin[0][:, None]
         angle += carried.off[1]
-    found = np.empty((own.shape[1], 6))
-    found[:, :3] = (majorant_product(turn, lengths) + path_origin)[-1][:, None] + way
-    found[:, 3:] = majorant_product(turn, path_turn)[-1][:, None] + angle
+    found = np.empty((joints.shape[1], 6))
+    found[:, :3] = (product(turn, lengths) + path_origin)[-1][:, None] + way
+    found[:, 3:] = product(turn, path_turn)[-1][:, None] + angle
     return found
 
 

@@ -75,34 +75,24 @@ class PathSamples:
     @classmethod
     def _at(cls, follower: Follower, parts: list[tuple[Piece, np.ndarray]]) -> PathSamples:
         begun = np.cumsum([0.0, *(piece.duration for piece, _ in parts)])
-        times = [began + own[:-1] for (_, own), began in zip(parts, begun, strict=False)]
-        shares = [piece.at(own[:-1]) for piece, own in parts]
-        rates = [piece.rates_at(own[:-1]) for piece, own in parts]
-        changes = [np.full(len(own) - 1, piece.change) for piece, own in parts]
-        last_piece, last_times = parts[-1]
-        times_all = np.append(np.concatenate(times), begun[-1])
-        shares_all = np.append(np.concatenate(shares), 1.0)
-        rates_all = np.append(np.concatenate(rates), last_piece.rates_at(last_times[-1:]))
-        changes_all = np.append(np.concatenate(changes), last_piece.change)
-        rates_all[np.abs(rates_all) < 1e-9 * np.abs(rates_all).max(initial=0.0)] = 0.0
-        strokes = follower.stretch.strokes(shares_all, rates_all, changes_all)
-        positions = follower.positions(shares_all if follower.ride is None else times_all)
-        velocities, leaving = _velocities(follower, positions, strokes, times_all)
-        lengths = np.diff(times_all)
-        given = Intervals(
-            lengths,
-            positions[:-1],
-            positions[1:],
-            np.stack([leaving[:-1], velocities[1:]]),
-            strokes[:, :-1],
-            None
-            if follower.ride is None
-            else follower.ride.carriage.series(
-                follower.ride.began + times_all[:-1] + 0.5 * lengths, 0.5 * lengths
-            ),
-        )
+        each_once = [*((piece, own[:-1]) for piece, own in parts[:-1]), parts[-1]]
+        rows = [
+            (began + own, piece.at(own), piece.rates_at(own), np.full(len(own), piece.change))
+            for (piece, own), began in zip(each_once, begun, strict=False)
+        ]
+        times, shares, rates, changes = (np.concatenate(one) for one in zip(*rows, strict=True))
+        times[-1], shares[-1] = begun[-1], 1.0
+        rates[np.abs(rates) < 1e-9 * np.abs(rates).max(initial=0.0)] = 0.0
+        strokes, ride = follower.stretch.strokes(shares, rates, changes), follower.ride
+        positions = follower.positions(shares if ride is None else times)
+        velocities, leaving = _velocities(follower, positions, strokes, times)
+        lengths, ends = np.diff(times), np.stack([leaving[:-1], velocities[1:]])
+        given = Intervals(lengths, positions[:-1], positions[1:], ends, strokes[:, :-1])
+        if ride is not None:
+            middles = ride.began + times[:-1] + 0.5 * lengths
+            given = given._replace(carried=ride.carriage.series(middles, 0.5 * lengths))
         off = deviations(follower.arm, follower.stretch, given, follower.free)
-        return cls(parts, times_all, shares_all, positions, velocities, leaving, given, off)
+        return cls(parts, times, shares, positions, velocities, leaving, given, off)
 
 
 def _velocities(

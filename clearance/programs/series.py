@@ -17,20 +17,15 @@ _TO_CHEBYSHEV = np.array(
 )
 
 
-def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(ORDER + 1, n, ...) the product of two series, elementwise."""
-    found = np.empty((ORDER + 1, *np.broadcast_shapes(a.shape[1:], b.shape[1:])))
-    for k in range(ORDER + 1):
-        found[k] = sum(a[i] * b[k - i] for i in range(k + 1))
-    return found
+def product(a: np.ndarray, b: np.ndarray, times: np.ufunc = np.multiply) -> np.ndarray:
+    """(m, n, ...) the product of two series of m terms, or of two majorants: elementwise, or as `times` says."""
+    terms = (sum(times(a[i], b[k - i]) for i in range(k + 1)) for k in range(len(a)))
+    return np.stack([*terms])
 
 
 def matrix_product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(ORDER + 1, n, 3, m) the product of series of matrices (…, 3, 3) and (…, 3, m)."""
-    found = np.empty((ORDER + 1, *a.shape[1:-1], b.shape[-1]))
-    for k in range(ORDER + 1):
-        found[k] = sum(a[i] @ b[k - i] for i in range(k + 1))
-    return found
+    return product(a, b, np.matmul)
 
 
 def sine_and_cosine(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -89,12 +84,4 @@ def majorant_of_turns(turned: np.ndarray) -> np.ndarray:
     found[0] = 1.0
     for k in range(1, ORDER + 2):
         found[k] = sum(i * turned[i] * found[k - i] for i in range(1, k + 1)) / k
-    return found
-
-
-def majorant_product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(ORDER + 2, n) the product of two majorants."""
-    found = np.empty_like(a)
-    for k in range(ORDER + 2):
-        found[k] = sum(a[i] * b[k - i] for i in range(k + 1))
     return found

@@ -104,7 +104,9 @@ class BlockReader:
     def cases(self, line: Line, word: str, end: str) -> If:
         """`SWITCH value … CASE 1, 2 … DEFAULT … ENDSWITCH`, behind its first word."""
         value, ends, found = self.expression(), ("CASE", "DEFAULT", end), list[Branch]()
-        self.block(line, word, *ends)
+        if stray := self.block(line, word, *ends):
+            fault = f"{word} begins with a statement"
+            raise BadSyntax(fault, where=str(stray[0].line), valid="CASE")
         while not self.cursor.accept(end):
             condition = None
             if self.cursor.take().text.upper() == "CASE":

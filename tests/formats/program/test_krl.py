@@ -265,6 +265,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("HALT", "line 7: 'HALT' is not understood"),
         ("n=SQRT(-1)", "line 7: SQRT has no value for -1"),
         ("n=STOOL2()", "line 7: STOOL2 has no value"),
+        ("SWITCH 1\nPTP XHOME\nCASE 1\nENDSWITCH", "line 8: SWITCH begins with a statement"),
         ("PTP XHOME WITH $ORI_TYPE.X.Y = 1", "line 7: this has no value for '#VAR' and 'X'"),
         ("n=3\nLOOP\nn=n*n\nENDLOOP", "line 9: this has no value for"),
         ("n='B12'\nPTP {A1 n}", "line 8: a position is not known: N is given what is not read"),
