@@ -6,22 +6,34 @@ and it is meant. Not for: pairs that touch all the time (`standing`).
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from clearance.errors import BadInput
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.pose import inverse
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT
+from clearance.query.contact import contact
 from clearance.query.distance import distance
 from clearance.record.record import Record
 from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.extents import metres
-from clearance.world.forest import WORLD, carried_by, forest_of, link_poses_at, owner_of
+from clearance.world.forest import (
+    WORLD,
+    carried_by,
+    forest_of,
+    link_poses_at,
+    owner_of,
+    positions_along,
+)
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
@@ -39,14 +51,21 @@ FAR_GRASP = 0.3
 MOST_STEPS = 2000
 """Most steps before and after that are checked for the end of a contact."""
 
+FINE, MOST_SHARES = 2e-3, 128
+"""[m] Between steps a contact is followed so finely, in at most so many parts of an interval."""
+
+ALIKE = 1e-3
+"""[m] Contact that is deeper by no more than this is the touching that is meant."""
+
 
 @dataclass(frozen=True)
 class HandlingHint:
     """A part that touches a body as it changes hands.
 
     Attributes:
-        when: in words. start, end: [s] from when until when the pair is to be excused, so that no step is left at
-            which it touches or is below its fail limit; None for the run's own ends.
+        when: in words. start, end: [s] from when until when the pair is to be excused, so that no moment is left
+            at which it touches or is below its fail limit; None for the run's own ends.
+        is_deeper: in that contact they are, or may be, deeper in each other than then. No row excuses that.
     """
 
     part: str
@@ -54,6 +73,7 @@ class HandlingHint:
     when: str
     start: float | None
     end: float | None
+    is_deeper: bool = False
 
     @property
     def pair(self) -> frozenset[str]:
@@ -69,7 +89,10 @@ class HandlingHint:
         return f"{{{', '.join(fields)}}}"
 
     def __str__(self) -> str:
-        return f"{self.part} touches {self.mate} when it is {self.when}"
+        deeper = (
+            ", but is or may be deeper in it before or after: check that" if self.is_deeper else ""
+        )
+        return f"{self.part} touches {self.mate} when it is {self.when}{deeper}"
 
 
 def handling_hints(record: Record) -> list[HandlingHint]:
@@ -165,7 +188,11 @@ def _at_change(
         if not gaps.touches_at(step):
             continue
         mate = names[0] if names[1] == carry.part else names[1]
-        yield HandlingHint(carry.part, mate, when, *gaps.stretch(step))
+        try:
+            yield HandlingHint(carry.part, mate, when, *gaps.stretch(step))
+        except _Deeper:
+            time = float(record.timeline.times[step])
+            yield HandlingHint(carry.part, mate, when, time, time, is_deeper=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,21 +215,34 @@ class _PairGaps:
         return any(self._gap(section, step) <= TOUCHING for section in around)
 
     def stretch(self, step: int) -> tuple[float | None, float | None]:
-        """[s] The nearest times around a step at which they are clear of each other, or are not measured."""
+        """[s] The nearest times around a step at which they are clear of each other, or are not measured.
+
+        Raises:
+            _Deeper: in between they are deeper in each other than at the step.
+        """
         return self._walk(step, -1), self._walk(step, 1)
 
     def _walk(self, step: int, way: int) -> float | None:
         times = self.record.timeline.times
         end = 0 if way < 0 else len(times) - 1
+        held: _Placed | None = None
         for _ in range(MOST_STEPS):
             section = self._towards(step, way)
             if step == end:
                 return None
             if section is None:
                 return float(times[step])
+            own = step - section.phase.first
+            held = (
+                held or self._placed(section, min(own, own + way), np.array([1.0 * (way < 0)]))[0]
+            )
+            for share, placed in self._along(section, own, way):
+                gap = placed.gap
+                if gap > TOUCHING and not section.limits.below(gap, section.limits.fail):
+                    return _time(times[step], times[step + way], share)
+                if gap <= TOUCHING and placed.is_deeper_than(held):
+                    raise _Deeper
             step += way
-            if self._is_clear(section, step):
-                return float(times[step])
         return float(times[step])
 
     def _towards(self, step: int, way: int) -> Section | None:
@@ -211,22 +251,84 @@ class _PairGaps:
         own = (s for s in self.sections if s.phase.first <= low and high <= s.phase.last)
         return next(own, None)
 
-    def _is_clear(self, section: Section, step: int) -> bool:
-        """True if they are separate, and not below the fail limit of the rule that judges them there."""
-        gap = self._gap(section, step)
-        return gap > TOUCHING and not section.limits.below(gap, section.limits.fail)
+    def _along(self, section: Section, own: int, way: int) -> Iterator[tuple[float, _Placed]]:
+        """The shares of the way from one of a section's steps to the next, and the bodies there."""
+        low = min(own, own + way)
+        ends = self._placed(section, low, np.array([0.0, 1.0]))
+        n = int(np.clip(np.ceil(ends[0].moved_to(ends[1]) / FINE), 1, MOST_SHARES))
+        shares = np.arange(1, n + 1) / n
+        for share in shares:
+            (placed,) = self._placed(section, low, np.array([share if way > 0 else 1.0 - share]))
+            yield float(share), placed
 
     def _gap(self, section: Section, step: int) -> float:
         """[m] at one of a section's steps, without paddings."""
         case, own = section.phase.case, step - section.phase.first
-        poses = link_poses_at(case, section.phase.motions, slice(own, own + 1))
+        return self._at(case, link_poses_at(case, section.phase.motions, slice(own, own + 1)))[
+            0
+        ].gap
+
+    def _placed(self, section: Section, own: int, shares: np.ndarray) -> list[_Placed]:
+        """The bodies when shares of the interval after one of a section's steps have passed."""
+        case = section.phase.case
+        positions = positions_along(case, section.phase.motions, own, shares)
+        return self._at(case, forest_of(case).poses(positions))
+
+    def _at(self, case: Case, poses: np.ndarray) -> list[_Placed]:
         a, b = self.pair.a, self.pair.b
-        return gap_between(
-            a.shape_in(case),
-            a.poses_in(case, poses)[0],
-            b.shape_in(case),
-            b.poses_in(case, poses)[0],
-        )
+        placed = zip(a.poses_in(case, poses), b.poses_in(case, poses), strict=True)
+        return [_Placed(a.shape_in(case), b.shape_in(case), *one) for one in placed]
+
+
+class _Deeper(Exception):
+    """A part is deeper in its mate than as it changes hands."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """Two bodies at one moment, with (4, 4) poses [m]."""
+
+    a: Polyhedron
+    b: Polyhedron
+    world_from_a: np.ndarray
+    world_from_b: np.ndarray
+
+    @cached_property
+    def gap(self) -> float:
+        """[m] Without paddings."""
+        return gap_between(self.a, self.world_from_a, self.b, self.world_from_b)
+
+    def is_deeper_than(self, other: _Placed) -> bool:
+        """True if they are deeper in each other than at another moment by more than `ALIKE`, or may be so.
+
+        Proof: no body gets deeper than the corners of its box go, as seen from the other body.
+        """
+        return self.moved_to(other) > ALIKE and not self._depth <= other._depth + ALIKE
+
+    def moved_to(self, other: _Placed) -> float:
+        """[m] How far the corners of a's box go to another moment, as seen from b."""
+        corners = np.array([*itertools.product(*self.a.bounds.T)])
+        here, there = (inverse(one.world_from_b) @ one.world_from_a for one in (self, other))
+        turn, shift = (there - here)[:3, :3], (there - here)[:3, 3]
+        return float(np.linalg.norm(corners @ turn.T + shift, axis=1).max())
+
+    @cached_property
+    def _depth(self) -> float:
+        """[m] An upper bound; NaN for bodies without an inside."""
+        try:
+            found = contact(self.a, self.b, pose_a=self.world_from_a, pose_b=self.world_from_b,
+                            rough=True, bounded=False)  # fmt: skip
+        except BadInput:
+            return np.nan
+        return 0.0 if found is None else found.penetration
+
+
+def _time(here: float, there: float, share: float) -> float:
+    """[s] When a share of the way has passed; between the two, to the next microsecond."""
+    if share == 1.0:
+        return float(there)
+    outwards = math.ceil if there > here else math.floor
+    return outwards(round((here + share * (there - here)) * 1e6, 3)) / 1e6
 
 
 def gap_between(

@@ -108,11 +108,12 @@ def standing_hint(record: Record) -> list[str]:
         *_hint(standing, "all the time, since the link never moves"),
         *_hint(links, "at every step, link against link"),
         *_hint([pair for pair in always if pair not in links], "whenever they are measured"),
-        *map(str, parts),
+        *map(str, sorted(parts, key=lambda hint: not hint.is_deeper)),
     ]
-    if hints:
-        rows = [json.dumps(pair, ensure_ascii=False) for pair in (*standing, *links, *always)]
-        block = ", ".join(dict.fromkeys([*rows, *(hint.row for hint in parts)]))
+    rows = [json.dumps(pair, ensure_ascii=False) for pair in (*standing, *links, *always)]
+    rows += [hint.row for hint in parts if not hint.is_deeper]
+    if rows:
+        block = ", ".join(dict.fromkeys(rows))
         lines = (
             f"its rows of allow: {block}" if record.case.allow else f"the case: allow: [{block}]"
         )
