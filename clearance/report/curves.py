@@ -95,9 +95,13 @@ def more_curves(record: Record) -> Iterator[MoreCurve]:
         times, between = record.motions[0].times, least_between(record.budget)
         proven = least_proven(record.budget)
         proven = proven if between is None else np.minimum(proven, between)
-        yield _least("proven with tolerances", times, proven)
         expected = np.maximum(least_expected(record.budget), proven)  # as it is told in words
-        yield _least("expected, an estimate", times, expected, "dot", filled=True)
+        if between is None:
+            yield _least("proven with tolerances, at the samples", times, proven, "dash")
+            yield _least("expected, an estimate", times, expected, "dot", filled=True)
+        else:
+            yield _stairs("proven with tolerances", times, proven)
+            yield _stairs("expected, an estimate", times, expected, "dot", filled=True)
 
 
 def _least(
@@ -105,6 +109,15 @@ def _least(
 ) -> MoreCurve:
     starts, middles = _stretches(times, MOST_PARTS)
     return MoreCurve(name, middles, np.fmin.reduceat(values, starts), kind, filled)
+
+
+def _stairs(
+    name: str, times: np.ndarray, values: np.ndarray, kind: str = "solid", filled: bool = False
+) -> MoreCurve:
+    """The curve of values that hold from each step to the next: level, with both corners where it changes."""
+    starts, _ = _stretches(times, MOST_PARTS)
+    corners = np.append(np.repeat(times[starts], 2)[1:], times[-1])
+    return MoreCurve(name, corners, np.repeat(np.fmin.reduceat(values, starts), 2), kind, filled)
 
 
 @dataclass(frozen=True, eq=False)

@@ -330,7 +330,14 @@ def test_the_band_and_the_bar(tmp_path):
             assert page.errors == [] and page.run("document.documentElement.scrollWidth") == width
             for _ in range(2):  # as drawn, and as drawn again
                 names = page.run(NAMES)
-                assert names == ["proven with tolerances", "expected, an estimate"]
+                assert names == ["proven with tolerances, at the samples", "expected, an estimate"]
+                assert (
+                    page.run(
+                        "[...document.querySelectorAll('.chart .key')].map((one) => one.textContent)"
+                    )
+                    == names
+                )
+                assert page.run("document.querySelector('.chart').scrollWidth") <= width
                 assert page.run("document.querySelectorAll('.chart .filled').length") == 1
                 assert page.run("window.clearance.chart.range[0]") < -2.0
                 page.run("document.getElementById('zoom-limits').click()")

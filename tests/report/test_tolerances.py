@@ -15,7 +15,9 @@ from clearance.findings.comparison import compared
 from clearance.findings.finding import TOLERANCES
 from clearance.findings.findings_file import findings_text, read_findings
 from clearance.record.budget import ErrorSource
+from clearance.report import curves
 from clearance.report.annotations import annotation_lines
+from clearance.report.curves import more_curves
 from clearance.report.topics.tolerances import largest_text, source_lines
 from clearance.world.budget import ObstacleTolerance
 from clearance.world.case import Limits
@@ -214,3 +216,23 @@ def test_an_exact_grasp_is_said(run, tmp_path):
     assert summary["carries"][0]["grasp"] == "exact"
     assert said in summary["tolerances"]["lines"]
     assert said in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("parts", "least"), [(2000, [3, 1, 2, 2, 4, 4, 6, 7]), (4, [1, 2, 4, 6])])
+def test_a_bound_of_the_motion_is_drawn_level_from_step_to_step(parts, least, monkeypatch):
+    monkeypatch.setattr(curves, "MOST_PARTS", parts)
+    proven, between = (
+        np.array(mm) / 1e3 for mm in ([3, 5, 2, 4, 4, 8, 9, 7], [6, 1, 3, 2, 4, 4, 6, 7])
+    )
+    one = with_budget(NEAR, between=True, proven=proven)
+    one = dataclasses.replace(one, budget=(dataclasses.replace(one.budget[0], between=between),))
+    bound, expected = more_curves(one)
+    times = one.motions[0].times
+    for share in (0.01, 0.5, 0.99):
+        at = times[:-1] + share * np.diff(times)
+        level = np.repeat(least, 8 // len(least))[:-1]
+        assert np.interp(at, bound.times, bound.values) == pytest.approx(level / 1e3, abs=1e-12)
+    assert bound.times[[0, -1]] == pytest.approx(times[[0, -1]]) and bound.kind == "solid"
+    assert np.all(bound.times == expected.times) and np.all(bound.values <= expected.values)
+    sampled, _ = more_curves(with_budget(NEAR))
+    assert sampled.kind == "dash" and sampled.name == "proven with tolerances, at the samples"

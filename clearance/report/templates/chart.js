@@ -65,7 +65,8 @@ class Chart {
     const width = this.place.clientWidth || 860, height = this.place.clientHeight || 330;
     const told = this.told = this.content(), narrow = width < 560;
     const widest = Math.max(0, ...told.limits.map((one) => one.text.length));
-    this.room = {left: 58, top: 8, width: width - 58 - (narrow || !widest ? 14 : 16 + 6.7 * widest), height: height - 54};
+    const keys = this.keys(told.curves, width), below = 18 * (keys.length ? 1 + keys.at(-1).row : 0);
+    this.room = {left: 58, top: 8, width: width - 58 - (narrow || !widest ? 14 : 16 + 6.7 * widest), height: height - 54 - below};
     this.span = this.zoom ? this.zoom.span : told.span;
     this.range = this.zoom ? this.zoom.range : told.range;
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -73,7 +74,7 @@ class Chart {
     const clip = drawn("clipPath", {id: "plot"}, drawn("rect", {x: left - 1, y: top - 5, width: wide + 2, height: high + 10}));
     const inside = drawn("g", {"clip-path": "url(#plot)"}, ...told.bands.map((one) => this.band(one)), ...told.curves.flatMap((one, i) => this.fill(one, i)),
       ...told.curves.map((one) => this.curve(one)), ...told.limits.map((one) => this.limit(one)), ...told.marks.map((one) => this.mark(one)), this.pointer, this.cursor);
-    this.svg.replaceChildren(clip, ...this.grid(), inside, ...this.labels(narrow), this.dragged);
+    this.svg.replaceChildren(clip, ...this.grid(), inside, ...this.labels(narrow), ...this.legend(keys), this.dragged);
     this.at(this.time);
   }
 
@@ -151,6 +152,23 @@ class Chart {
       const at = narrow ? {x: left + width - 4, "text-anchor": "end"} : {x: left + width + 6, "text-anchor": "start"};
       return [drawn("text", {...at, y: y + lift, class: `label ${kind}`}, text)];
     });
+  }
+
+  // The place of each name below the chart, side by side in as few rows as the width takes.
+  keys(curves, width) {
+    let left = 58, row = 0;
+    return curves.filter((one) => one.name).map(({name, kind}) => {
+      const wide = 48 + 6.7 * name.length;
+      if (left > 58 && left + wide > width) { left = 58; row += 1; }
+      left += wide;
+      return {name, kind, row, left: left - wide};
+    });
+  }
+
+  legend(keys) {
+    const top = this.room.top + this.room.height + 54;
+    return keys.flatMap(({name, kind, row, left}) => [drawn("path", {class: `curve ${kind}`, d: `M${left} ${top + 18 * row - 4}h26`}),
+      drawn("text", {class: "key", x: left + 32, y: top + 18 * row}, name)]);
   }
 
   listen() {

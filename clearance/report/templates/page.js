@@ -106,7 +106,7 @@
   function pairCurves() {
     if (chosen === null || !data.curves) return [];
     const x = decode(data.curves.times, Float64Array), y = decode(data.curves.clearances[chosen], Float32Array);
-    return [{x: Array.from(x), y: Array.from(y, toPlot), kind: "pair"}];
+    return [{name: nameOf(data.pairs[chosen]), x: Array.from(x), y: Array.from(y, toPlot), kind: "pair"}];
   }
 
   function marks() {
