@@ -141,8 +141,11 @@ def allowances_of(given: Sequence[limits_schema.AllowedPair]) -> tuple[Allowance
     return tuple(Allowance(row.patterns, row.window, row.while_carried) for row in given)
 
 
-def carries_of(given: Sequence[schema.Carry]) -> tuple[Carry, ...]:
-    """What is carried.
+def carries_of(given: Sequence[schema.Carry], obstacles: Sequence[str]) -> tuple[Carry, ...]:
+    """What is carried; of an object of several shapes (`name/0`, `name/1`) each.
+
+    Args:
+        obstacles: their names.
 
     Raises:
         BadInput: a part that carries itself.
@@ -151,5 +154,7 @@ def carries_of(given: Sequence[schema.Carry]) -> tuple[Carry, ...]:
     for i, row in enumerate(given):
         with at(f"carry[{i}]"):
             is_exact = row.grasp == "exact"
-            carries.append(Carry(row.part, row.by, row.window, tuple(row.touch), is_exact))
+            shapes = [name for name in obstacles if name.startswith(f"{row.part}/")]
+            for part in [row.part] if row.part in obstacles or not shapes else shapes:
+                carries.append(Carry(part, row.by, row.window, tuple(row.touch), is_exact))
     return tuple(carries)

@@ -195,7 +195,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
             accept=tuple(given.accept),
             waivers=tuple(_waivers(given, path, files)),
             sign_off=_sign_off(given.report),
-            carries=carries_of(given.carry),
+            carries=carries_of(given.carry, [one.name for one in obstacles]),
             clock=Clock(given.clock.slack),
         )
         with at(scene_at.field.rstrip(".: ")):
@@ -204,9 +204,9 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
         case = replace(case, allow=checked_allowances(case.allow, names))
         profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
         _require_mounts(case, entries, scene_at)
-        for i, carry in enumerate(case.carries):
+        for i, row in enumerate(given.carry):
             with at(f"carry[{i}].touch"):
-                require_patterns(carry.touch, names)
+                require_patterns(row.touch, names)
         if given.tolerance is not None:
             with at("tolerance"):
                 budget = budget_of(given.tolerance, case, path.parent, files)

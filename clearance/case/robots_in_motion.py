@@ -32,7 +32,7 @@ def robots_in_motion(
     found = {
         i: reader.moving(one, Surroundings()) for i, one in enumerate(entries) if not has_program[i]
     }
-    carries, driven = carries_of(given.carry), set[str]()
+    carries, driven = carries_of(given.carry, [one.name for one in obstacles]), set[str]()
 
     def around(i_robot: int) -> Surroundings:
         """All but one robot, of what is read."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.record.certificate import Certificate
 from clearance.run.question import Question
-from clearance.simulate.answers.handling import far_grasps
+from clearance.simulate.answers.carries import notices_on_carries
 from clearance.simulate.measure import inside
 from clearance.simulate.measure.neighbours import neighbours_that_meet
 from clearance.simulate.measure.section_answer import SectionAnswer
@@ -41,7 +41,7 @@ def notices_of(
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_idle_rules(question.case, plan)]
     empty += _far_off(question.case, found)
-    empty += far_grasps(phases) if question.case.carries else []
+    empty += notices_on_carries(phases) if question.case.carries else ()
     empty += neighbours_that_meet(phases)
     empty += [_BY_PAPER] if question.method == "paper" else []
     untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []

@@ -186,7 +186,7 @@ def odd_places(case: Case) -> list[str]:
     bases = _bases(case)
     reaches = [reach_of(placed) for placed in case.robots]
     far = []
-    for obstacle, gaps in zip(case.obstacles, _gaps(case, bases), strict=True):
+    for obstacle, gaps in zip(case.obstacles, _gaps(case, bases, at_first=True), strict=True):
         near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(gaps, reaches, strict=True))
         if not near and not _may_be_wall(obstacle.body, min(gaps)):
             far.append((min(gaps), obstacle.name))
@@ -281,10 +281,14 @@ def _bases(case: Case) -> list[Place]:
     return [_robot_place(case, i) for i in range(len(case.robots))]
 
 
-def _gaps(case: Case, bases: Sequence[Place]) -> list[list[float]]:
-    """[m] Least distances of each obstacle from each base."""
+def _gaps(case: Case, bases: Sequence[Place], at_first: bool = False) -> list[list[float]]:
+    """[m] Least distances of each obstacle from each base.
+
+    Args:
+        at_first: of parts that a robot picks up first, until it does.
+    """
     return [
-        [_gap(obstacle, _obstacle_place(case, i), base) for base in bases]
+        [_gap(obstacle, _obstacle_place(case, i, at_first), base) for base in bases]
         for i, obstacle in enumerate(case.obstacles)
     ]
 
@@ -331,19 +335,21 @@ def _robot_place(case: Case, i_robot: int) -> Place:
     return _mounted(case, placed.mount)
 
 
-def _obstacle_place(case: Case, i_obstacle: int) -> Place:
+def _obstacle_place(case: Case, i_obstacle: int, at_first: bool = False) -> Place:
     obstacle = case.obstacles[i_obstacle]
     below = Place(obstacle.world_from_body, 0.0)
     if obstacle.mount is not None:
         below = _mounted(case, obstacle.mount)
-    carriers = [carry.by for carry in case.carries if carry.part == obstacle.name]
-    travel = below.travel if not carriers else np.inf
+    own = [carry for carry in case.carries if carry.part == obstacle.name]
+    first = min(own, key=lambda one: one.window.start, default=None)
+    stays = first is None or (at_first and not owner_of(case, Mount(first.by))[0])
+    travel = below.travel if stays else np.inf
     if obstacle.moves is None:
         return Place(below.pose, travel)
-    positions, own = obstacle.moves.positions, np.eye(4)
-    own[:3, 3] = positions[0]
+    positions, start = obstacle.moves.positions, np.eye(4)
+    start[:3, 3] = positions[0]
     travelled = float(np.linalg.norm(positions - positions[0], axis=1).max())
-    return Place(below.pose @ own, travel + travelled)
+    return Place(below.pose @ start, travel + travelled)
 
 
 def _mounted(case: Case, mount: Mount) -> Place:

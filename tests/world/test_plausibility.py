@@ -12,6 +12,7 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.report.topics.worst import lines
 from clearance.world.body import Body, Obstacle
+from clearance.world.carry import Carry
 from clearance.world.case import Case, Limits
 from clearance.world.mimics import followers
 from clearance.world.mount import Mount
@@ -20,7 +21,7 @@ from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausibility import notices_of, notices_on_tables
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
-from clearance.world.timing import Timing
+from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, faces_of
 
@@ -78,6 +79,18 @@ def test_what_rides_on_a_link_is_not_many_times_the_reach():
     mount = Mount("upper", at(0.1))
     riding = replace(case.obstacles[0], mount=mount)
     assert reported(replace(case, obstacles=(riding,))) == [("suspect", "units")]
+
+
+@pytest.mark.parametrize("by", ["upper", "cart"])
+@pytest.mark.parametrize("mount", [None, Mount("upper", at(200.0))])
+def test_a_part_that_lies_far_away_as_a_robot_picks_it_up_is_suspect(by, mount):
+    """A cart may bring it from afar."""
+    cart = Obstacle(Body("cart", box((0.2, 0.2, 0.2))), at(0.8))
+    pose = np.eye(4) if mount else at(200.0)
+    part = Obstacle(Body("part", box((0.1, 0.1, 0.1))), pose, mount=mount)
+    case = case_of(carries=(Carry("part", by, Window(0.0)),))
+    found = reported(replace(case, obstacles=(cart, part)))
+    assert found == ([("suspect", "units")] if by == "upper" else [])
 
 
 def frame_around(side: float, share: float = 0.01) -> Polyhedron:

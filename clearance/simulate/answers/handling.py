@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,35 +18,24 @@ import numpy as np
 from clearance.errors import BadInput
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
-from clearance.kernels.motion.kinematics import FIXED, NO_PARENT
 from clearance.query.contact import contact
 from clearance.query.distance import distance
 from clearance.record.record import Record
 from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
 from clearance.world.carry import Carry
 from clearance.world.case import Case
-from clearance.world.extents import metres
 from clearance.world.forest import (
-    WORLD,
-    carried_by,
     forest_of,
     link_poses_at,
-    owner_of,
     positions_along,
 )
-from clearance.world.mount import Mount
-from clearance.world.notice import Notice, Severity
-from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
-from clearance.world.phase import Phase
+from clearance.world.pairs import Pair
 
 TOUCHING = 1e-6
 """[m] What stands on something touches it, whichever way rounding goes."""
 
 FAR = 1.0
 """[m] Balls with more than this between them need no search: no limit is so wide that it would matter here."""
-
-FAR_GRASP = 0.3
-"""[m] No gripper that a model leaves out is so long: a part that is farther away is picked up too soon."""
 
 MOST_STEPS = 2000
 """Most steps before and after that are checked for the end of a contact."""
@@ -106,64 +95,6 @@ def handling_hints(record: Record) -> list[HandlingHint]:
         for hint in _at_change(record, plan, carry, step, f"{what} at {time:g} s"):
             found.setdefault((hint.pair, hint.start), hint)
     return list(found.values())
-
-
-def far_grasps(phases: Sequence[Phase]) -> Iterator[Notice]:
-    """A warning on each part that is far from what picks it up: it would swing along as if on a rod."""
-    seen: set[Carry] = set()
-    for phase in phases:
-        for carry in phase.carried.values():
-            if carry in seen:
-                continue
-            seen.add(carry)
-            gap = _grasp_gap(phase, carry)
-            if FAR_GRASP < gap < np.inf:
-                text = (
-                    f"part {carry.part!r} is {metres(gap)} m away from all of what picks it up at "
-                    f"{carry.window.start:g} s ({carry.by}): check the times of its carry"
-                )
-                yield Notice(Severity.WARNING, "carry", text)
-
-
-def _grasp_gap(phase: Phase, carry: Carry) -> float:
-    """[m] From a part to the nearest body of what carries it, as it is picked up; infinite if that has no body."""
-    case = phase.case
-    part = BodyIndex(OBSTACLE, [one.name for one in case.obstacles].index(carry.part))
-    poses = link_poses_at(case, phase.motions, slice(0, 1))
-    placed = part.shape_in(case), part.poses_in(case, poses)[0]
-    gaps = (
-        gap_between(*placed, one.shape_in(case), one.poses_in(case, poses)[0])
-        for one in _gripping(case, carry.by, part)
-    )
-    return min(gaps, default=np.inf)
-
-
-def _gripping(case: Case, name: str, part: BodyIndex) -> list[BodyIndex]:
-    """The bodies beside the part of what is called so: all that fixed joints join to it, and all below that.
-
-    Where none of this has a shape, it is what that hangs on. An obstacle that stands has what stands on it.
-    """
-    bodies = [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
-    for i, placed in enumerate(case.robots):
-        bodies += [BodyIndex(i, k) for k in range(len(placed.robot.bodies))]
-    bodies.remove(part)
-    forest = forest_of(case)
-    frames = [(one, one.frame_in(case)) for one in bodies]
-    above = {one: {*carried_by(forest, frame)} for one, frame in frames if frame != WORLD}
-    link = forest.link_called(case, name)
-    for top in carried_by(forest, link) if link != WORLD else ():
-        is_rigid = forest.links.kinds[top] == FIXED and forest.links.parents[top] != NO_PARENT
-        found = [] if is_rigid else [one for one, links in above.items() if top in links]
-        if found:
-            return found
-    return [one for one in bodies if one.is_obstacle and _is_on(case, one.i_body, name)]
-
-
-def _is_on(case: Case, i_obstacle: int, name: str) -> bool:
-    """True for an obstacle that is, or stands on, one that stands and is called so."""
-    mount = case.obstacles[i_obstacle].mount
-    owner = (True, i_obstacle) if mount is None else owner_of(case, mount)
-    return owner == owner_of(case, Mount(name))
 
 
 def _changes(record: Record) -> list[tuple[float, Carry, str]]:

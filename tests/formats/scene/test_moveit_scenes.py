@@ -113,6 +113,12 @@ def test_what_the_case_carries_is_left_to_it(tmp_path):
     assert carry.window.start == 0.5 and carry.touch == ("*",)
 
 
+def test_an_object_of_several_shapes_is_carried_whole(tmp_path):
+    text = NAMED + "carry: [{part: can, by: tip, from: 0.5}]\n"
+    carries = load_small(tmp_path, text, cell__yaml=LISTS.replace("base_link", "base")).carries
+    assert [(one.part, one.window.start) for one in carries] == [("can/0", 0.5), ("can/1", 0.5)]
+
+
 def test_an_octomap_of_free_cells_is_no_obstacle(tmp_path):
     """One cell, of log odds -0.405 and +0.847: free, and occupied."""
     for bytes_, found in (([31, -103, -49, -66, 0], 0), ([220, 217, 88, 63, 0], 1)):

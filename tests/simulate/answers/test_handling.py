@@ -16,7 +16,6 @@ from clearance.simulate.answers.handling import handling_hints
 from clearance.simulate.answers.standing import always_in_contact, standing_contacts, standing_hint
 from clearance.world.carry import Carry
 from clearance.world.mount import Mount
-from clearance.world.robot import Joint, JointKind
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.formats.making import CASE, write_case
@@ -176,35 +175,3 @@ def test_a_part_far_from_what_picks_it_up_stands_in_the_headline():
         "of its carry [CL428]"
     )
     assert not any("picks it up" in one for one in cl.check(case).verdict.warnings)
-
-
-@pytest.mark.parametrize(
-    ("by", "x", "told"),
-    [
-        ("tool", 0.1, "0.383 m away from all of what picks it up at 0 s (tool)"),
-        ("tcp", 0.1, "0.383 m away"),
-        ("bare", 0.1, "0.383 m away"),
-        ("arm", 0.1, None),
-        ("base", 0.1, None),
-        ("tool", 0.6, None),
-    ],
-)
-def test_a_part_is_far_from_what_grips_it_wherever_the_rest_of_the_arm_is(by, x, told):
-    """A cube lies 0.02 m beside an arm, and (0.38, 0.05) m from the tool at the arm's end."""
-    joints = (
-        Joint("j1", JointKind.REVOLUTE, "base", "arm", np.eye(4)),
-        Joint("j2", JointKind.REVOLUTE, "arm", "tool", at(0.5)),
-        Joint("j3", JointKind.FIXED, "tool", "tcp", at(0.04)),
-        Joint("j4", JointKind.REVOLUTE, "tool", "bare", at(0.04)),
-    )
-    bodies = (
-        cl.Body("arm", cl.box((0.5, 0.1, 0.1)).transformed(at(0.25))),
-        cl.Body("tool", cl.box((0.04, 0.04, 0.04)).transformed(at(0.02))),
-    )
-    robot = cl.Robot("own", ("base", "arm", "tool", "tcp", "bare"), joints, bodies)
-    rows = np.zeros((2, 3))
-    placed = cl.PlacedRobot(robot, cl.Trajectory(np.array([0.0, 2.0]), ("j1", "j2", "j4"), rows))
-    obstacles = (box("part", (0.04, 0.04, 0.04), at(x, 0.09)), box("wall", (1, 1, 0.1), at(z=-1.0)))
-    case = cl.Case("far", (placed,), obstacles, carries=(Carry("part", by, Window(0.0)),))
-    warnings = [one for one in cl.check(case).verdict.warnings if "picks it up" in one]
-    assert len(warnings) == (told is not None) and all(told in one for one in warnings)

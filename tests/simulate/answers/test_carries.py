@@ -1,0 +1,80 @@
+"""Carries that may not be meant are warned of: from afar, of what is held already, and of half an object."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.world.carry import Carry
+from clearance.world.mount import Mount
+from clearance.world.robot import Joint, JointKind
+from clearance.world.timing import Window
+from tests.made_cases import at
+from tests.report.cells import box, cell, sliding
+
+
+def told(obstacles, *carries):
+    """The warnings on carries of a tool that slides from 0 to 1 m, and back."""
+    robots = (sliding("left", [(0, 0), (1, 1), (2, 0)]), sliding("right", [(0, 3), (2, 3)]))
+    warnings = cl.check(cell((), robots, obstacles, carries)).verdict.warnings
+    return [one for one in warnings if "[CL428]" in one]
+
+
+PART = box("a/0", (0.1, 0.1, 0.1), at(1.1, 0, 0.5))
+
+
+@pytest.mark.parametrize("carried", [("a/0",), ("a/0", "a/1")])
+def test_an_object_that_is_carried_in_part_is_warned_of(carried):
+    others = [box("a/1", (0.1, 0.1, 0.1), at(1.1, 0, 0.6)), box("wall", (1, 1, 0.1), at(z=-1.0))]
+    said = told((PART, *others), *(Carry(one, "left/tool", Window(1.0)) for one in carried))
+    whole = "of 'a', 'a/0' is carried and 'a/1' stays: part: a carries all [CL428]"
+    assert said == ([whole] if carried == ("a/0",) else [])
+
+
+@pytest.mark.parametrize(
+    ("carries", "is_told"),
+    [
+        ([("left/tool", 1.0)], True),
+        ([("left/tool", 0.0)], False),
+        ([("left/tool", 0.0, 0.5), ("left/tool", 1.0)], False),
+        ([("right/tool", 1.0)], False),
+    ],
+)
+def test_a_part_that_its_carrier_has_already_is_warned_of(carries, is_told):
+    held = box("part", (0.1, 0.1, 0.1), mount=Mount("left/tool", at(0.2)))
+    rows = [Carry("part", by, Window(*when)) for by, *when in carries]
+    said = [one for one in told((held,), *rows) if "already" in one]
+    assert len(said) == is_told
+
+
+@pytest.mark.parametrize(
+    ("by", "x", "told"),
+    [
+        ("tool", 0.1, "0.383 m away from all of what picks it up at 0 s (tool)"),
+        ("tcp", 0.1, "0.383 m away"),
+        ("bare", 0.1, "0.383 m away"),
+        ("arm", 0.1, None),
+        ("base", 0.1, None),
+        ("tool", 0.6, None),
+    ],
+)
+def test_a_part_is_far_from_what_grips_it_wherever_the_rest_of_the_arm_is(by, x, told):
+    """A cube lies 0.02 m beside an arm, and (0.38, 0.05) m from the tool at the arm's end."""
+    joints = (
+        Joint("j1", JointKind.REVOLUTE, "base", "arm", np.eye(4)),
+        Joint("j2", JointKind.REVOLUTE, "arm", "tool", at(0.5)),
+        Joint("j3", JointKind.FIXED, "tool", "tcp", at(0.04)),
+        Joint("j4", JointKind.REVOLUTE, "tool", "bare", at(0.04)),
+    )
+    bodies = (
+        cl.Body("arm", cl.box((0.5, 0.1, 0.1)).transformed(at(0.25))),
+        cl.Body("tool", cl.box((0.04, 0.04, 0.04)).transformed(at(0.02))),
+    )
+    robot = cl.Robot("own", ("base", "arm", "tool", "tcp", "bare"), joints, bodies)
+    rows = np.zeros((2, 3))
+    placed = cl.PlacedRobot(robot, cl.Trajectory(np.array([0.0, 2.0]), ("j1", "j2", "j4"), rows))
+    obstacles = (box("part", (0.04, 0.04, 0.04), at(x, 0.09)), box("wall", (1, 1, 0.1), at(z=-1.0)))
+    case = cl.Case("far", (placed,), obstacles, carries=(Carry("part", by, Window(0.0)),))
+    warnings = [one for one in cl.check(case).verdict.warnings if "picks it up" in one]
+    assert len(warnings) == (told is not None) and all(told in one for one in warnings)
