@@ -78,13 +78,18 @@ class Run:
     def worst(self) -> dict:
         """The most critical moment, as a row of `steps`: worst against its rule, or least clearance without rules.
 
-        Beside waivers it is of what decides the verdict, though a waived pair may be nearer.
+        Beside waivers it is of what decides the verdict. `nearest` has the least clearance, also beside rules.
 
         Bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`. If the certificate
         found a worse moment between two steps, `between` is true and `step` is the step before it. In contact it
         is the deepest moment, with its `penetration` if that is known.
         """
         return self._of_moment(self.verdict.worst)
+
+    @property
+    def nearest(self) -> dict:
+        """The moment of least clearance of all pairs, as `worst` has it, whatever judges or waives it."""
+        return self._of_moment(self.record.nearest)
 
     @property
     def worst_sample(self) -> dict:

@@ -23,6 +23,8 @@ from clearance.report.topics.verdict import header
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
 from clearance.view.playback import moments_of as moments_of_replay
+from clearance.world.case import Limits
+from clearance.world.rules import Rule
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.report.made import page_of
@@ -45,8 +47,9 @@ def waiver(gate: str = A, at_least: float = 0.002, until: str = "2027-03-31", **
     return Waiver(("box", gate), at_least=at_least, until=date.fromisoformat(until), **given)
 
 
-def checked(folder, gates, *waivers: Waiver, **changes) -> Run:
+def checked(folder, gates, *waivers: Waiver, limits: Limits | None = None, **changes) -> Run:
     case = dataclasses.replace(load_gates(folder, gates), waivers=waivers)
+    case = case if limits is None else dataclasses.replace(case, limits=limits)
     return answer(Question(case, today=TODAY, **changes))
 
 
@@ -266,3 +269,14 @@ def test_every_answer_of_one_moment_is_of_what_fails(tmp_path):
     assert np.linalg.norm(still.line[1] - still.line[0]) == pytest.approx(0.0045)
     assert f'"bodies":["box","{B}"]'.encode() in glb_of(run.record, replay, run.verdict.worst)
     assert next(text for text, _ in moments_of_replay(replay)).startswith("worst: 4.500 mm")
+
+
+def test_the_nearest_moment_is_the_least_clearance_whatever_judges_or_waives_it(tmp_path):
+    gates = {A: (-0.5, 0.003), B: (0.0, 0.020), "fence": (0.5, 0.050)}
+    limits = Limits(0.005, 0.01, rules=(Rule(("box", "fence"), name="wide", fail=0.1),))
+    for waivers in ((), (waiver(),)):  # `wide` is broken by 50 mm, the default limits by 2
+        run = checked(tmp_path, gates, *waivers, limits=limits)
+        found = [(one["obstacle"], one["clearance"]) for one in (run.worst, run.nearest)]
+        assert found == [("fence", pytest.approx(0.05)), (A, pytest.approx(0.003))]
+    rest = checked(tmp_path, {A: (-0.5, 0.003), B: (0.0, 0.004)}, waiver())
+    assert (rest.worst["obstacle"], rest.nearest["obstacle"]) == (B, A)
