@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite
-from clearance.tolerance import PARAMETER
+from clearance.tolerance import PARAMETER, WEIGHTS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -33,7 +33,7 @@ def checked_points(
 
 
 def checked_weights(weights: ArrayLike | None, n: int) -> np.ndarray:
-    """`weights` as float64 (n,), all positive; ones where None."""
+    """`weights` as float64 (n,), all positive, none more than WEIGHTS times another; ones where None."""
     if weights is None:
         return np.ones(n)
     array = _numbers(weights, "weights", f"{n} numbers")
@@ -44,6 +44,12 @@ def checked_weights(weights: ArrayLike | None, n: int) -> np.ndarray:
         k = int(np.argmin(array))
         raise BadCurve(
             f"weight {array[k]:g} at index {k}", where="weights", valid="positive weights"
+        )
+    if array.max() / WEIGHTS > array.min():
+        raise BadCurve(
+            f"weights from {array.min():g} to {array.max():g}",
+            where="weights",
+            valid=f"weights within {WEIGHTS:g} times of each other",
         )
     return array
 

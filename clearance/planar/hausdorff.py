@@ -25,7 +25,6 @@ from clearance.planar.directed import (
     segments_of,
 )
 from clearance.planar.entries import checked_number
-from clearance.planar.steady import steady
 from clearance.tolerance import LAST_BITS, SHARPER, TIE
 
 BUDGET = 200_000.0
@@ -119,7 +118,6 @@ def hausdorff(
     Source: Kim, Oh, Kim (2010), sections 3 and 4; Elber, Grandine (2008) for the systems.
     """
     tolerance = checked_number(tolerance, "tolerance", least=0.0)
-    a, b = steady(a), steady(b)
     if method == "trimmed":
         return greater_of(*_trimmed(a, b, tolerance))
     if method != "paper":
@@ -137,7 +135,6 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
     Raises: Undecided where neither could be proven; BadCurve, NotFinite.
     """
     distance = checked_number(distance, "distance", least=0.0)
-    a, b = steady(a), steady(b)
     shift, size = placed(a, b)
     slack = a.rounding + b.rounding + LAST_BITS * size
     gap = LAST_BITS * size

@@ -17,7 +17,6 @@ from harness import Row, least_time
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Hausdorff, greater_of, hausdorff
-from clearance.planar.steady import steady
 from clearance.planar.systems import directed, directions, empty_state, paper, solved, whole
 
 Curves = tuple[Curve, Curve]
@@ -119,7 +118,7 @@ def untrimmed(sizes: list[int], n_pairs: int) -> Iterator[Row]:
     """Trimmed and by the paper, in parts of the systems on whole curves; curves prepared."""
 
     def slowly(a: Curve, b: Curve) -> Hausdorff:
-        ways = directions(steady(a), steady(b))
+        ways = directions(a, b)
         return greater_of(
             *(directed(w, solved(w, whole(w.one), whole(w.two), empty_state())) for w in ways)
         )
@@ -175,8 +174,8 @@ def overlaps(sizes: list[int], n_pairs: int) -> Iterator[Row]:
         "1e-9 apart circles": (circle, Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + turn), 1e-9),
         "offset lines": (Curve.line([0, 0], [1, 0]), Curve.line([0, 0.5], [1, 0.5]), 0.5),
         "rational semicircle, arc": (half, Curve.arc([0, 0], 1, 0, math.pi), 0.0),
-        "weights 1 to 1e30": (
-            Curve.bezier(cubic, [1, 1e10, 1e20, 1e30]),
+        "weights 1 to 1e6": (
+            Curve.bezier(cubic, [1, 1e2, 1e4, 1e6]),
             Curve.bezier(cubic),
             None,
         ),

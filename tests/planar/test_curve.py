@@ -88,6 +88,7 @@ REFUSED = [
     (lambda: Curve.bspline([[1, 1]] * 4), "zero length"),
     (lambda: Curve.bspline(SQUARE, weights=[1, -1, 1, 1]), "weights: weight -1 at index 1"),
     (lambda: Curve.bspline(SQUARE, weights=[1, 0, 1, 1]), "weights: weight 0 at index 1"),
+    (lambda: Curve.bezier(SQUARE, weights=[1, 1e7, 1, 1]), "weights: weights from 1 to 1e+07"),
     (lambda: Curve.bspline(SQUARE, weights=[1, 1]), "weights: an array of shape (2,)"),
     (lambda: Curve.bspline(SQUARE, knots=[0, 0, 0, 0, 1, 1, 1]), "knots: 7 knots for 4"),
     (lambda: Curve.bspline(SQUARE, knots=[0, 0, 0, 1, 0, 1, 1, 1]), "knots: knot 0 at index 4"),

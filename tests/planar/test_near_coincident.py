@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from clearance.planar.hausdorff import hausdorff, within
-from clearance.planar.steady import steady
 from tests.oracle import planar_hausdorff as oracle
 from tests.planar.unlike import CASES, warped
 
@@ -25,9 +24,9 @@ def test_near_coincident_curves_are_closed_in_on(name):
     assert (
         found.tally.intervals <= 1100 + 3 * (a.n_pieces + b.n_pieces) and found.tally.given_up == 0
     )
-    exact_a, exact_b = (extended(steady(curve)) for curve in (a, b))
+    exact_a, exact_b = (extended(curve) for curve in (a, b))
     worst = max(farthest(exact_a, exact_b, 200), farthest(exact_b, exact_a, 200))
-    slack = steady(a).rounding + steady(b).rounding
+    slack = a.rounding + b.rounding
     assert worst <= found.upper + slack
     at_witness = feet(
         exact_b if found.direction == "a_to_b" else exact_a,

@@ -9,7 +9,6 @@ from clearance.errors import ClearanceError
 from clearance.planar import hausdorff as searched
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Hausdorff, Undecided, greater_of, hausdorff, within
-from clearance.planar.steady import steady
 from clearance.planar.systems import directed, directions, empty_state, solved, whole
 from tests.examples import some_slow
 from tests.planar.unlike import CUBIC, reparametrised
@@ -116,7 +115,7 @@ def untrimmed(a: Curve, b: Curve) -> Hausdorff:
     """The Hausdorff distance from the systems solved on whole curves: it shares no bound with trimming."""
     both = [
         directed(way, solved(way, whole(way.one), whole(way.two), empty_state()))
-        for way in directions(steady(a), steady(b))
+        for way in directions(a, b)
     ]
     return greater_of(*both)
 

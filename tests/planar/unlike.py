@@ -95,28 +95,12 @@ CASES = {
     "q = u^2, at rest at its start": lambda: warped([0, 0, 1]),
     "q = u^3": lambda: warped([0, 0, 0, 1]),
     "q beyond 1 and back": lambda: warped([0, 1.2, 1]),
-    "weights 1, 1e30, 1e-30, 1 and their reverse": lambda: (
-        Curve.bezier(CUBIC, [1, 1e30, 1e-30, 1]),
-        Curve.bezier(CUBIC[::-1], [1, 1e-30, 1e30, 1]),
-    ),
-    "weights 1 to 1e30": lambda: (
-        Curve.bezier(CUBIC, [1, 1e10, 1e20, 1e30]),
-        Curve.bezier(CUBIC),
-    ),
-    "weights 1e30 to 1, quadratic q": lambda: (
-        Curve.bezier(CUBIC, [1e30, 1e20, 1e10, 1]),
-        Curve.bezier(reparametrised(CUBIC, [0, 0.3, 1])),
-    ),
-    "weights 1, 1e30, 1, the two chords": lambda: (
-        Curve.bezier([[0, 0], [1, 1], [2, 0]], [1, 1e30, 1]),
-        Curve.polyline([[0, 0], [1, 1], [2, 0]]),
-    ),
-    "weights 1, 1e-30, 1e-30, 1, the chord": lambda: (
-        Curve.bezier(CUBIC, [1, 1e-30, 1e-30, 1]),
-        Curve.line([0, 0], [3, 0]),
-    ),
     "weights 1 to 1e3": lambda: (
         Curve.bezier(CUBIC, [1, 10.0, 100.0, 1000.0]), Curve.bezier(CUBIC),
+    ),
+    "weights 1, 1e6, 1, the two chords": lambda: (
+        Curve.bezier([[0, 0], [1, 1], [2, 0]], [1, 1e6, 1]),
+        Curve.polyline([[0, 0], [1, 1], [2, 0]]),
     ),
     "weights 1 to 1e6, quadratic q": lambda: (
         Curve.bezier(CUBIC, [1, 1e2, 1e4, 1e6]), Curve.bezier(reparametrised(CUBIC, [0, 0.3, 1])),
