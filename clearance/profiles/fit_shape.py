@@ -7,7 +7,7 @@ solved. Not for: choosing the numbers (`fit`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from clearance.profiles.drawn_chains import contours_of_chains, drawn_chains
 from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_rows import FitSlope, RigidSlope
 from clearance.profiles.outline_file import require_closed, require_solved
-from clearance.profiles.sketch_copy import copied
 from clearance.sketch import Sketch
+from clearance.sketch.sketch_file import sketch_of, tree_of
 
 
 class NoFreeDimension(BadInput):
@@ -176,3 +176,34 @@ class SketchShape:
         matrix = np.array([[cosine, -sine], [sine, cosine]])
         shift = self._anchor[0] + place[:2] - matrix @ at
         return np.column_stack([matrix, shift])
+
+
+def copied(
+    sketch: Sketch,
+    *,
+    driving: Set[str] = frozenset(),
+    released: Set[str] = frozenset(),
+    motion: np.ndarray | None = None,
+) -> Sketch:
+    """The same sketch again, some driven dimensions made driving or driving ones driven, all moved.
+
+    Args:
+        driving, released: names of constraints.
+        motion: (2, 3) a rigid motion of the plane; only for sketches that nothing fixes.
+    """
+    turn, shift = np.split(np.eye(2, 3) if motion is None else motion, [2], axis=1)
+
+    def moved(place: list[float]) -> list[float]:
+        return (turn @ place + shift[:, 0]).tolist()
+
+    tree = tree_of(sketch)
+    tree["points"] = {name: moved(place) for name, place in tree.get("points", {}).items()}
+    for name, ends in tree.get("lines", {}).items():
+        if not isinstance(ends[0], str):
+            tree["lines"][name] = [moved(end) for end in ends]
+    for entry in tree.get("constraints", []):
+        kept = entry.get("driven", False) and entry["name"] not in driving
+        entry["driven"] = kept or entry["name"] in released
+    made = sketch_of(tree, Sketch)
+    made.most_seconds = sketch.most_seconds
+    return made

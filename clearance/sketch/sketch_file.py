@@ -42,17 +42,25 @@ def read(path: Path, kind):
         each with the file and the field.
     """
     with at(str(path)):
-        content = _content(path)
-        sketch = kind()
-        for section in content:
-            if section not in _SECTIONS:
-                raise UnknownKey(
-                    f"unknown section {section!r}", valid=nearest_name(str(section), _SECTIONS)
-                )
-        _entities(sketch, content)
-        for i, entry in enumerate(_listed(content.get("constraints"))):
-            with at(f"constraints[{i}]"):
-                _constraint(sketch, entry)
+        return sketch_of(_content(path), kind)
+
+
+def sketch_of(content: dict, kind):
+    """The sketch that the content of a file says.
+
+    Raises:
+        As `read`, with the field.
+    """
+    sketch = kind()
+    for section in content:
+        if section not in _SECTIONS:
+            raise UnknownKey(
+                f"unknown section {section!r}", valid=nearest_name(str(section), _SECTIONS)
+            )
+    _entities(sketch, content)
+    for i, entry in enumerate(_listed(content.get("constraints"))):
+        with at(f"constraints[{i}]"):
+            _constraint(sketch, entry)
     return sketch
 
 
@@ -159,14 +167,15 @@ def write(sketch, path: Path) -> None:
     yaml.default_flow_style = None
     yaml.width = 110
     text = io.StringIO()
-    yaml.dump(_tree(sketch), text)
+    yaml.dump(tree_of(sketch), text)
     try:
         path.write_text(text.getvalue(), encoding="utf-8")
     except OSError as fault:
         raise Unwritable(f"{path} cannot be written ({fault.__class__.__name__})") from None
 
 
-def _tree(sketch) -> dict:
+def tree_of(sketch) -> dict:
+    """The content of a sketch's file: numbers, lists and mappings; see `sketch_of`."""
     tree: dict = {name: {} for name in _SECTIONS[:-1]}
     tree["parameters"] = dict(sketch.parameters)
     for name, e in sketch.entities.items():
