@@ -11,9 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from clearance.errors import BadSyntax, ClearanceError, DuplicateName, at
+from clearance.errors import BadSyntax, ClearanceError, DuplicateName, MissingFile, at
 
 MOST_REPEATED = 100_000
 """Values that a file may have beyond one for each of its bytes, aliases followed."""
@@ -46,6 +47,22 @@ def parse_yaml(data: bytes, shown: str) -> object:
     """The same; `shown` is the file's name in errors."""
     with at(shown):
         return plain_data(data)
+
+
+def yaml_file(path: Path, valid: str) -> object:
+    """The plain data in a file; `valid` is what such a file would be.
+
+    Raises:
+        MissingFile, and what `plain_data` raises, without the file's name.
+    """
+    if path.exists() and not path.is_file():  # a pipe or a device may never end
+        raise MissingFile("is not a file on disk", valid=valid)
+    try:
+        return plain_data(path.read_bytes())
+    except FileNotFoundError:
+        raise MissingFile("no such file", valid=valid) from None
+    except OSError as fault:
+        raise MissingFile(f"cannot be read ({fault.strerror or fault})", valid=valid) from None
 
 
 def text_of(data: bytes, valid: str = "") -> str:

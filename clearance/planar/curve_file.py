@@ -20,13 +20,12 @@ from clearance.errors import (
     BadInput,
     BadSyntax,
     ClearanceError,
-    MissingFile,
     MissingKey,
     UnknownKey,
     at,
     nearest_name,
 )
-from clearance.plain_yaml import plain_data
+from clearance.plain_yaml import yaml_file
 from clearance.planar.curve import Curve
 from clearance.planar.dxf import read_dxf
 
@@ -53,17 +52,14 @@ def read_curve(path: str | PathLike[str]) -> Curve:
             f"a file {suffix or 'without suffix'}", where=str(path), valid=".dxf, .yaml or .yml"
         )
     with at(str(path)):
-        return _from_document(_load(path))
+        return curve_of_document(yaml_file(Path(path), "a DXF or YAML file of curves"))
 
 
-def _load(path: str | PathLike[str]) -> object:
-    file = Path(path)
-    if not file.is_file():
-        raise MissingFile("no such file", valid="a DXF or YAML file of curves")
-    return plain_data(file.read_bytes())
+def curve_of_document(document: object) -> Curve:
+    """The curve that the content of a YAML file says.
 
-
-def _from_document(document: object) -> Curve:
+    Raises: As `read_curve`, with the field.
+    """
     if not isinstance(document, dict) or not isinstance(document.get("curves"), list):
         raise MissingKey("no list of curves", where="curves", valid="a mapping `curves: [...]`")
     for key in document:

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, Unwritable
+from clearance.errors import BadInput
 from clearance.extras import importing
+from clearance.files import write_file
 from clearance.kernels.hausdorff.trim import candidate_arcs, field
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
@@ -41,12 +42,7 @@ def write_picture(path: str | Path, drawn: Callable[[str], bytes]) -> None:
     if suffix not in (".svg", ".png"):
         given = suffix or "without suffix"
         raise BadInput(f"a picture {given}", where=str(path), valid=".svg or .png")
-    content = drawn(suffix)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
-    except OSError as error:
-        raise Unwritable(f"cannot write ({error.strerror})", where=str(path)) from None
+    write_file(path, drawn(suffix))
 
 
 def new_figure(size: tuple[float, float]):

@@ -9,19 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadShape, MissingFile, at
+from clearance.errors import BadShape, at
 from clearance.kernels.curve.arc import RADIUS
-from clearance.plain_yaml import plain_data
+from clearance.plain_yaml import yaml_file
 from clearance.planar.curve import Curve
-from clearance.planar.curve_file import read_curve
+from clearance.planar.curve_file import curve_of_document, read_curve
 from clearance.profiles.profile import Profile
 from clearance.profiles.profile_read import is_profile, profile_of
 
 if TYPE_CHECKING:
     from clearance.profiles.region import Region
     from clearance.sketch import Sketch
-
-_WANTED = "a profile, sketch, curve file or DXF"
 
 FINE = 1e-4
 """[-] Ten times how far chords stray in areas and pictures, relative to the outline's size."""
@@ -104,28 +102,19 @@ def read_outline(path: str | Path) -> DrawnOutline:
     path = Path(path)
     if path.suffix.lower() not in (".yaml", ".yml"):
         return DrawnOutline(path.name, read_curve(str(path)))
-    document = yaml_of(path)
-    if is_profile(document):
-        with at(str(path)):
-            found = profile_of(document)
-        return DrawnOutline(path.name, found.curve, found)
-    if isinstance(document, dict) and "curves" not in document and "points" in document:
-        return DrawnOutline(path.name, solved_sketch(path).curves())
-    return DrawnOutline(path.name, read_curve(str(path)))
-
-
-def solved_sketch(path: str | Path) -> Sketch:
-    """The sketch of a file with all its constraints true.
-
-    Raises: what `Sketch.load` raises; BadShape (constraints that contradict each other, or
-        are not solved in time, by name).
-    """
-    from clearance.sketch import Sketch
-
-    sketch = Sketch.load(path)
     with at(str(path)):
-        require_solved(sketch)
-    return sketch
+        document = yaml_file(path, "a profile, sketch, curve file or DXF")
+        if is_profile(document):
+            found = profile_of(document)
+            return DrawnOutline(path.name, found.curve, found)
+        if isinstance(document, dict) and "curves" not in document and "points" in document:
+            from clearance.sketch import Sketch
+            from clearance.sketch.sketch_file import sketch_of
+
+            sketch = sketch_of(document, Sketch)
+            require_solved(sketch)
+            return DrawnOutline(path.name, sketch.curves())
+        return DrawnOutline(path.name, curve_of_document(document))
 
 
 def require_solved(sketch: Sketch) -> None:
@@ -136,17 +125,3 @@ def require_solved(sketch: Sketch) -> None:
     result = sketch.solve()
     if not result.solved:
         raise BadShape(result.fault, valid="a sketch that can be drawn")
-
-
-def yaml_of(path: Path) -> object:
-    """The content of a YAML file.
-
-    Raises: MissingFile, BadSyntax, DuplicateName.
-    """
-    with at(str(path)):
-        if path.exists() and not path.is_file():  # a pipe or a device may never end
-            raise MissingFile("not a regular file", valid=_WANTED)
-        try:
-            return plain_data(path.read_bytes())
-        except OSError:
-            raise MissingFile("no such file", valid=_WANTED) from None

@@ -20,8 +20,9 @@ from pathlib import Path
 import numpy as np
 from markupsafe import escape
 
-from clearance.errors import BadInput, Unwritable
+from clearance.errors import BadInput
 from clearance.extras import importing
+from clearance.files import write_file
 from clearance.profiles.contour import Contour
 from clearance.profiles.profile import Profile
 from clearance.profiles.profile_read import FORMAT
@@ -46,12 +47,7 @@ def write_profile(profile: Profile, path: str | Path) -> None:
     """
     path = Path(path)
     require_suffix(path)
-    text = _text(profile, path.suffix.lower())
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Unwritable(f"cannot write here ({error.strerror})", where=str(path)) from None
+    write_file(path, _text(profile, path.suffix.lower()).encode())
 
 
 def require_suffix(path: str | Path) -> None:

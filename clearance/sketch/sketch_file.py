@@ -18,16 +18,9 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
-from clearance.errors import (
-    BadSyntax,
-    MissingFile,
-    MissingKey,
-    UnknownKey,
-    Unwritable,
-    at,
-    nearest_name,
-)
-from clearance.plain_yaml import plain_data
+from clearance.errors import BadSyntax, MissingKey, UnknownKey, at, nearest_name
+from clearance.files import write_file
+from clearance.plain_yaml import yaml_file
 from clearance.sketch.entities import Line
 
 _SECTIONS = ("parameters", "points", "lines", "segments", "circles", "arcs", "constraints")
@@ -42,15 +35,17 @@ def read(path: Path, kind):
         each with the file and the field.
     """
     with at(str(path)):
-        return sketch_of(_content(path), kind)
+        return sketch_of(yaml_file(path, "a sketch file"), kind)
 
 
-def sketch_of(content: dict, kind):
+def sketch_of(content: object, kind):
     """The sketch that the content of a file says.
 
     Raises:
         As `read`, with the field.
     """
+    if not isinstance(content, dict):
+        raise BadSyntax("is not a sketch", valid=f"a mapping with {', '.join(_SECTIONS)}")
     sketch = kind()
     for section in content:
         if section not in _SECTIONS:
@@ -62,20 +57,6 @@ def sketch_of(content: dict, kind):
         with at(f"constraints[{i}]"):
             _constraint(sketch, entry)
     return sketch
-
-
-def _content(path: Path) -> dict:
-    if path.exists() and not path.is_file():  # a pipe or a device may never end
-        raise MissingFile("is not a file on disk", valid="a sketch file")
-    try:
-        content = plain_data(path.read_bytes())
-    except OSError as fault:
-        raise MissingFile(
-            f"cannot be read ({fault.__class__.__name__})", valid="a sketch file"
-        ) from None
-    if not isinstance(content, dict):
-        raise BadSyntax("is not a sketch", valid=f"a mapping with {', '.join(_SECTIONS)}")
-    return content
 
 
 def _mapping(content: dict, section: str) -> dict:
@@ -168,10 +149,7 @@ def write(sketch, path: Path) -> None:
     yaml.width = 110
     text = io.StringIO()
     yaml.dump(tree_of(sketch), text)
-    try:
-        path.write_text(text.getvalue(), encoding="utf-8")
-    except OSError as fault:
-        raise Unwritable(f"{path} cannot be written ({fault.__class__.__name__})") from None
+    write_file(path, text.getvalue().encode())
 
 
 def tree_of(sketch) -> dict:
