@@ -11,8 +11,7 @@ import numpy as np
 from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_program import AreaGoal, least_area
 from clearance.profiles.fit_rows import FitRows, Gaps, rows_of
-from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
-from clearance.profiles.fit_target import FitCandidate, Places
+from clearance.profiles.fit_target import MOST_ROWS, STEPS, FitCandidate, FitSearch, Places
 
 MOST_NEAR = 60
 """Places of the outline whose pieces get more rows once the shape is near them."""

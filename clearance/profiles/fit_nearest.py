@@ -8,8 +8,7 @@ from clearance.planar.hausdorff import Hausdorff, hausdorff
 from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_program import least_greatest
 from clearance.profiles.fit_rows import FitRows, Gaps, rows_of
-from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
-from clearance.profiles.fit_target import FitCandidate, Places
+from clearance.profiles.fit_target import MOST_ROWS, STEPS, FitCandidate, FitSearch, Places
 
 
 class NearestFit(FitSearch):

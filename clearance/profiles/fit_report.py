@@ -1,6 +1,6 @@
 """The constraints of a fit: where it touches, how each free dimension moves it, and which fixed ones stop it.
 
-The multipliers are those of the last linear program. Not for: the search (`fit_search`).
+The multipliers are those of the last linear program. Not for: the search (`fit_bounded`, `fit_nearest`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The relation of a fitted sketch to an outline: near, around or clear of it; rows to search by, and the proof."""
+"""The relation of a fitted sketch to an outline: near, around or clear of it; rows to search by, and the proof.
+
+Also what all searches share: places on the shape and the bounds of a step.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import numpy as np
 
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import Minimum
-from clearance.profiles.fit_placed import PlacedShape
+from clearance.profiles.fit_placed import PlacedShape, range_of_numbers
 from clearance.profiles.fit_rows import (
     FitRows,
     Gaps,
@@ -25,6 +28,15 @@ from clearance.profiles.region import contains
 
 MOST_GIVEN = 3000
 """Points of the outline that give rows."""
+
+MOST_ROWS = 700
+"""Rows of a linear program: those nearest to mattering."""
+
+SAMPLES = 16
+"""Places on each piece of the shape."""
+
+STEPS = 30
+"""Linear programs that one search may solve."""
 
 Places = tuple[np.ndarray, np.ndarray]
 """Pieces and shares of places on a shape."""
@@ -110,3 +122,24 @@ class FitTarget:
             return one.score < two.score
         far = [hausdorff(f.placed.curve, self.outline.curve).distance for f in (one, two)]
         return far[0] < far[1] * (1.0 - 1e-9)
+
+
+class FitSearch:
+    """A shape, its target, and the places on it that give rows."""
+
+    def __init__(self, shape: SketchShape, target: FitTarget, drawn: PlacedShape) -> None:
+        self.shape, self.target = shape, target
+        self.samples = drawn.pieces.spread(SAMPLES)
+        self.tiny = 1e-12 * shape.size
+
+    def bounds(self, here: PlacedShape, reach: float) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) each: least and greatest step, in units of the shape's scale, within `reach`."""
+        shape, numbers = self.shape, here.numbers
+        low, high = range_of_numbers(shape.kinds, numbers, shape.size)
+        low, high = (low - numbers) / shape.scale, (high - numbers) / shape.scale
+        return np.maximum(low, -reach), np.minimum(high, reach)
+
+    def with_places(self, here: PlacedShape, points: np.ndarray, samples: Places) -> Places:
+        """The samples and the places of more points of the shape."""
+        piece, share, _ = here.pieces.feet(points)
+        return np.append(samples[0], piece), np.append(samples[1], share)
