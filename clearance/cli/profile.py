@@ -26,14 +26,9 @@ def profile() -> None:
 @click.argument("a", type=click.Path())
 @click.argument("b", type=click.Path())
 @click.option("--out", type=OutputPath(), help="Picture (.svg, .png), or a folder for all results.")
-@click.option(
-    "--field", is_flag=True, help="Colour the page by the nearest arc of B (the distance map)."
-)
 @click.option("--limit", type=float, help="Exit with 1 where the Hausdorff distance is above this.")
 @click.option("--limit-mm", type=SortParamType(LENGTH), help="The same in mm, for files in metres.")
-def compare(
-    a: str, b: str, out: Path | None, field: bool, limit: float | None, limit_mm: float | None
-) -> None:
+def compare(a: str, b: str, out: Path | None, limit: float | None, limit_mm: float | None) -> None:
     """Measures how far two outlines differ.
 
     It is their Hausdorff distance, with a proven error.
@@ -46,13 +41,11 @@ def compare(
     if limit is not None and limit_mm is not None:
         raise click.UsageError("--limit and --limit-mm are both given")
     in_mm = limit_mm is not None
-    if not _compare(a, b, out, field, limit_mm if in_mm else limit, in_mm):
+    if not _compare(a, b, out, limit_mm if in_mm else limit, in_mm):
         click.get_current_context().exit(1)
 
 
-def _compare(
-    a: str, b: str, out: Path | None, field: bool, limit: float | None, in_mm: bool
-) -> bool:
+def _compare(a: str, b: str, out: Path | None, limit: float | None, in_mm: bool) -> bool:
     """Whether the outlines keep the limit, if any; after the comparison is printed and written."""
     from clearance.files import refuse_inputs
     from clearance.planar.entries import checked_number
@@ -66,7 +59,7 @@ def _compare(
     for line in _comparison_lines(found, *_unit(found, in_mm)):
         click.echo(line)
     if out is not None:
-        _write(found, out, field)
+        _write(found, out)
     return found.within_limit
 
 
@@ -111,13 +104,7 @@ def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
         yield f"  beyond    on {len(found.beyond) - MOST_BEYOND} more stretches"
 
 
-def _write(found, out: Path, field: bool) -> None:
-    if field:
-        from clearance.planar.picture import draw_comparison
-
-        draw_comparison(found.a.curve, found.b.curve, found.found, out)
-        click.echo(f"picture {out}")
-        return
+def _write(found, out: Path) -> None:
     from clearance.profiles.picture import draw_outlines
 
     whole = found.found

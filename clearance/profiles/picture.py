@@ -1,15 +1,18 @@
 """Pictures of two outlines: what one gained and lost against the other, the distance, and the worst place near.
 
-SVG and PNG through matplotlib, the same bytes for the same input. Not for: the distance map (`clearance.planar`).
+SVG and PNG through matplotlib, the same bytes for the same input.
 """
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
 
-from clearance.planar.picture import bare_axes, figure_bytes, new_figure, page_of, write_picture
+from clearance.errors import BadInput
+from clearance.extras import importing
+from clearance.files import write_file
 from clearance.profiles.outline_file import DrawnOutline, rings_of_curve
 from clearance.profiles.region import Region, difference, rings_of
 
@@ -33,7 +36,12 @@ def draw_outlines(
 
     Raises: BadInput (another suffix), Unavailable (no matplotlib), Unwritable.
     """
-    write_picture(path, lambda suffix: picture_bytes(a, b, ends, title, suffix, shade=shade))
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in (".svg", ".png"):
+        given = suffix or "without suffix"
+        raise BadInput(f"a picture {given}", where=str(path), valid=".svg or .png")
+    write_file(path, picture_bytes(a, b, ends, title, suffix, shade=shade))
 
 
 def picture_bytes(
@@ -49,11 +57,16 @@ def picture_bytes(
 
     Raises: Unavailable (no matplotlib).
     """
-    low, high = page_of(a.curve, b.curve, 0.05)
+    low, high = (
+        np.minimum(a.curve.box[0], b.curve.box[0]),
+        np.maximum(a.curve.box[1], b.curve.box[1]),
+    )
+    margin = 0.05 * float(np.hypot(*(high - low)))
+    low, high = low - margin, high + margin
     width, height = high - low
     scale = min(6.6 / width, 5.4 / height)
     size = (width * scale + 4.2, max(height * scale, 3.0) + 1.2)
-    figure = new_figure(size)
+    figure = _new_figure(size)
     whole, near = figure.subplots(1, 2, width_ratios=[max(width * scale, 2.0), 3.2])
     fill = a.curve.is_closed and b.curve.is_closed
     for axes in (whole, near):
@@ -65,7 +78,7 @@ def picture_bytes(
     figure.legend(
         handles, names, loc="outside lower center", ncols=5, fontsize="small", frameon=False
     )
-    return figure_bytes(figure, suffix, 130)
+    return _figure_bytes(figure, suffix)
 
 
 def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
@@ -83,7 +96,9 @@ def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
         box = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * max(reach, 0.01 * page)
         whole.plot(*(box + middle).T, color="#666666", linewidth=0.8, zorder=6)
     for axes in (whole, near):
-        bare_axes(axes, "x-small")
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.spines[["left", "bottom"]].set_color("#999999")
+        axes.tick_params(colors="#555555", labelsize="x-small")
 
 
 def _fill(
@@ -117,3 +132,27 @@ def _shade(axes, region: Region, color: str, label: str) -> None:
         Lines(np.array(vertices), codes), facecolor=color, alpha=0.35, linewidth=0, label=label
     )
     axes.add_patch(patch)
+
+
+def _new_figure(size: tuple[float, float]):
+    """A figure of matplotlib of a size [inch].
+
+    Raises: Unavailable (no matplotlib).
+    """
+    with importing("report", "a picture"):
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    figure = Figure(figsize=size, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _figure_bytes(figure, suffix: str) -> bytes:
+    """A figure as the content of an .svg or .png file, always the same."""
+    import matplotlib
+
+    out = io.BytesIO()
+    metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
+    with matplotlib.rc_context({"svg.hashsalt": "clearance", "svg.fonttype": "path"}):
+        figure.savefig(out, format=suffix[1:], dpi=130, metadata=metadata)
+    return out.getvalue()

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
 from clearance.kernels.hausdorff.state import SearchGoal
+from clearance.kernels.hausdorff.trim import candidate_arcs
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
-from clearance.planar.picture import remaining_parts
 from tests.examples import examples
 from tests.oracle import planar_hausdorff as oracle
 from tests.planar.test_within import waves
@@ -260,7 +260,10 @@ def test_trimming_is_safe(one, two):
     a, b = curve_of(one), curve_of(two)
     directed = hausdorff(a, b).directed["a_to_b"]
     bound = 0.9 * directed.distance
-    piece, local = remaining_parts(a, b, bound)
+    shift, rows = a.origin - b.origin, a.leaves.arcs
+    pixel = a.length / max(64, 2 * len(rows))
+    remaining = candidate_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], bound, pixel)
+    piece, local = a.leaves.piece[remaining], rows[remaining, :2]
     low, high = a.limits[piece].T[:, :, None]
     kept = low + local * (high - low)
     u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)
