@@ -104,8 +104,8 @@ TIE = 2.0**-44
 of their Hausdorff distance may be that still counts as at the limit: the rounding of the longest bounds."""
 
 WEIGHTS = 1e6
-"""[-] The greatest ratio of a curve's weights: drawings have 2 to 50. At 1e8 half a piece may lie within 1e-8 of an
-end of its parameter, and a search takes seconds; at 1e16 floats end before the piece does."""
+"""[-] The greatest ratio of a curve's weights: drawings have 2 to 50. At 1e8 half a piece may lie within 1e-8 of
+an end of its parameter, and a search takes seconds; at 1e16 floats end before the piece does."""
 
 LEAST_GAP = 2.0**-44
 """[-] Relative to the size of two curves: how near the bounds of their least distance come; above the rounding of

@@ -173,39 +173,30 @@ class CurveFacts:
 
 def least_box(pieces: Pieces) -> np.ndarray:
     """(2, 2) lower and upper corner; the curve may stand out by LAST_BITS of its largest coordinate."""
-    parts = _by_degree(pieces)
+    count = np.diff(pieces.first)
+    parts = [
+        pieces.control[pieces.first[:-1][count == n][:, None] + np.arange(n)]
+        for n in np.unique(count)
+    ]
     return np.array([[-_farthest(parts, axis, -1.0) for axis in (0, 1)],
                      [_farthest(parts, axis, 1.0) for axis in (0, 1)]])  # fmt: skip
 
 
-def _by_degree(pieces: Pieces) -> list[np.ndarray]:
-    """Homogeneous control points (k, degree + 1, 3) of the pieces of each degree."""
-    count = np.diff(pieces.first)
-    return [
-        pieces.control[pieces.first[:-1][count == n][:, None] + np.arange(n)]
-        for n in np.unique(count)
-    ]
-
-
 def _farthest(parts: list[np.ndarray], axis: int, sign: float) -> float:
-    """The greatest coordinate (times `sign`) of any of the curves, from above."""
-    best = max(_coordinate(rows[:, [0, -1]], axis, sign).max() for rows in parts)
-    return max(_farthest_of(rows, axis, sign, best) for rows in parts)
-
-
-def _farthest_of(rows: np.ndarray, axis: int, sign: float, best: float) -> float:
-    slack = LAST_BITS * float(np.abs(_coordinate(rows, axis, sign)).max())
-    for _ in range(HALVINGS):
-        rows = rows[_coordinate(rows, axis, sign).max(axis=1) > best + slack]
-        if not len(rows):
-            return best
-        rows = np.concatenate(halved(rows))
-        best = max(best, _coordinate(rows[:, [0, -1]], axis, sign).max())
-    return max(best, _coordinate(rows, axis, sign).max())
-
-
-def _coordinate(rows: np.ndarray, axis: int, sign: float) -> np.ndarray:
-    return sign * rows[:, :, axis] / rows[:, :, 2]
+    """The greatest coordinate (times `sign`) of any of the curves (k, degree + 1, 3), from above."""
+    best = -math.inf
+    for rows in parts:
+        slack = LAST_BITS * float(np.abs(rows[:, :, axis] / rows[:, :, 2]).max())
+        for _ in range(HALVINGS):
+            reach = sign * rows[:, :, axis] / rows[:, :, 2]
+            best = max(best, float(reach[:, [0, -1]].max()))
+            rows = rows[reach.max(axis=1) > best + slack]
+            if not len(rows):
+                break
+            rows = np.concatenate(halved(rows))
+        else:
+            best = max(best, float((sign * rows[:, :, axis] / rows[:, :, 2]).max()))
+    return best
 
 
 def halved(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -94,18 +93,21 @@ def swept_bodies(
     chosen = _chosen_links(run, links)
     named = _chosen_obstacles(case, obstacles)
     found: list[SweptBody] = []
+    phases = run.timeline.phases
     for i, placed in enumerate(case.robots):
+        present = [i not in phase.absent_robots for phase in phases]
         for k in range(len(placed.robot.bodies)):
             index = BodyIndex(i, k)
             if index.name_in(case) in chosen:
-                found += _over_phases(run, index, partial(_has_robot, i))
+                found += _over_phases(run, index, present)
     for i, obstacle in enumerate(case.obstacles):
         if obstacle.name not in named:
-            found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_is_carried_by, chosen, i))
+            carried = [_holder(phase, i) in chosen for phase in phases]
+            found += _over_phases(run, BodyIndex(OBSTACLE, i), carried)
     places = {obstacle.name: i for i, obstacle in enumerate(case.obstacles)}
-    for name in named:
-        i = places[name]
-        found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_has_obstacle, i))
+    for i in (places[name] for name in named):
+        present = [i not in phase.absent_obstacles for phase in phases]
+        found += _over_phases(run, BodyIndex(OBSTACLE, i), present)
     _require_surfaces(found)
     return found
 
@@ -132,18 +134,6 @@ def _require_surfaces(found: Sequence[SweptBody]) -> None:
                 f"{one.label!r} is a cloud of points, which has no outline",
                 valid="bodies with a surface",
             )
-
-
-def _has_robot(i_robot: int, phase: Phase) -> bool:
-    return i_robot not in phase.absent_robots
-
-
-def _has_obstacle(i_obstacle: int, phase: Phase) -> bool:
-    return i_obstacle not in phase.absent_obstacles
-
-
-def _is_carried_by(links: Collection[str], i_obstacle: int, phase: Phase) -> bool:
-    return _holder(phase, i_obstacle) in links
 
 
 def _chosen_links(run: TimedCase, links: Sequence[str] | None) -> Collection[str]:
@@ -199,14 +189,12 @@ def _holder(phase: Phase, i_obstacle: int) -> str | None:
     return name if len(case.robots) == 1 else f"{robot.name}/{name}"
 
 
-def _over_phases(
-    run: TimedCase, index: BodyIndex, is_swept: Callable[[Phase], bool]
-) -> Iterator[SweptBody]:
+def _over_phases(run: TimedCase, index: BodyIndex, is_swept: Sequence[bool]) -> Iterator[SweptBody]:
     """The body in each phase in which it is swept; where it stands on at one pose, once."""
     label, body = index.name_in(run.case), index.body_in(run.case)
     last: np.ndarray | None = None
-    for phase in run.timeline.phases:
-        if not is_swept(phase):
+    for phase, swept in zip(run.timeline.phases, is_swept, strict=True):
+        if not swept:
             last = None
             continue
         frame = index.frame_in(phase.case)

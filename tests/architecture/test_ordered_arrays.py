@@ -9,7 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.tree import join, surface_of
-from clearance.planar.assembly import assembled
+from clearance.planar.curve import assembled
 from clearance.simulate.measure.certify import path_of
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import all_links, standing_link
