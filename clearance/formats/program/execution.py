@@ -7,7 +7,7 @@ refused with its line; what moves nothing may be left out. Not for: what instruc
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -207,11 +207,16 @@ class Execution(Remarks):
         moves = self.language.moves(call.name)
         if moves is None or (moves and has_value):
             raise unknown_word(call.name, self.language.suffix, moves)
-        if not has_value:
-            return self.language.instruct(call, self), None  # type: ignore[func-returns-value]
-        if self.language.waits(call):
+        if has_value and self.language.waits(call):
             self.note(WAITS, f"{call.name} ({call.line})")
-        return self.language.result_of(call, self), None
+        act: Callable[..., Any] = self.language.result_of if has_value else self.language.instruct
+        try:
+            return act(call, self), None
+        except ClearanceError:
+            raise
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+            fault = f"{call.name} is given data of another kind"
+            raise BadProgram(fault, valid="arguments as in its manual") from None
 
     def _assign(self, one: Assign) -> None:
         name = assigned(one.target)

@@ -139,25 +139,18 @@ def applied(act: Callable[..., Any], values: Sequence[Any], line: Line, name: st
     """What an operator or a function of a name makes of values; `Unknown` where one of them is.
 
     Raises:
-        BadInput: as `valued`.
-    """
-    unknown = (value for value in values if isinstance(value, Unknown))
-    return next(unknown, None) or valued(act, values, line, name)
-
-
-def valued(act: Callable[..., Any], values: Sequence[Any], line: Line, name: str) -> Any:
-    """What a function of a name makes of values.
-
-    Raises:
         BadInput: with the line: values that it does not take.
     """
+    for value in values:
+        if isinstance(value, Unknown):
+            return value
     with on(line):
         try:
             return act(*values)
         except ClearanceError:
             raise
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
-            given = " and ".join(f"{value!r:.40}" for value in values) or "nothing"
+            given = " and ".join(f"{value!r:.40}" for value in values)
             raise BadProgram(f"{name} has no value for {given}") from None
 
 
@@ -181,7 +174,7 @@ def number(value: Any, what: str) -> float:
     Raises:
         BadProgram: it is none.
     """
-    if isinstance(known(value, what), bool | str | list):
+    if isinstance(known(value, what), bool) or not isinstance(value, int | float):
         raise BadProgram(f"{what} is {value!r:.60}", valid="a number")
     return float(value)
 

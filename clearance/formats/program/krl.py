@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,7 @@ from clearance.formats.program.controller_program import (
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Expression, Name, Unknown, valued
+from clearance.formats.program.expressions import Call, Expression, Name, Unknown
 from clearance.formats.program.krl_expressions import (
     AGGREGATE,
     FRAME,
@@ -161,8 +160,7 @@ class _Krl(Language):
         if call.name not in FUNCTIONS:
             return Unknown(f"{call.name}() at {call.line}")
         args = [run.evaluated(one) for one in call.args]
-        act = partial(FUNCTIONS[call.name], Settings(run, call.line))
-        return valued(act, args, call.line, call.name)
+        return FUNCTIONS[call.name](Settings(run, call.line), *args)
 
     def instruct(self, call: Call, run: Execution) -> None:
         """A move, a wait, or a setting; all else moves nothing.

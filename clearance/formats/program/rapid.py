@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, ClearanceError, at
+from clearance.errors import BadProgram, at
 from clearance.formats.program import rapid_words as words
 from clearance.formats.program.controller_program import (
     AxisTarget,
@@ -262,16 +262,7 @@ class Rapid(Language):
             for key in ("v", "t", "z")
             if key in call.named
         }
-        try:
-            move, zone = self._made(call, rule, given, options, run)
-        except ClearanceError:
-            raise
-        except (LookupError, TypeError, ValueError):
-            fault, valid = (
-                "is given data of another kind",
-                "a target, speeddata, zonedata, tooldata",
-            )
-            raise BadProgram(f"{call.name} {fault}", valid=valid) from None
+        move, zone = self._made(call, rule, given, options, run)
         if call.name.startswith("Arc"):
             run.note(UNSAID, f"{call.name} ({call.line})")
         if "conc" in call.named or call.name.endswith("Sync"):  # something goes on beside the move

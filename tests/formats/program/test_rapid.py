@@ -230,6 +230,7 @@ FAULTS = {
     "FOR i FROM 1 TO n DO ENDFOR": "line 3: the range of 'i' is not known: 'n' is in no file",
     "FOR i FROM 1 TO 5 STEP 0 DO ENDFOR": "line 3: a step of 0",
     "TEST 1\nRETURN;\nCASE 1: ENDTEST": "line 4: test begins with a statement; CASE",
+    "IF Present() RETURN;": "line 3: Present is given data of another kind",
     "VAR num i{0};": "line 3: an array of 0 items; 1 to 1000",
     "ENDPROC PROC main()": "line 3: 'main' is there twice",
 }  # fmt: skip
