@@ -87,6 +87,28 @@ def test_a_long_list_of_events_is_cut_and_says_so():
     ]
 
 
+@pytest.mark.parametrize(
+    ("warn", "fail", "contact", "shown"),
+    [
+        (0.0, 0.0, "same", ["contact begins"]),
+        (0.002, 0.002, "same", ["fail limit entered", "contact begins"]),
+        (0.005, 0.002, "same", ["warn limit entered", "fail limit entered", "contact begins"]),
+        (0.0, 0.0, "padded", ["fail limit entered", "contact begins"]),
+    ],
+)
+def test_events_of_limits_that_nobody_gave_are_not_on_the_page(warn, fail, contact, shown):
+    (event,) = summary_of(record())["events"][:1]
+    what = ["warn limit entered", "fail limit entered", "contact begins"]
+    content = content_of(
+        record(),
+        events=[{**event, "what": one} for one in what],
+        limits={"warn": warn, "fail": fail},
+        intervals={"below_warn": ["same"], "below_fail": ["same"], "contact": [contact]},
+    )
+    table = next(sections(content)).blocks[0]
+    assert [row.cells[2] for row in table.rows] == shown
+
+
 @pytest.mark.slow
 def test_a_long_run_is_thinned_and_says_so():
     run = record(n_steps=900)

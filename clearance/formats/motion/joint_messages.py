@@ -168,6 +168,12 @@ def _nothing_found(documents: Sequence[Any]) -> BadInput:
         return MissingKey(
             f"there is no {lacks!r}", valid=near if near.startswith("did") else _NEEDED
         )
+    if {"name", "position"} <= set(first):
+        return MissingKey(
+            "this is a JointState, as a robot reports its joints",
+            valid="a bag of them (ros2 bag record), or a CSV of time and joints; "
+            "in YAML and JSON a JointTrajectory",
+        )
     keys = f"under the keys {', '.join(map(repr, first)):.80}" if first else "in an empty message"
     return MissingKey(f"there is no trajectory {keys}", valid=_NEEDED)
 

@@ -141,6 +141,8 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
                 raise BadTime(
                     f"its time is not later than that of the message before with {name!r}",
                     where=where,
+                    valid="times that increase: cut the bag where the clock was set back (rosbag filter, ros2 bag "
+                    "convert), or give a CSV of time and joints",
                 )
             if not math.isfinite(position):
                 one.unknown.append(i + 1)

@@ -58,7 +58,8 @@ def _intervals(model: ReportModel, level: str) -> str:
 def sections(content: PageContent) -> Iterator[Section]:
     """The events, as a table."""
     summary = content.summary
-    found = summary["events"]
+    alike = [*_alike(summary)]
+    found = [event for event in summary["events"] if event["what"] not in alike]
     if not found:
         where = "at any moment" if summary["certified"] else "at any step"
         yield Section("Events", [Paragraph(f"No limit was entered {where}.")])
@@ -79,6 +80,15 @@ def sections(content: PageContent) -> Iterator[Section]:
     yield Section("Events", [Table(heads, rows, "clickable", tall=True), *notes])
 
 
+def _alike(summary: dict[str, Any]) -> Iterator[str]:
+    """What enters or leaves a limit that nobody gave: warn as fail, or fail as contact."""
+    limits, spans = summary["limits"], summary["intervals"]
+    if limits["warn"] == limits["fail"] and spans["below_warn"] == spans["below_fail"]:
+        yield from ("warn limit entered", "warn limit left")
+    if limits["fail"] == 0.0 and spans["below_fail"] == spans["contact"]:
+        yield from ("fail limit entered", "fail limit left")
+
+
 def _notes(summary: dict[str, Any], more: int) -> Iterator[str]:
     unlisted = summary["not_listed"]["events"]
     if more:
@@ -86,7 +96,10 @@ def _notes(summary: dict[str, Any], more: int) -> Iterator[str]:
     if unlisted:
         yield f"{count(unlisted, 'more event')} follow from the status in steps.csv."
     if any(event["between"] for event in summary["events"]):
-        yield "A step with + is the one before a moment between two steps."
+        yield (
+            "A step with + is the one before a moment between two steps. A limit is proven not to be entered "
+            "before that time, but may be entered a little later; mm is the clearance at the time shown."
+        )
 
 
 def _cells(event: dict[str, Any], *, several: bool) -> Iterator[Content | Cell]:

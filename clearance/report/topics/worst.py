@@ -110,7 +110,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
 
 
 def _point(point: Sequence[float]) -> str:
-    return f"({', '.join(f'{value:.6f}' for value in point)})"
+    return f"({', '.join(f'{value:z.6f}' for value in point)})"
 
 
 class JointRow(NamedTuple):
@@ -138,7 +138,7 @@ def sections(content: PageContent) -> Iterator[Section]:
     several = len({joint["robot"] for joint in worst["joints"]}) > 1
     joints = Joints([_joint_row(joint, several) for joint in worst["joints"]])
     points = [
-        Row([f"on {worst[body]}", *(number(f"{v * 1000:.3f}") for v in worst[f"point_{body}"])])
+        Row([f"on {worst[body]}", *(number(f"{v * 1000:z.3f}") for v in worst[f"point_{body}"])])
         for body in ("link", "obstacle")
     ]
     near = depth_of(worst) if worst["touches"] else padded_mm(content.verdict.worst)

@@ -124,6 +124,8 @@ def point(**fields: object) -> str:
         ("- 1\n", MissingKey, "a list of 1 is not a message; a message with joint_names and points"),
         ("{}", MissingKey, "there is no trajectory in an empty message"),
         ("a: 1\nb: 2\n", MissingKey, "there is no trajectory under the keys 'a', 'b'"),
+        ("header: {}\nname: [a]\nposition: [0.0]\n---\n", MissingKey, "this is a JointState, as a robot reports "
+         "its joints; a bag of them (ros2 bag record), or a CSV"),
         ("joint_name: [a]\npoints: []\n", MissingKey, "no 'joint_names'; did you mean 'joint_name'?"),
         ("a: [1\n", BadSyntax, "line 2: not YAML"),
         ("a: 1\na: 2\n", DuplicateName, "line 2: key 'a' is there twice"),

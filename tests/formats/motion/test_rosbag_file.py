@@ -134,7 +134,7 @@ def test_drivers_that_tell_of_different_joints_are_put_together(tmp_path, contai
 
 def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
     bag = write_bag(tmp_path / "a", "mcap", {"/joint_states": [STATES[1], STATES[0]]})
-    with pytest.raises(BadTime, match="message 2: its time is not later than"):
+    with pytest.raises(BadTime, match=r"message 2: its time is not later than .* cut the bag"):
         read(bag)
     other = state(3, [0.0], ["gripper"])
     bag = write_bag(tmp_path / "b", "mcap", {"/joint_states": [*STATES, other]})
