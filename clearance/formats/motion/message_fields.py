@@ -1,0 +1,184 @@
+"""The fields of a trajectory's message beside its points: the start of the robot, and those that are not read.
+
+Not for: the points (`joint_points`), nor which trajectory of a file is meant (`joint_messages`).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadShape, at
+from clearance.formats.message.documents import Fields, described
+from clearance.formats.message.values import header_of, require_fields, require_spelt
+from clearance.formats.motion.joint_messages import READ, JointMessage
+from clearance.world.notice import listed
+from clearance.world.start import started
+from clearance.world.trajectory import Trajectory
+
+_STARTS = ("trajectory_start", "start_state")
+"""Keys of the robot's state at 0 s."""
+
+_OF_MESSAGE = frozenset(
+    ("seq", "stamp", "goal_id", "status", "event_type", "info", "error_code", "planning_time")
+)
+"""Keys about the message, not about a motion."""
+
+_NAMES = frozenset(("name", "joint_names"))
+"""Names that other fields refer to; alone they have no effect."""
+
+_UNTURNED = {"x": 0, "y": 0, "z": 0, "w": 1}
+
+NEAR = 1e-6
+"""[rad or m] A start closer than this to a first point at 0 s is the same as the point."""
+
+
+class StartState(NamedTuple):
+    """Where joints are at 0 s.
+
+    Attributes:
+        place: the keys that lead to it. positions: [rad] or [m] by joint. velocities: the same a second, or empty.
+    """
+
+    place: str
+    positions: dict[str, float]
+    velocities: dict[str, float]
+
+
+def start_of(message: JointMessage) -> StartState | None:
+    """What the nearest message around a trajectory says of its start; None where none does.
+
+    Raises:
+        BadShape: names and numbers that do not go together.
+    """
+    for place, holder in reversed(message.around):
+        if re.search(r"\[[1-9]", message.place[len(place) :]):
+            return None  # a later segment begins where the one before ends
+        for key in _STARTS:
+            path = f"{place}.{key}".lstrip(".")
+            joints = holder[key].get("joint_state") if isinstance(holder.get(key), Fields) else None
+            if isinstance(joints, Fields) and joints.get("name"):
+                with at(f"{path}.joint_state"):
+                    require_fields(joints, "header", "name", "position", "velocity", "effort")
+                    return StartState(
+                        path, _by_name(joints, "position"), _by_name(joints, "velocity")
+                    )
+    return None
+
+
+def _by_name(joints: Fields, key: str) -> dict[str, float]:
+    names, values = joints["name"], joints.get(key) or []
+    if key == "velocity" and not values:
+        return {}
+    fits = isinstance(names, list) and isinstance(values, list) and len(names) == len(values)
+    if not fits or not all(type(one) in (int, float) and math.isfinite(one) for one in values):
+        raise BadShape(f"{key} is {described(values)}", valid="a finite number for each name")
+    return {str(name): float(value) for name, value in zip(names, values, strict=True)}
+
+
+def with_start(
+    trajectory: Trajectory, start: StartState | None
+) -> tuple[Trajectory, tuple[str, ...]]:
+    """The trajectory with a sample at 0 s added, if points begin later and the message has a start; and notes."""
+    first = float(trajectory.times[0])
+    if start is None:
+        without = f"the first point is at {first:g} s; how the robot gets there is not in the file"
+        return _with_way_in(trajectory), (without,) if first > 0.0 else ()
+    names = trajectory.joint_names
+    others = [f"{name}: {at_:g}" for name, at_ in start.positions.items() if name not in names]
+    notes = [
+        f"{start.place} also has joints that the trajectory does not move {{{listed(others, 8)}}}: not used, "
+        "robot.joints of the case says where they rest"
+    ] if others else []  # fmt: skip
+    missing = [name for name in names if name not in start.positions]
+    if missing:
+        notes.append(f"{start.place} is not used: it has no position of {listed(missing, 8)}")
+        return _with_way_in(trajectory), tuple(notes)
+    positions = np.array([start.positions[name] for name in names])
+    if first > 0.0:
+        notes.append(
+            f"joints start in {start.place} at 0 s and go to the first point at {first:g} s as between points"
+        )
+        rates = np.array([start.velocities.get(name, 0.0) for name in names])
+        return started(trajectory, positions, rates), tuple(notes)
+    off = np.abs(trajectory.positions[0] - positions)
+    if (off > NEAR).any():
+        i = int(np.argmax(off))
+        said = f"{start.place} has joint {names[i]!r} {off[i]:.3g}"
+        notes.append(f"{said} off the first point, at {first:g} s; the point is used")
+        start_off, has_way_in = f"{said} rad or m off it", trajectory.n_steps > 1
+        return replace(trajectory, has_way_in=has_way_in, start_off=start_off), tuple(notes)
+    return trajectory, tuple(notes)
+
+
+def _with_way_in(trajectory: Trajectory) -> Trajectory:
+    return replace(
+        trajectory, has_way_in=trajectory.n_steps > 1 and bool(trajectory.times[0] > 0.0)
+    )
+
+
+_GRAVE = {"attached_collision_objects", "multi_dof_joint_state"}
+"""Fields that move a base, or that tell of parts which a link holds."""
+
+
+def with_unread(
+    trajectory: Trajectory, message: JointMessage, start: StartState | None
+) -> tuple[Trajectory, list[str]]:
+    """The trajectory with the fields beside its points that bear on the motion and are not read; a note on all."""
+    unread = _all_unread(message, start)
+    grave = tuple(path for path in unread if _GRAVE & {*path.split(".")})
+    notes = [f"fields beside the points, not read: {listed(unread, 8)}"] if unread else []
+    return replace(trajectory, unread=grave), notes
+
+
+def _all_unread(message: JointMessage, start: StartState | None) -> list[str]:
+    """The fields beside the points that have no effect here."""
+    found = [*_unread(message.trajectory, message.place, ("joint_names", "points"))]
+    for place, holder in message.around:
+        for path in _unread(holder, place, READ):
+            if start is None or path != start.place:
+                found.append(path)
+            else:
+                key = path.rpartition(".")[2]
+                found += _unread(holder[key], path, ("joint_state", "is_diff"))
+    return found
+
+
+def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:
+    with at(place or "message"):
+        require_spelt(fields, *read, *_STARTS, "header")
+        header_of(fields)
+    for key, value in fields.items():
+        path = f"{place}.{key}".lstrip(".")
+        if key == "header" and isinstance(value, Fields):
+            if value.get("frame_id"):
+                yield f"{path}.frame_id {described(value['frame_id'])}"
+        elif key not in read and key not in _OF_MESSAGE and _says(value):
+            yield f"{path} {described(value)}" if isinstance(value, str) else path
+
+
+def _says(value: Any) -> bool:
+    """True if a value differs from that of an empty message; each part is visited once."""
+    waiting, seen = [value], set[int]()
+    while waiting:
+        one = waiting.pop()
+        if not isinstance(one, Fields | list):
+            if one:
+                return True
+        elif id(one) not in seen:  # aliases repeat parts
+            seen.add(id(one))
+            if isinstance(one, Fields) and (one == _UNTURNED or one.get("name") == []):
+                continue
+            if isinstance(one, Fields) and isinstance(one.get("name"), list):
+                return True
+            waiting += one if isinstance(one, list) else _values_in(one)
+    return False
+
+
+def _values_in(fields: Fields) -> Iterator[Any]:
+    return (one for key, one in fields.items() if key not in _NAMES and key not in _OF_MESSAGE)
