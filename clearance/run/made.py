@@ -155,7 +155,7 @@ def _contacts(
     """The pairs in contact and the overlaps asked for; loads what that needs only where there is one."""
     if not any((one.found.clearance[b] <= 0.0).any() for one in found for b in _blocks(one)):
         return None
-    from clearance.simulate.answers.contact.contacts import contacts_of
+    from clearance.simulate.answers.contact.rows import contacts_of
 
     question, pairs, times = plan.question, plan.sections.pairs, plan.motions[0].times
     return contacts_of(question.case, pairs, found, times, question.contact, resources.progress)
