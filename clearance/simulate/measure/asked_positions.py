@@ -105,9 +105,9 @@ class AskedPositions:
             positions = given[:, first : first + len(names)]
             first += len(names)
             asked = replace(placed, trajectory=Trajectory(times, names, positions))
-            before, extents = self._case.prefix_of(placed), joint_extents(asked)
-            yield from notices_on_positions(extents, before)
-            yield from notices_on_joints(asked, rule, before, extents)
+            before = self._case.prefix_of(placed)
+            yield from notices_on_positions(joint_extents(asked), before)
+            yield from notices_on_joints(asked, rule, before)
 
     def _set_usual(self) -> None:
         """Sets (k,) least and greatest positions without any notice that was not given before."""
