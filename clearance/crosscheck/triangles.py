@@ -84,14 +84,8 @@ def triangle_soup(shape: Polyhedron) -> TriangleSoup:
         turns = np.zeros(shape.n_points, dtype=np.int64)
         return TriangleSoup(shape.vertices, each, turns, shape.ball_radius)
     vertices, index = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)
-    sizes = np.diff(shape.face_starts)
-    firsts = np.repeat(shape.face_starts[:-1], sizes - 2)
-    fan_starts = np.cumsum(sizes - 2) - (sizes - 2)
-    nth = np.arange(len(firsts)) - np.repeat(fan_starts, sizes - 2)
-    corners = np.stack([firsts, firsts + nth + 1, firsts + nth + 2], axis=1)
-    faces = np.repeat(np.arange(shape.n_faces), sizes - 2)
-    triangles = index.ravel()[shape.face_vertices[corners]]
-    return TriangleSoup(vertices, triangles, _turns(shape)[faces])
+    triangles = index.ravel()[shape.triangles()]
+    return TriangleSoup(vertices, triangles, _turns(shape)[shape.triangle_faces])
 
 
 def _turns(shape: Polyhedron) -> np.ndarray:

@@ -305,9 +305,7 @@ def _union(parts: list[Polytope]) -> Any:
 
 def solid_of(part: Polytope) -> Any:
     """manifold3d's solid of a convex part."""
-    rings = np.split(part.face_vertices, part.face_starts[1:-1])
-    fans = [(r[0], r[i], r[i + 1]) for r in rings for i in range(1, len(r) - 1)]
-    return boolean.solid(part.vertices, np.array(fans))
+    return boolean.solid(part.vertices, part.triangles())
 
 
 def _depth_in(part: Polytope, triangles: np.ndarray) -> float:

@@ -13,12 +13,11 @@ from typing import Self
 import numpy as np
 
 from clearance.errors import BadPolygon
-from clearance.geometry.edges import rings_of
+from clearance.geometry.edges import fans_of, rings_of, twins
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope_graph import (
     TrivalentPolytope,
     trivalent_form,
-    twins,
     vertex_graph,
 )
 from clearance.geometry.polytope_hull import (
@@ -125,12 +124,11 @@ class Polytope:
 
     def polyhedron(self) -> Polyhedron:
         """The same surface as a `Polyhedron`."""
-        triangles = [
-            (ring[0], ring[i], ring[i + 1])
-            for ring in np.split(self.face_vertices, self.face_starts[1:-1])
-            for i in range(1, len(ring) - 1)
-        ]
-        return Polyhedron.from_triangles(self.vertices, np.array(triangles))
+        return Polyhedron.from_triangles(self.vertices, self.triangles())
+
+    def triangles(self) -> np.ndarray:
+        """(t, 3) vertex indices: each face cut from its first vertex, faces in order."""
+        return self.face_vertices[fans_of(self.face_starts)[0]]
 
     @cached_property
     def size(self) -> float:
@@ -197,9 +195,9 @@ class Polytope:
 
     @cached_property
     def _twin(self) -> np.ndarray:
-        twin = twins(self.face_starts, self.face_vertices, len(self.vertices))
-        assert twin is not None, "`hull_faces` gives only faces of which each edge has its reverse"
-        return twin
+        """(e,) of each directed edge the entry of its reverse; `hull_faces` sees to it that each has one."""
+        flat = self.face_vertices
+        return twins(flat, flat[rings_of(self.face_starts).ahead])
 
     @cached_property
     def vertex_graph(self) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The graphs of a polytope's surface: twins, vertex neighbours, face neighbours and the trivalent form.
+"""The graphs of a polytope's surface: vertex neighbours, face neighbours and the trivalent form.
 
 Made once a polytope, with whole arrays; the kernels walk on them.
 """
@@ -24,16 +24,6 @@ class TrivalentPolytope(NamedTuple):
     planes: np.ndarray
     across: np.ndarray
     mesh: np.ndarray
-
-
-def twins(face_starts: np.ndarray, face_vertices: np.ndarray, n_vertices: int) -> np.ndarray | None:
-    """(e,) for each directed edge the entry of its reverse; None if some edge has not exactly one."""
-    tail, head = face_vertices, face_vertices[rings_of(face_starts).ahead]
-    keys, reverse = tail * n_vertices + head, head * n_vertices + tail
-    order = np.argsort(keys, kind="stable")
-    found = order[np.minimum(np.searchsorted(keys[order], reverse), len(keys) - 1)]
-    whole = (keys[found] == reverse).all() and len(np.unique(keys)) == len(keys)
-    return found if whole else None
 
 
 def vertex_graph(
