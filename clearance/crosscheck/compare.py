@@ -26,34 +26,20 @@ GIVE_UP = 64
 """Steps that exact arithmetic examines, or does not settle, after which it examines no others."""
 
 
-def cross_check(
-    record: Samples,
-    progress: Callable[[int, int], None] | None = None,
-    measured: Sequence[Pair] | None = None,
-) -> CrossCheck:
-    """The comparison of every step of a record with FCL on the same bodies.
+def compared(
+    record: Samples, pairs: Sequence[Pair], progress: Callable[[int, int], None] | None = None
+) -> tuple[CrossCheck, np.ndarray]:
+    """The comparison of every step of a record with FCL on the same bodies, and the steps that exact arithmetic
+    settles for us.
 
     Args:
-        record: what we measured.
+        record: what we measured. pairs: those that it is of.
         progress: called with (steps done, all steps) now and then.
-        measured: the pairs, where they are not all that the case measures.
 
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
-    return compared(record, progress, measured)[0]
-
-
-def compared(
-    record: Samples,
-    progress: Callable[[int, int], None] | None = None,
-    measured: Sequence[Pair] | None = None,
-) -> tuple[CrossCheck, np.ndarray]:
-    """The comparison, and the steps at which exact arithmetic settles it for us.
-
-    Args, Raises: as `cross_check`.
-    """
-    run = PeerRun(record, measured)
+    run = PeerRun(record, pairs)
     answers = run.measure(progress)
     tolerance = CROSS_CHECK * answers.diagonal + run.point_size
     differences = np.abs(record.clearances - answers.clearances)
@@ -193,7 +179,7 @@ class _Witnesses:
         )
 
 
-def cross_check_sections(
+def cross_check(
     answers: Sequence[SectionAnswer], progress: Callable[[int, int], None] | None = None
 ) -> CrossCheck:
     """The comparison of every step of all sections with FCL; steps are those of the run.
@@ -231,7 +217,7 @@ def _of_section(
     judged = RunAnswer((alone,), answer.found, None, answer.found, None)
     case, motions = section.phase.case, section.phase.motions
     samples = Samples(case, motions, StepColumns(case, motions, section.pairs, judged), ())
-    found, settled = compared(samples, progress, section.pairs)
+    found, settled = compared(samples, section.pairs, progress)
     rows = tuple(replace(row, step=row.step + first) for row in found.disagreements)
     moved = replace(found, worst_step=found.worst_step + first, disagreements=rows)
     return moved, (settled + first).tolist()

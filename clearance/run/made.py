@@ -104,7 +104,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     run = judged(plan.sections, found, question.case, plan.motions)
     budget = _budget(plan, found, resources)
     samples = _samples(plan, run, budget, resources)
-    peer = _peer(question.case, samples, found, resources) if question.cross_check else None
+    peer = _peer(question.case, found, resources) if question.cross_check else None
     return Answers(
         run,
         samples,
@@ -173,18 +173,14 @@ def _profiles(plan: MeasurementPlan) -> tuple[AnsweredProfile, ...]:
     return answer_profiles(plan.question.case, plan.timeline)
 
 
-def _peer(
-    case: Case, samples: Samples, found: Sequence[SectionAnswer], resources: Resources
-) -> CrossCheck | None:
+def _peer(case: Case, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck | None:
     """The comparison with FCL; None where nothing is measured but clouds that are too large for it."""
-    from clearance.crosscheck import cross_check, cross_check_sections, is_too_large
+    from clearance.crosscheck import cross_check, is_too_large
 
     if any(is_too_large(case, pair) for one in found for pair in one.section.pairs):
         parts = [part for one in found if one.section.tied for part in _for_peer(case, one)]
-        return cross_check_sections(parts, resources.progress) if parts else None
-    if len(found) == 1 and found[0].section.padding == 0.0:
-        return cross_check(samples, resources.progress)
-    return cross_check_sections(found, resources.progress)
+        return cross_check(parts, resources.progress) if parts else None
+    return cross_check(found, resources.progress)
 
 
 def _for_peer(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:
