@@ -18,7 +18,7 @@ from clearance.crosscheck.settle import off_body, peer_is_wrong
 from clearance.record.record import CrossCheck, Disagreement, Samples
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.steps import RunAnswer, StepColumns
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.tolerance import CROSS_CHECK
 from clearance.world.pairs import Pair
 

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.fcl_adapter import PeerBody
-from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
+from clearance.crosscheck.triangles import TriangleSoup, is_inside, triangle_soup
 from clearance.geometry.point_cloud import PointCloud
 from clearance.world.body import Body
 from clearance.world.case import Case

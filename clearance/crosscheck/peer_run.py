@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
+from clearance.crosscheck.triangles import is_inside
 from clearance.record.record import Samples
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair

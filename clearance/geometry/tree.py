@@ -19,10 +19,10 @@ from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.surface_cache import cached_surface
-from clearance.geometry.tree_nodes import nodes_over
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.face_planes import face_planes
 from clearance.kernels.mesh.surface import ANYTHING, LISTED, Surface
+from clearance.kernels.mesh.tree_build import build_tree, most_groups
 from clearance.ordered import ascending
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
@@ -312,3 +312,19 @@ def _with_balls(boxes: np.ndarray, radius: float) -> np.ndarray:
     grown[9:12, :WIDTH] += np.float32(radius * _ROUNDED_UP)
     grown[9:12, :WIDTH] *= np.float32(_ROUNDED_UP)
     return grown
+
+
+def nodes_over(
+    corner_points: np.ndarray, starts: np.ndarray, faces: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`Surface.centres`, `boxes` and `children` of a tree over some `faces` (k,).
+
+    Args:
+        corner_points: (c, 3) [m] of all faces, which begin at `starts` (f + 1,).
+    """
+    most = most_groups(len(faces))
+    centres = np.empty((3 * most, WIDTH))
+    boxes = np.empty((12 * most, WIDTH), dtype=np.float32)
+    children = np.empty((WIDTH * most, 2), dtype=np.int32)
+    n = build_tree(corner_points, starts, faces.copy(), centres, boxes, children)
+    return centres[: 3 * n].copy(), boxes[: 12 * n].copy(), children[: WIDTH * n].copy()

@@ -21,11 +21,10 @@ from clearance.run.notices import notices_of
 from clearance.run.question import Question
 from clearance.run.session import RunSession
 from clearance.simulate.answers.deepest import WorstMoments
-from clearance.simulate.answers.run_answer import JudgedRun, judged
-from clearance.simulate.answers.steps import cut_throughout, every_pair
+from clearance.simulate.answers.run_answer import JudgedRun, cut_throughout, every_pair, judged
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.simulate.replay.bodies import notes_on_drawing
 from clearance.world.case import Case
 from clearance.world.notice import WRAP, Notice

@@ -22,13 +22,14 @@ from clearance.world.body import Obstacle
 from clearance.world.budget import Budget
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
-from clearance.world.distinct_bodies import (
+from clearance.world.field_types import require_two_patterns, require_types
+from clearance.world.names import (
+    checked_name,
     require_distinct_names,
     require_other_names,
+    require_own_names,
     require_surfaces,
 )
-from clearance.world.field_types import require_two_patterns, require_types
-from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice, accepted_kind
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level, ordered_warn

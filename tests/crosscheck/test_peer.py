@@ -9,14 +9,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import clearance as cl
-from clearance.crosscheck.containment import is_inside, winding_number
 from clearance.crosscheck.peer_run import (
     PeerRun,
     greatest_displacements,
     lower_bound_boxes,
     world_boxes,
 )
-from clearance.crosscheck.triangles import triangle_soup
+from clearance.crosscheck.triangles import is_inside, triangle_soup, winding_number
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance

@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
 from clearance.tolerance import AT_LEVEL
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import actors_of_clock, clock_pair, clocks_of
@@ -229,3 +230,12 @@ def _absent(
 
 def _each_once(omissions: Iterable[Omission]) -> tuple[Omission, ...]:
     return tuple(dict.fromkeys(omissions))
+
+
+@dataclass(frozen=True, eq=False)
+class SectionAnswer:
+    """What was found of a section; pairs and steps are the section's own, distances without padding."""
+
+    section: Section
+    found: MeasuredSteps
+    certificate: ProvenMotion | None

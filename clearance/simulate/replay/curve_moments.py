@@ -16,7 +16,7 @@ from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.measure.measure import nearest_at
 from clearance.simulate.measure.measured import ProvenMotion
 from clearance.simulate.measure.moment_query import MomentQuery
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.tolerance import REACH
 from clearance.world.forest import positions_along
 

@@ -13,7 +13,7 @@ from clearance.query.contact import Contact
 from clearance.record.contact import FIGURES, OVERLAP, ContactRows, KnownOverlaps, StepContact
 from clearance.record.names import pair_names
 from clearance.simulate.answers.contact.contacts import OverlapFinder, overlap_finder
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.world.case import Case
 from clearance.world.pairs import Pair
 
