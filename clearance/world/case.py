@@ -276,18 +276,6 @@ class Case:
             values.append(tuple(sorted(placed.padding.items())))
         return cell_of(objects, tuple(values))
 
-    def with_remarks(
-        self, **values: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]
-    ) -> Case:
-        """The same with other `notices`, `notes` or `sources`, of which nothing is to be checked.
-
-        Its cell is found again: somebody may have written into an array since.
-        """
-        made = object.__new__(type(self))
-        made.__dict__.update(self.__dict__, **values)
-        made.__dict__.pop("cell", None)
-        return made
-
     def prefix_of(self, placed: PlacedRobot) -> str:
         """The prefix of a robot's links in tables: empty where there is one robot."""
         return "" if len(self.robots) == 1 else f"{placed.robot.name}/"
