@@ -26,7 +26,7 @@ from clearance.simulate.answers.rule_pairs import (
     SampleMoments,
     measured_rule,
 )
-from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion, no_minima
 from clearance.simulate.measure.sections import Section, SectionAnswer, SectionPlan, rule_limits
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
@@ -248,9 +248,7 @@ def _minima(answers: Sequence[SectionAnswer], n_pairs: int) -> Callable[[int | N
     """Finds the least of each pair over some sections; infinite for pairs that are not theirs."""
 
     def found(most: int | None) -> Minima:
-        least = Minima(
-            np.full(n_pairs, np.inf), np.full(n_pairs, -1), np.full((n_pairs, 2, 3), np.nan)
-        )
+        least = no_minima(n_pairs)
         for answer in answers:
             assert answer.found.measure_pair_minima is not None
             own, places = answer.found.measure_pair_minima(most), answer.section.places

@@ -31,7 +31,7 @@ from clearance.simulate.answers.contact.events import (
     rated_places,
 )
 from clearance.simulate.measure.layout import PairsInMotion
-from clearance.simulate.measure.measure import pairs_in_contact
+from clearance.simulate.measure.measure import pairs_within
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.motion import Motion
@@ -88,9 +88,8 @@ class OverlapFinder:
 
         Clouds of points are excluded: what of a ball is in a body says nothing of the thing that was scanned.
         """
-        rows, pairs = pairs_in_contact(
-            PairsInMotion(self.case, self.motions, self.pairs), self.steps
-        )
+        what = PairsInMotion(self.case, self.motions, self.pairs)
+        rows, pairs, _ = pairs_within(what, self.steps, 0.0)
         sure = np.arange(len(self.steps)) * len(self.pairs) + self.nearest
         both = np.union1d(rows * len(self.pairs) + pairs, sure)
         rows, pairs = np.divmod(both, len(self.pairs))

@@ -16,7 +16,7 @@ from clearance.simulate.measure.clocks.unsynchronised import (
     least_of_all_steps,
     least_unsynchronised,
 )
-from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion, no_minima
 from clearance.simulate.measure.resources import Resources
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
@@ -51,8 +51,7 @@ def _measurement(
 
 def _minima(what: PairsOfTwoClocks, resources: Resources) -> Minima:
     """The least of each pair, each asked about by itself."""
-    n = len(what.pairs)
-    least = Minima(np.full(n, np.inf), np.full(n, -1), np.full((n, 2, 3), np.nan))
+    least = no_minima(len(what.pairs))
     for i, pair in enumerate(what.pairs):
         steps = least_of_all_steps(replace(what, pairs=(pair,)), resources)
         if (steps.pair < 0).all():  # no two steps occur together
