@@ -233,12 +233,7 @@ class _Planter:
 
     def _plant_riding(self, i_obstacle: int, obstacle: Obstacle) -> None:
         parent, pose = self._stands_on(obstacle.mount)
-        self._add(
-            Links(
-                np.array([parent]), np.array([FIXED]), np.zeros((1, 3)), pose[None],
-                np.array([NO_COLUMN]), np.ones(1), np.zeros(1),
-            )
-        )  # fmt: skip
+        self._add(standing_link(pose)._replace(parents=np.array([parent])))
         self.obstacle_links[i_obstacle] = self.n_links - 1
 
     def _stands_on(self, mount: Mount | None) -> tuple[int, np.ndarray]:

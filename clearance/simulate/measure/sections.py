@@ -7,7 +7,7 @@ A run without rules, padding and windows is one section.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -137,7 +137,7 @@ def section_plan(timeline: Timeline) -> SectionPlan:
     return SectionPlan(
         tuple(places),
         tuple(found),
-        _each_once(one for selection in selections for one in selection.unmeasured),
+        tuple(dict.fromkeys(one for selection in selections for one in selection.unmeasured)),
         tuple(phase for phase in phases if phase.first not in measured),
     )
 
@@ -226,10 +226,6 @@ def _absent(
 ) -> frozenset[int]:
     own = {i for is_obstacle, i in things if is_obstacle is of_obstacles}
     return frozenset((here - own) | (there & own))
-
-
-def _each_once(omissions: Iterable[Omission]) -> tuple[Omission, ...]:
-    return tuple(dict.fromkeys(omissions))
 
 
 @dataclass(frozen=True, eq=False)
