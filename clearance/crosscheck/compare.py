@@ -184,18 +184,17 @@ def cross_check(
 ) -> CrossCheck:
     """The comparison of every step of all sections with FCL; steps are those of the run.
 
-    Sections whose clocks are not tied are omitted: FCL measures one time only.
+    The clocks of each section are tied: FCL measures one time only.
 
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
-    tied = [answer for answer in answers if answer.section.tied]
-    found = [_of_section(answer, progress) for answer in tied]
+    found = [_of_section(answer, progress) for answer in answers]
     checks = [check for check, _ in found]
     worst = max(checks, key=lambda check: check.greatest_difference)
     return replace(
         worst,
-        n_steps=len({step for answer in tied for step in _steps_of(answer)}),
+        n_steps=len({step for answer in answers for step in _steps_of(answer)}),
         worst_witness_error=max(check.worst_witness_error for check in checks),
         disagreements=tuple(row for check in checks for row in check.disagreements),
         n_settled=len({step for _, settled in found for step in settled}),

@@ -173,13 +173,11 @@ def _profiles(plan: MeasurementPlan) -> tuple[AnsweredProfile, ...]:
 
 
 def _peer(case: Case, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck | None:
-    """The comparison with FCL; None where nothing is measured but clouds that are too large for it."""
-    from clearance.crosscheck import cross_check, is_too_large
+    """The comparison with FCL; None where all that is measured is clouds too large for it, or clocks not tied."""
+    from clearance.crosscheck import cross_check
 
-    if any(is_too_large(case, pair) for one in found for pair in one.section.pairs):
-        parts = [part for one in found if one.section.tied for part in _for_peer(case, one)]
-        return cross_check(parts, resources.progress) if parts else None
-    return cross_check(found, resources.progress)
+    parts = [part for one in found if one.section.tied for part in _for_peer(case, one)]
+    return cross_check(parts, resources.progress) if parts else None
 
 
 def _for_peer(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:
