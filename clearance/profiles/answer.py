@@ -57,7 +57,7 @@ def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> Answered
     """The answer; a gap is less by what paths may be off [m]."""
     curve = space.sketch.curves()
     require_closed(curve, "sketch")
-    sketch, outline = ClosedContours.of_curve(curve), ClosedContours.of(swept.contours)
+    sketch, outline = ClosedContours.of_curve(curve), ClosedContours(swept.contours)
     if space.mode == "nearest":
         whole = hausdorff(curve, swept.curve)
         gap, ends = whole.distance, np.stack([whole.point_b, whole.point_a])
@@ -101,7 +101,7 @@ def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarr
 
 
 def _maker(swept: Profile, point: np.ndarray) -> tuple[str, int]:
-    piece, _, _ = ClosedContours.of(swept.contours).pieces.feet(point[None])
+    piece, _, _ = ClosedContours(swept.contours).pieces.feet(point[None])
     made = swept.maker(int(piece[0]))
     assert made is not None
     return made

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_program import AreaGoal, least_area
 from clearance.profiles.fit_rows import FitRows, Gaps, rows_of
+from clearance.profiles.fit_shape import PlacedShape
 from clearance.profiles.fit_target import MOST_ROWS, STEPS, FitCandidate, FitSearch, Places
 
 MOST_NEAR = 60

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.planar.hausdorff import Hausdorff, hausdorff
-from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_program import least_greatest
 from clearance.profiles.fit_rows import FitRows, Gaps, rows_of
+from clearance.profiles.fit_shape import PlacedShape
 from clearance.profiles.fit_target import MOST_ROWS, STEPS, FitCandidate, FitSearch, Places
 
 

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence, Set
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, ClearanceError, nearest_name
 from clearance.profiles.contour import Contour
-from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_rows import FitSlope, RigidSlope
+from clearance.profiles.gap import ClosedContours
 from clearance.profiles.outline_file import require_closed, require_solved
 from clearance.sketch import Sketch
 from clearance.sketch.entities import Arc, Circle, Segment
@@ -26,6 +28,22 @@ LONGEST_ARC = 1.2
 
 Chain = list[tuple]
 """(entity, runs backwards, number of equal parts) each."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedShape(ClosedContours):
+    """What a sketch draws, moved to where it stands; always the same pieces.
+
+    Attributes:
+        numbers: (n,) the free dimensions, then x, y [m] and turn [rad] where they are free.
+    """
+
+    numbers: np.ndarray = field(kw_only=True)
+
+    @cached_property
+    def area(self) -> float:
+        """[m^2] that the contours enclose, less holes, which run in reverse."""
+        return abs(sum(contour.area for contour in self.contours))
 
 
 class NoFreeDimension(BadInput):
@@ -92,10 +110,8 @@ class SketchShape:
             return None
         motion = self._motion(numbers[len(self.free) :], *self._stand(contours))
         moved = (c.vertices @ motion[:, :2].T + motion[:, 2] for c in contours)
-        return PlacedShape(
-            numbers.copy(),
-            tuple(Contour(v, c.bulges) for v, c in zip(moved, contours, strict=True)),
-        )
+        placed = tuple(Contour(v, c.bulges) for v, c in zip(moved, contours, strict=True))
+        return PlacedShape(placed, numbers=numbers.copy())
 
     def changed(self, name: str, change: float, numbers: np.ndarray) -> PlacedShape | None:
         """The shape with a fixed dimension changed; it is put back."""

@@ -5,13 +5,14 @@ Also what all searches share: places on the shape and the bounds of a step.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import Minimum
-from clearance.profiles.fit_placed import PlacedShape, range_of_numbers
 from clearance.profiles.fit_rows import (
     FitRows,
     Gaps,
@@ -20,7 +21,7 @@ from clearance.profiles.fit_rows import (
     joined_gaps,
     sides_of,
 )
-from clearance.profiles.fit_shape import SketchShape
+from clearance.profiles.fit_shape import PlacedShape, SketchShape
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline
 from clearance.profiles.pieces import ContourPieces
@@ -37,6 +38,12 @@ SAMPLES = 16
 
 STEPS = 30
 """Linear programs that one search may solve."""
+
+SHRINK = 0.05
+"""[-] The least share of a length that remains after one step."""
+
+FLOOR = 1e-6
+"""[-] Lengths are not made shorter than this, relative to the sketch: it could not be drawn at 0."""
 
 Places = tuple[np.ndarray, np.ndarray]
 """Pieces and shares of places on a shape."""
@@ -84,7 +91,7 @@ class FitTarget:
         per_piece = int(np.clip(1500 // len(self.pieces.bulge), 2, 64))
         points = self.pieces.point(*self.pieces.spread(per_piece))
         self.given = points[:: max(1, len(points) // MOST_GIVEN)]
-        self.shape_sides = sides_of(drawn.pieces, ClosedContours.of(drawn.contours).region)
+        self.shape_sides = sides_of(drawn.pieces, drawn.region)
         free_form = mode == "inside" and outline.profile is None
         self.within = free_form and bool(contains(self.closed.region, drawn.pieces.start[:1]).all())
 
@@ -111,8 +118,7 @@ class FitTarget:
 
     def clearance(self, here: PlacedShape) -> tuple[float, Minimum]:
         """Proven lower bound of the gap, -1 where the shape is on the wrong side, and the witnesses."""
-        shape = ClosedContours.of(here.contours)
-        return proven_gap(shape, self.closed, around=self.mode == "outside", within=self.within)
+        return proven_gap(here, self.closed, around=self.mode == "outside", within=self.within)
 
     def better(self, one: FitCandidate, two: FitCandidate) -> bool:
         """True if `one` beats `two` by more than rounding; distance decides between equal areas."""
@@ -143,3 +149,20 @@ class FitSearch:
         """The samples and the places of more points of the shape."""
         piece, share, _ = here.pieces.feet(points)
         return np.append(samples[0], piece), np.append(samples[1], share)
+
+
+def range_of_numbers(
+    kinds: Sequence[str], numbers: np.ndarray, size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the greatest value of each number after one step.
+
+    Lengths and angles, of these `kinds`, stay above 0, angles below half a turn.
+    """
+    low, high = np.full(len(numbers), -np.inf), np.full(len(numbers), np.inf)
+    for i, kind in enumerate(kinds):
+        if kind != "parameter":
+            floor = FLOOR if kind in ("angle", "ratio") else FLOOR * size
+            low[i] = min(numbers[i], max(SHRINK * numbers[i], floor))
+        if kind == "angle":
+            high[i] = math.pi - SHRINK * (math.pi - numbers[i])
+    return low, high

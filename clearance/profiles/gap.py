@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,21 +22,21 @@ class ClosedContours:
     """Closed contours in the forms that searches need.
 
     Attributes:
-        contours: lines and arcs. curve: what is certified.
+        contours: lines and arcs. exact: the curve that they are made of, if it was another one.
     """
 
     contours: tuple[Contour, ...]
-    curve: Curve
-
-    @classmethod
-    def of(cls, contours: Sequence[Contour]) -> ClosedContours:
-        """Contours of lines and arcs."""
-        return cls(tuple(contours), joined(contours))
+    exact: Curve | None = None
 
     @classmethod
     def of_curve(cls, curve: Curve) -> ClosedContours:
         """Any curve of closed contours."""
         return cls(contours_of(curve, FINE * curve.size), curve)
+
+    @cached_property
+    def curve(self) -> Curve:
+        """For certified distances."""
+        return joined(self.contours) if self.exact is None else self.exact
 
     @cached_property
     def pieces(self) -> ContourPieces:

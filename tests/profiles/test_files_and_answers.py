@@ -192,7 +192,7 @@ def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
         )
         gap, _ = proven_gap(
             ClosedContours.of_curve(space.sketch.curves()),
-            ClosedContours.of(swept.contours),
+            ClosedContours(swept.contours),
             around=True,
         )
         assert gap > 0.0 and (gap >= space.limit) == kept

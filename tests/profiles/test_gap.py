@@ -72,7 +72,7 @@ def test_no_point_of_many_on_the_pieces_is_nearer_than_the_foot(seed, n):
 def test_beyond_a_sharp_corner_a_point_is_outside_whichever_side_is_nearest(bulge):
     """Behind a needle's tip the point lies before one of its sides and behind the other's line."""
     needle = Contour(np.array([[0.0, 0.0], [3.0, -0.2], [3.0, 0.2]]), np.array([bulge, 0.0, bulge]))
-    closed = ClosedContours.of([needle])
+    closed = ClosedContours((needle,))
     sides = sides_of(closed.pieces, closed.region)
     points = np.array([[-0.1, 0.02], [-0.1, -0.02], [-1e-3, 1e-3], [1.0, 0.0], [3.1, 0.3]])
     other = ContourPieces([Contour(points, np.zeros(len(points)))])
