@@ -8,30 +8,16 @@ is solved. Lengths [m], directions as unit vectors; a line runs from its first p
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 
 
-class Numbers(Protocol):
-    """An entity's share of its sketch: part of the flat vector of all numbers, and their origin."""
-
-    @property
-    def origin(self) -> np.ndarray:
-        """(2,) [m] what the numbers are counted from."""
-        ...
-
-    def numbers(self, first: int, count: int) -> list[float]:
-        """The `count` numbers from `first` on."""
-        ...
-
-
 class Entity:
-    """The base of all entities: a name, unique in the sketch, and the place of their numbers."""
+    """The base of all entities: their sketch, a name, unique in it, and the place of their numbers there."""
 
     what = "entity"
 
-    def __init__(self, sketch: Numbers, name: str, variable: int) -> None:
+    def __init__(self, sketch, name: str, variable: int) -> None:
         self.sketch = sketch
         self.name = name
         self.variable = variable
@@ -57,9 +43,7 @@ class Line(Entity):
 
     what = "line"
 
-    def __init__(
-        self, sketch: Numbers, name: str, variable: int, ends: tuple[Point, Point] | None
-    ) -> None:
+    def __init__(self, sketch, name: str, variable: int, ends: tuple[Point, Point] | None) -> None:
         super().__init__(sketch, name, variable)
         self.ends = ends
 
@@ -103,7 +87,7 @@ class Circle(Entity):
 
     what = "circle"
 
-    def __init__(self, sketch: Numbers, name: str, variable: int, center: Point) -> None:
+    def __init__(self, sketch, name: str, variable: int, center: Point) -> None:
         super().__init__(sketch, name, variable)
         self.center = center
 
@@ -119,7 +103,7 @@ class Arc(Circle):
     what = "arc"
 
     def __init__(
-        self, sketch: Numbers, name: str, variable: int, center: Point, start: Point, end: Point
+        self, sketch, name: str, variable: int, center: Point, start: Point, end: Point
     ) -> None:
         super().__init__(sketch, name, variable, center)
         self.start = start

@@ -8,21 +8,16 @@ from typing import TypeVar
 
 from clearance.errors import BadShape, DuplicateName, NotFinite, nearest_name
 from clearance.sketch.constraints import Constraint
-from clearance.sketch.entities import Entity, Numbers
+from clearance.sketch.entities import Entity
 from clearance.sketch.faults import UnknownEntity
 
 E = TypeVar("E", bound=Entity)
 
 
 class Register:
-    """Entities, constraints and parameters by name, each name used once.
+    """Entities, constraints and parameters by name, each name used once."""
 
-    Attributes:
-        sketch: the sketch that they belong to.
-    """
-
-    def __init__(self, sketch: Numbers) -> None:
-        self.sketch = sketch
+    def __init__(self) -> None:
         self.entities: dict[str, Entity] = {}
         self.constraints: dict[str, Constraint] = {}
         self.parameters: dict[str, float] = {}
@@ -44,13 +39,13 @@ class Register:
             )
         return self.entities[name]
 
-    def own(self, entity: Entity | str) -> Entity:
+    def _own(self, entity: Entity | str) -> Entity:
         """An entity of this sketch, given as itself or by its name."""
         if isinstance(entity, str):
             return self.entity(entity)
-        return self.of_kind(entity, Entity)
+        return self._of_kind(entity, Entity)
 
-    def new_name(self, given: str | None, what: str) -> str:
+    def _new_name(self, given: str | None, what: str) -> str:
         """The name that is given, or the next one that is free for `what`."""
         if given is None:
             while True:
@@ -60,28 +55,28 @@ class Register:
                     return name
         if not isinstance(given, str) or not given:
             raise UnknownEntity(f"a name {given!r}", valid="a text")
-        self.check_free(given)
+        self._check_free(given)
         return given
 
-    def check_free(self, name: str) -> None:
+    def _check_free(self, name: str) -> None:
         """Refuses a name that is in use."""
         if name in self.entities or name in self.constraints or name in self.parameters:
             raise DuplicateName(f"the name {name!r} is taken", valid="a name used once")
 
-    def of_kind(self, entity: object, kind: type[E]) -> E:
+    def _of_kind(self, entity: object, kind: type[E]) -> E:
         """The entity itself, if it is of this kind and of this sketch."""
         if not isinstance(entity, kind):
             what = entity.what if isinstance(entity, Entity) else repr(entity)
             raise UnknownEntity(
                 f"{what} where a {kind.what} is needed", valid=f"a {kind.what} of this sketch"
             )
-        if entity.sketch is not self.sketch or self.entities.get(entity.name) is not entity:
+        if entity.sketch is not self or self.entities.get(entity.name) is not entity:
             raise UnknownEntity(
                 f"{entity.name!r} belongs to another sketch", valid="an entity of this one"
             )
         return entity
 
-    def add(self, entity: E) -> E:
+    def _enter(self, entity: E) -> E:
         """Enters an entity under its name."""
         self.entities[entity.name] = entity
         return entity

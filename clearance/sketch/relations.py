@@ -13,15 +13,15 @@ from clearance.sketch.lists import FlatLists
 from clearance.sketch.register import Register, number
 
 
-class Relations:
-    """Constraints and parameters of a sketch's register, and which of them are expressions of others."""
+class Relations(Register):
+    """Constraints and parameters of a sketch, and which of them are expressions of others."""
 
-    def __init__(self, register: Register, lists: FlatLists) -> None:
-        self._register = register
-        self._lists = lists
+    def __init__(self) -> None:
+        super().__init__()
+        self._lists = FlatLists()
         self._users: dict[str, list[Constraint]] = {}
 
-    def add(
+    def _relate(
         self,
         kind: str,
         entities: tuple[Entity, ...],
@@ -38,7 +38,7 @@ class Relations:
             BadDimension: a value for a kind that has none.
         """
         form, entities = form_of(kind, entities)
-        name = self._register.new_name(name, kind)
+        name = self._new_name(name, kind)
         options = {} if inside is None else {"inside": bool(inside)}
         index = len(self._lists.constraints)
         constraint = Constraint(name, kind, entities, driven, built_in, index, options)
@@ -52,7 +52,7 @@ class Relations:
             )
         if not driven:
             self._lists.append_rows(constraint, form.rows(numbers, *entities, **options))
-        self._register.constraints[name] = constraint
+        self.constraints[name] = constraint
         self._lists.constraints.append(constraint)
         return constraint
 
@@ -60,8 +60,8 @@ class Relations:
         """A new named number for expressions."""
         if not name.isidentifier():
             raise UnknownKey(f"a parameter named {name!r}", valid="letters, digits and _")
-        self._register.check_free(name)
-        self._register.parameters[name] = number(value, name)
+        self._check_free(name)
+        self.parameters[name] = number(value, name)
 
     def set(self, name: str, value: float | str) -> None:
         """Changes a parameter or a dimension, and every dimension that is an expression of it.
@@ -69,7 +69,7 @@ class Relations:
         Raises:
             UnknownEntity: no parameter or dimension has this name.
         """
-        parameters, constraints = self._register.parameters, self._register.constraints
+        parameters, constraints = self.parameters, self.constraints
         if name in parameters:
             parameters[name] = number(value, name)
         elif self._is_dimension(name):
@@ -81,14 +81,14 @@ class Relations:
 
     def value(self, name: str) -> float:
         """The value of a parameter or dimension; a driven one is measured now."""
-        if name in self._register.parameters:
-            return self._register.parameters[name]
-        constraint = self._register.constraint(name)
+        if name in self.parameters:
+            return self.parameters[name]
+        constraint = self.constraint(name)
         return measured(constraint, self._lists.numbers) if constraint.driven else constraint.number
 
     def _is_dimension(self, name: str) -> bool:
         """Whether a constraint of that name has a dimension."""
-        constraints = self._register.constraints
+        constraints = self.constraints
         return name in constraints and constraints[name].given is not None
 
     def _give(self, constraint: Constraint, given: float | str) -> None:
@@ -118,7 +118,7 @@ class Relations:
     def _evaluated(self, expression: str) -> float:
         """The value of an expression of parameters and dimensions."""
         known = {n: self.value(n) for n in names_in(expression) if self._is_dimension(n)}
-        return evaluated(expression, self._register.parameters | known)
+        return evaluated(expression, self.parameters | known)
 
     def _propagate(self, name: str, depth: int = 0) -> None:
         """Works out again the dimensions that are expressions of a changed one."""

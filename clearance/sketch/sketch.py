@@ -1,7 +1,7 @@
 """The sketch as a user builds it: entities, constraints, parameters; checked on entry, solved on demand.
 
-One class with every public method, so that an editor and a type checker see them; what each does is in the
-rooms it is made of.
+Its names are kept by `register`, its dimensions by `relations`; here is what is drawn, and each kind of constraint
+as a method of its own, so that an editor and a type checker see it.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ from clearance.sketch.effort import SECONDS, TimeLimit
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
 from clearance.sketch.faults import DegenerateSketch
 from clearance.sketch.graph.graph import DIRECTION, OFFSET, RADIUS, X, Y
-from clearance.sketch.lists import FlatLists
-from clearance.sketch.register import Register, number, two
+from clearance.sketch.register import number, two
 from clearance.sketch.relations import Relations
 from clearance.sketch.result import SketchResult
 from clearance.sketch.solver import Solver
@@ -39,7 +38,7 @@ Name = str | None
 """A name that is used once, or None for the next one that is free."""
 
 
-class Sketch:
+class Sketch(Relations):
     """A plane sketch of points, lines and circles, and what must be true of them.
 
     The methods add entities and constraints and set dimensions; `solve` moves the entities so that every
@@ -52,22 +51,17 @@ class Sketch:
     """
 
     def __init__(self) -> None:
-        self._register = Register(self)
-        self._lists = FlatLists()
-        self._relations = Relations(self._register, self._lists)
+        super().__init__()
         self._solver: Solver | None = None
-        self.entities: dict[str, Entity] = self._register.entities
-        self.constraints: dict[str, Constraint] = self._register.constraints
-        self.parameters: dict[str, float] = self._register.parameters
         self.polylines: list[Polyline] = []
         self.most_seconds: float = SECONDS
 
     def point(self, x: float, y: float, *, name: Name = None) -> Point:
         """A new point at (x, y) [m]."""
-        name = self._register.new_name(name, "point")
+        name = self._new_name(name, "point")
         x, y = self._lists.local(number(x, f"{name}.x"), number(y, f"{name}.y"))
         variable = self._lists.append_numbers((x, X), (y, Y))
-        return self._register.add(Point(self, name, variable))
+        return self._enter(Point(self, name, variable))
 
     def line(self, a: Point | Sequence[float], b: Place, *, name: Name = None) -> Line:
         """A new infinite line through two points of the sketch, or drawn through two pairs of
@@ -85,25 +79,25 @@ class Sketch:
 
     def circle(self, center: Place, radius: float, *, name: Name = None) -> Circle:
         """A new circle about a point of the sketch, or about a new point at a pair of numbers."""
-        name = self._register.new_name(name, "circle")
+        name = self._new_name(name, "circle")
         radius = number(radius, f"{name}.radius")
         if radius <= 0.0:
             raise DegenerateSketch(f"the radius of {name} is {radius}", valid="a radius above 0")
         middle = self._center(center, name)
         variable = self._lists.append_numbers((radius, RADIUS))
-        return self._register.add(Circle(self, name, variable, middle))
+        return self._enter(Circle(self, name, variable, middle))
 
     def arc(self, center: Place, start: Point, end: Point, *, name: Name = None) -> Arc:
         """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its circle."""
-        name = self._register.new_name(name, "arc")
+        name = self._new_name(name, "arc")
         for p in (start, end, *([center] if isinstance(center, Entity) else [])):
-            self._register.of_kind(p, Point)
+            self._of_kind(p, Point)
         radius = math.dist(self._local(center, name), self._local(start, name))
         if radius == 0.0:
             raise DegenerateSketch(f"{name} starts at its centre", valid="a radius above 0")
         middle = self._center(center, name)
         variable = self._lists.append_numbers((radius, RADIUS))
-        arc = self._register.add(Arc(self, name, variable, middle, start, end))
+        arc = self._enter(Arc(self, name, variable, middle, start, end))
         self._tie(arc, start=start, end=end)
         return arc
 
@@ -116,30 +110,6 @@ class Sketch:
         segments = [self.segment(*p) for p in (pairs if closed else pairs[:-1])]
         self.polylines.append(Polyline(ends, segments, closed))
         return self.polylines[-1]
-
-    def parameter(self, name: str, value: float) -> None:
-        """A new named number for expressions."""
-        self._relations.parameter(name, value)
-
-    def set(self, name: str, value: float | str) -> None:
-        """Changes a parameter or a dimension, and every dimension that is an expression of it.
-
-        Raises:
-            UnknownEntity: no parameter or dimension has this name.
-        """
-        self._relations.set(name, value)
-
-    def value(self, name: str) -> float:
-        """The value of a parameter or dimension; a driven one is measured now."""
-        return self._relations.value(name)
-
-    def entity(self, name: str) -> Entity:
-        """The entity of that name."""
-        return self._register.entity(name)
-
-    def constraint(self, name: str) -> Constraint:
-        """The constraint of that name."""
-        return self._register.constraint(name)
 
     def add(
         self,
@@ -158,8 +128,8 @@ class Sketch:
             driven: measure only.
             inside: for two tangent circles, one within the other; by default as drawn.
         """
-        own = tuple(self._register.own(e) for e in entities)
-        return self._relations.add(kind, own, value=value, name=name, driven=driven, inside=inside)
+        own = tuple(self._own(e) for e in entities)
+        return self._relate(kind, own, value=value, name=name, driven=driven, inside=inside)
 
     def fix(self, entity: Given, *, name: Name = None) -> Constraint:
         """Fixes an entity where it is drawn."""
@@ -267,7 +237,7 @@ class Sketch:
 
     def drag(self, point: Point, position: Sequence[float]) -> SketchResult:
         """Brings a point as near to `position` as the constraints allow; all else moves least."""
-        self._register.of_kind(point, Point)
+        self._of_kind(point, Point)
         limit = TimeLimit(self.most_seconds)
         return self._result(*self._engine().drag(point, two(position, "drag"), limit))
 
@@ -305,12 +275,12 @@ class Sketch:
 
     def _drawn_line(self, kind: type[L], a: Place, b: Place, name: Name) -> L:
         """A new line or segment."""
-        name = self._register.new_name(name, kind.what)
+        name = self._new_name(name, kind.what)
         ends = None
         if isinstance(a, Entity) or isinstance(b, Entity):
-            ends = self._register.of_kind(a, Point), self._register.of_kind(b, Point)
+            ends = self._of_kind(a, Point), self._of_kind(b, Point)
         p, q = (self._local(place, name) for place in ends or (a, b))
-        line = self._register.add(kind(self, name, self._line_numbers(p, q, name), ends))
+        line = self._enter(kind(self, name, self._line_numbers(p, q, name), ends))
         variables = (-1, -1) if ends is None else (ends[0].variable, ends[1].variable)
         self._lists.line_ends.extend((line.variable, *variables))
         if ends is not None:
@@ -335,7 +305,7 @@ class Sketch:
     def _center(self, center: Place, name: str) -> Point:
         """The centre of a circle: a point of the sketch, or a new one named after the circle."""
         if isinstance(center, Entity):
-            return self._register.of_kind(center, Point)
+            return self._of_kind(center, Point)
         return self.point(*two(center, name), name=f"{name}.center")
 
     def _local(self, place: Place, name: str) -> Sequence[float]:
@@ -348,7 +318,7 @@ class Sketch:
         """Puts the points on the entity, by constraints named after it."""
         for which, p in points.items():
             name = f"{entity.name}.{which}"
-            self._relations.add("incident", (p, entity), name=name, built_in=True)
+            self._relate("incident", (p, entity), name=name, built_in=True)
 
     def _result(self, *found) -> SketchResult:
         return SketchResult(self, *found)
