@@ -1,4 +1,4 @@
-"""Rigid bodies, grown along rigid chains.
+"""Rigid bodies: grown along rigid chains, or made of what is assumed to be rigid.
 
 A body starts from two entities with three degrees of freedom and adds every vertex that hangs
 on it by as many edges as it has freedom (Fig. 8 a and b of the paper).
@@ -8,7 +8,8 @@ Source: Kwon, Lee, Lee 2001, section 3.5.
 from __future__ import annotations
 
 from clearance.sketch.graph.graph import POINT, SLIDE, TURN, ConstraintGraph
-from clearance.sketch.graph.steps import PlanStep
+from clearance.sketch.graph.rules import MergeOrder
+from clearance.sketch.graph.steps import IN_BODY, PlanStep
 
 
 class Bodies:
@@ -48,7 +49,7 @@ class Bodies:
         for v in seeds:
             self.body_of[v] = body
         firsts = (seeds[1],) if len(seeds) == 2 else (seeds[2], seeds[1])
-        first = [PlanStep(firsts, ()), PlanStep((seeds[0],), (row,))]
+        first = [PlanStep(firsts, (), IN_BODY), PlanStep((seeds[0],), (row,), IN_BODY)]
         grown = self._grown(seeds, body)
         if grown:
             self.steps.append(first + grown)
@@ -80,17 +81,41 @@ class Bodies:
                 return None
         need = 2 if self.graph.kind[v] == POINT or line >= 0 else 1
         hooks = [
-            row
-            for row in self.graph.rows[v]
-            if self.live[row] and self._hangs(row, (v, line), body)
+            row for row in self.graph.rows[v] if self.live[row] and self.hangs(row, (v, line), body)
         ]
         if len(hooks) < need:
             return None
         self.body_of[v] = body
         if line >= 0:
             self.body_of[line] = body
-        return PlanStep((v,) if line < 0 else (line, v), tuple(hooks[:need]))
+        return PlanStep((v,) if line < 0 else (line, v), tuple(hooks[:need]), IN_BODY)
 
-    def _hangs(self, row: int, without: tuple[int, ...], body: int) -> bool:
+    def hangs(self, row: int, without: tuple[int, ...], body: int) -> bool:
         """Whether all ends of the edge but some belong to the body."""
         return all(u in without or self.body_of[u] == body for u in self.graph.ends[row])
+
+    def assume(self, order: MergeOrder) -> None:
+        """Makes bodies of homes of at least three points, each hung on those before it by at most two edges.
+
+        Missing conditions are assumed inside (Fig. 13 a and b): `order.lacking` becomes 0 there.
+        """
+        homes: dict[int, list[int]] = {}
+        for v in sorted(range(1, len(order.turn)), key=order.turn.__getitem__):
+            if order.home[v] >= 0:
+                homes.setdefault(order.home[v], []).append(v)
+        for h in sorted(homes):
+            body = len(self.steps)
+            steps: list[PlanStep] = []
+            for v in homes[h]:
+                hung = [r for r in self.graph.rows[v] if self.live[r] and self.hangs(r, (v,), body)]
+                self.body_of[v] = body
+                enough = len(steps) > 1 or len(hung) == len(steps)
+                if self.graph.kind[v] == POINT and len(hung) <= 2 and enough:
+                    steps.append(PlanStep((v,), tuple(hung), IN_BODY))
+            if len(steps) == len(homes[h]) >= 3:
+                self.steps.append(steps)
+                for v in homes[h]:
+                    order.lacking[v] = 0
+            else:
+                for v in homes[h]:
+                    self.body_of[v] = -1

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import deque
 
 from clearance.sketch.graph.graph import FREEDOMS, POINT, SIZE, SLIDE, TURN, ConstraintGraph
-from clearance.sketch.graph.steps import PlanStep
+from clearance.sketch.graph.steps import PEELED, PlanStep
 
 
 def peel(graph: ConstraintGraph, live: bytearray, removed: bytearray) -> list[PlanStep]:
@@ -26,7 +26,7 @@ def peel(graph: ConstraintGraph, live: bytearray, removed: bytearray) -> list[Pl
         found = peeling.found(v)
         if found is not None:
             peeling.remove(*found)
-            steps.append(PlanStep(*found))
+            steps.append(PlanStep(*found, PEELED))
     return steps
 
 

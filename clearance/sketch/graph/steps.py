@@ -6,6 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+PEELED, IN_BODY, IN_CORE = 0, 1, 2
+"""The origin of a step: peeled off, inside a body, a cluster of the core."""
+
 
 @dataclass(frozen=True)
 class PlanStep:
@@ -17,6 +20,7 @@ class PlanStep:
 
     vertices: tuple[int, ...]
     rows: tuple[int, ...]
+    origin: int
     numeric: bool = False
 
     @property
