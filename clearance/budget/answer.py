@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,8 @@ from clearance.simulate.measure.resources import Resources
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.measure.sections import SectionPlan, rule_limits
 from clearance.world.budget import Budget
-from clearance.world.case import Case
+from clearance.world.case import Case, Limits
+from clearance.world.waiver import Waiver
 
 
 class MeasuredBudget(NamedTuple):
@@ -28,12 +30,17 @@ class MeasuredBudget(NamedTuple):
 
 
 def budget_answers(
-    case: Case, plan: SectionPlan, answers: Sequence[SectionAnswer], resources: Resources
+    case: Case,
+    plan: SectionPlan,
+    answers: Sequence[SectionAnswer],
+    resources: Resources,
+    waiver: Waiver | None = None,
 ) -> tuple[MeasuredBudget, ...]:
     """The clearances that a case's tolerances leave, for each rule with pairs, in their order.
 
     Args:
         answers: of the plan's sections. With certificates, the motion between the steps is proven as well.
+        waiver: that of all pairs of the plan, if they have one: its level is then the fail limit.
 
     Raises:
         BadInput: tolerances that this case does not allow, as those of clocks where parts change hands.
@@ -45,10 +52,22 @@ def budget_answers(
     sections = [_of_section(budget, answer, resources) for answer in answers]
     n_steps = max(section.section.steps.stop for section in sections)
     names = case.limits.rule_names
-    return tuple(
-        _of_rule(case, rule, names[rule], n_steps, [s for s in sections if s.section.rule == rule])
-        for rule in plan.rules
-    )
+    found = []
+    for rule in plan.rules:
+        own = [one for one in sections if one.section.rule == rule]
+        limits = rule_limits(case, rule, [one.section for one in own])
+        if waiver is not None:
+            limits = replace(limits, fail=waiver.at_least)
+        found.append(_of_rule(_Judged(names[rule], limits, waiver), n_steps, own))
+    return tuple(found)
+
+
+class _Judged(NamedTuple):
+    """What judges the pairs of some sections."""
+
+    rule: str
+    limits: Limits
+    waiver: Waiver | None
 
 
 def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
@@ -107,9 +126,7 @@ def _of_section(budget: Budget, answer: SectionAnswer, resources: Resources) -> 
     return SectionBudget(answer, pairs, steps, between, expected, expected_there)
 
 
-def _of_rule(
-    case: Case, rule: int, name: str, n_steps: int, sections: Sequence[SectionBudget]
-) -> MeasuredBudget:
+def _of_rule(by: _Judged, n_steps: int, sections: Sequence[SectionBudget]) -> MeasuredBudget:
     proven, expected = np.full(n_steps, np.inf), np.full(n_steps, np.nan)
     between = None if any(s.between is None for s in sections) else np.full(n_steps, np.inf)
     there = np.full(n_steps, np.nan)
@@ -124,6 +141,5 @@ def _of_rule(
             covered = slice(rows.start, rows.stop if last else rows.stop - 1)
             np.minimum(between[covered], own if last else own[:-1], out=between[covered])
             np.fmin(there[rows], one.expected_between - padding, out=there[rows])
-    limits = rule_limits(case, rule, [one.section for one in sections])
-    budget = RuleBudget(name, limits, proven, expected, between, there)
-    return MeasuredBudget(budget, WorstMoments(name, limits, sections))
+    budget = RuleBudget(by.rule, by.limits, proven, expected, between, there, by.waiver)
+    return MeasuredBudget(budget, WorstMoments(by.rule, by.limits, sections))

@@ -7,7 +7,7 @@ sentence a rule. Not for: working out what tolerances leave (`clearance.budget`)
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from clearance.findings.finding import (
     Finding,
     FindingName,
 )
-from clearance.findings.judgement import Judgement, WaiverUse
+from clearance.findings.judgement import Judgement
 from clearance.findings.of_rule import code_of, fields_at
 from clearance.record.budget import RuleBudget
 from clearance.record.record import Record
@@ -28,25 +28,50 @@ from clearance.record.status import STATUSES, Status
 from clearance.record.wording import mm, of_rule
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
+from clearance.world.waiver import Waiver
 
 NOT_WORKED_OUT = "the remaining clearance with tolerances was not computed"
 
 
-def of_budget(session: Session, judgement: Judgement) -> tuple[Finding, ...]:
+def judged_budgets(session: Session, judgement: Judgement) -> tuple[RuleBudget, ...]:
+    """What the tolerances leave of the pairs of each rule that are not waived, then of those of each waiver that
+    the run needs and keeps to, against its level.
+    """
+    if session.record.budget is None:
+        return ()
+    if judgement.is_rest is None:
+        return session.record.budget
+    waived = (
+        one
+        for use in judgement.covering
+        if use.is_of is not None
+        for one in session.budget_of_pairs(use.is_of, use.waiver)
+    )
+    return (*session.budget_of_pairs(judgement.is_rest), *waived)
+
+
+def of_budget(
+    session: Session, judgement: Judgement, budgets: Sequence[RuleBudget]
+) -> tuple[Finding, ...]:
     """A finding for each rule that is kept as measured, and is not proven to be with the tolerances; with waivers,
     one for each of them too whose level is not.
+
+    Args:
+        budgets: those of `judged_budgets`.
     """
     if session.record.case.tolerance is None:
         return ()
-    return (*_of_rules(session, judgement), *_of_waivers(session, judgement))
+    return (*_of_rules(session, judgement, budgets), *_of_waivers(session, budgets))
 
 
-def _of_rules(session: Session, judgement: Judgement) -> Iterator[Finding]:
+def _of_rules(
+    session: Session, judgement: Judgement, budgets: Sequence[RuleBudget]
+) -> Iterator[Finding]:
     record = session.record
     broken = {
         one.name for one in judgement.judging if code_of(one) >= STATUSES.index(Status.VIOLATED)
     }
-    known = {one.rule: one for one in _not_waived(session, judgement)}
+    known = {one.rule: one for one in budgets if one.waiver is None}
     for rule in judgement.rest:
         if rule.name in broken:
             continue
@@ -56,31 +81,19 @@ def _of_rules(session: Session, judgement: Judgement) -> Iterator[Finding]:
             yield _not_kept(session, _named(record, rule.name, rule.limits), known[rule.name])
 
 
-def _not_waived(session: Session, judgement: Judgement) -> tuple[RuleBudget, ...]:
-    """What the tolerances leave of the pairs that are not waived."""
-    if judgement.is_rest is None or session.record.budget is None:
-        return session.record.budget or ()
-    return session.budget_of_pairs(judgement.is_rest)
+def _of_waivers(session: Session, budgets: Sequence[RuleBudget]) -> Iterator[Finding]:
+    for one in budgets:
+        if one.waiver is not None and not one.keeps:
+            yield _not_kept(session, _of_waiver(session.record, one.waiver, one), one)
 
 
-def _of_waivers(session: Session, judgement: Judgement) -> Iterator[Finding]:
-    for use in judgement.covering:
-        if session.record.budget is not None and use.is_of is not None:
-            for one in session.budget_of_pairs(use.is_of):
-                if one.limits.below(one.least, use.waiver.at_least) or one.least <= 0.0:
-                    yield _not_kept(session, _of_waiver(session.record, use, one), one)
-
-
-def _of_waiver(record: Record, use: WaiverUse, one: RuleBudget) -> Finding:
+def _of_waiver(record: Record, waiver: Waiver, one: RuleBudget) -> Finding:
     """A finding of the pairs of a waiver, under the patterns that it is of."""
-    a, b = use.waiver.between
+    a, b = waiver.between
     named = _named(record, one.rule, one.limits)
     name = FindingName(record.case.name, WAIVED_TOLERANCES, one.rule, (a, b))
-    text = f"{use.waiver} allows {use.waiver.at_least * 1000:g} mm or more"
-    level = use.waiver.at_least
-    return replace(
-        named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=text, fail=level
-    )
+    text = f"{waiver} allows {waiver.at_least * 1000:g} mm or more"
+    return replace(named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=text)
 
 
 def _named(record: Record, rule: str, limits: Limits) -> Finding:

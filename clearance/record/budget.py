@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.record.moment import Moment
 from clearance.world.case import Limits
+from clearance.world.waiver import Waiver
 
 GREATEST = {"rad": 0.02, "m": 0.05, "s": 1.0}
 """Of no single tolerance is more looked for, unless more is given."""
@@ -67,7 +68,7 @@ class RuleBudget:
     """What the budget leaves to the pairs that one rule judges.
 
     Attributes:
-        rule: its name. limits: its levels.
+        rule: its name. limits: its levels. waiver: the one of all these pairs, with its level as fail limit.
         proven: (n,) [m] lower bound of the clearance of each step, less padding, whatever the errors are.
         expected: (n,) [m] estimate: nominal less `coverage` standard deviations, but no less than `proven`; NaN
             where it is not worked out.
@@ -82,6 +83,7 @@ class RuleBudget:
     expected: np.ndarray
     between: np.ndarray | None
     expected_between: np.ndarray | None = None
+    waiver: Waiver | None = None
 
     @cached_property
     def least(self) -> float:

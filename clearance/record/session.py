@@ -13,6 +13,7 @@ from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import NearRows, RuleAnswer
 from clearance.record.sensitivity import Sensitivity
+from clearance.world.waiver import Waiver
 
 PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 """Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
@@ -61,8 +62,12 @@ class Session(Protocol):
             need: as of the run if not given; else proven too. levels: [m] to be decided beside the limits.
         """
 
-    def budget_of_pairs(self, is_meant: PairTest) -> tuple[RuleBudget, ...]:
-        """What tolerances leave to the pairs that are meant; empty without tolerances."""
+    def budget_of_pairs(
+        self, is_meant: PairTest, waiver: Waiver | None = None
+    ) -> tuple[RuleBudget, ...]:
+        """What tolerances leave to the pairs that are meant, against their waiver if they have one; empty without
+        tolerances.
+        """
 
     def least_left(self, budget: RuleBudget) -> Sequence[BudgetMoment]:
         """The moments at which tolerances leave least to a rule, the worst first."""

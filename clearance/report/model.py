@@ -15,10 +15,10 @@ from clearance.findings.comparison import Comparison
 from clearance.findings.finding import Finding
 from clearance.findings.findings_file import FindingList, finding_list_of
 from clearance.findings.judgement import Judgement, judgement_of
-from clearance.findings.of_budget import of_budget
+from clearance.findings.of_budget import judged_budgets, of_budget
 from clearance.findings.of_record import findings_of
 from clearance.findings.verdict import Verdict, verdict_of
-from clearance.record.budget import BudgetMoment
+from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.moment import Moment
 from clearance.record.record import Record
 from clearance.record.sensitivity import Sensitivity
@@ -44,7 +44,12 @@ class ReportModel:
     @cached_property
     def of_tolerances(self) -> tuple[Finding, ...]:
         """The limits that are not proven with the case's tolerances."""
-        return of_budget(self.session, self.judgement)
+        return of_budget(self.session, self.judgement, self.budgets)
+
+    @cached_property
+    def budgets(self) -> tuple[RuleBudget, ...]:
+        """What tolerances leave, of pairs with one limit each: those of a rule, and apart those of a waiver."""
+        return judged_budgets(self.session, self.judgement)
 
     @cached_property
     def verdict(self) -> Verdict:
@@ -74,12 +79,12 @@ class ReportModel:
         return {rule.name: self.session.worst_among([rule]) for rule in self.record.rules}
 
     @cached_property
-    def least_left(self) -> dict[str, list[BudgetMoment]]:
-        """By rule, the moments at which tolerances leave least, with what each error takes."""
+    def least_left(self) -> dict[RuleBudget, list[BudgetMoment]]:
+        """By each of `budgets`, the moments at which tolerances leave least, with what each error takes."""
         session = self.session
         return {
-            one.rule: [session.error_sources(one, i) for i in range(len(session.least_left(one)))]
-            for one in self.record.budget or ()
+            one: [session.error_sources(one, i) for i in range(len(session.least_left(one)))]
+            for one in self.budgets
         }
 
 

@@ -113,7 +113,7 @@ def write(
             write_parquet(pair_batches(record, measured), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         if record.budget is not None:
-            write_csv(lambda: [budget_table(record, model.least_left)], place / BUDGET)
+            write_csv(lambda: [budget_table(model.least_left)], place / BUDGET)
         drawn.replay.save(place / FILE_NAME)
         for name, text in texts.items():
             (place / name).write_text(text, encoding="utf-8")

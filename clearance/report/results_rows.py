@@ -305,9 +305,10 @@ class ErrorMoment(Keys):
 
 
 class RuleLeft(Keys):
-    """What tolerances leave of a rule [m]."""
+    """What tolerances leave of a rule [m]; of the pairs of a waiver apart, with its level as `fail`."""
 
     rule: str
+    waived: tuple[str, str] | None
     fail: float
     warn: float
     keeps: bool

@@ -128,14 +128,9 @@ BUDGET_COLUMNS = {
 """Types in pyarrow. A frame has two tolerances, an offset [m] and an angle [rad]; all else has one."""
 
 
-def budget_table(record: Record, worst_of: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
-    """The table of a record with tolerances; `worst_of` as in `ReportModel.least_left`."""
-    rows = [
-        row
-        for one in record.budget or ()
-        for worst in worst_of[one.rule]
-        for row in _rows(one, worst)
-    ]
+def budget_table(least_left: Mapping[RuleBudget, Sequence[BudgetMoment]]) -> pa.Table:
+    """The table of a run with tolerances; `least_left` as in `ReportModel`."""
+    rows = [row for one, moments in least_left.items() for at in moments for row in _rows(one, at)]
     schema = [(name, pa.type_for_alias(kind)) for name, kind in BUDGET_COLUMNS.items()]
     return pa.Table.from_pylist(rows, schema=pa.schema(schema))
 

@@ -20,6 +20,7 @@ from clearance.simulate.session import MeasuringSession
 
 if TYPE_CHECKING:
     from clearance.budget.answer import MeasuredBudget
+    from clearance.world.waiver import Waiver
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +58,19 @@ class RunSession(MeasuringSession):
             return ()
         return self.answers(judged(some, found, self.plan.question.case, self.plan.motions).rules)
 
-    def budget_of_pairs(self, is_meant: PairTest) -> tuple[RuleBudget, ...]:
-        """What tolerances leave to the pairs that are meant; empty without tolerances."""
+    def budget_of_pairs(
+        self, is_meant: PairTest, waiver: Waiver | None = None
+    ) -> tuple[RuleBudget, ...]:
+        """What tolerances leave to the pairs that are meant, against their waiver if they have one; empty without
+        tolerances.
+        """
         some, found = answers_of_pairs(self.plan, is_meant)
         if not found or not self.budgets:
             return ()
         from clearance.budget.answer import budget_answers
 
         case = self.plan.question.case
-        own = budget_answers(case, some, found, DEFAULT_RESOURCES)
+        own = budget_answers(case, some, found, DEFAULT_RESOURCES, waiver)
         self._budget_of.update({one.remaining: one for one in own})
         return tuple(one.remaining for one in own)
 

@@ -9,6 +9,7 @@ import clearance as cl
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
+from tests.findings.test_verdict import printed
 from tests.report.made import write_junit
 
 GATES = {"left": (-0.5, 0.003), "right": (0.5, 0.008)}
@@ -56,3 +57,18 @@ def test_kept_with_tolerances(tmp_path):
     table = run.steps
     assert {"proven", "expected", "proven_between"} <= set(table.column_names)
     assert len(set(table.column_names)) == len(table.column_names)
+
+
+def test_what_waived_pairs_keep_is_told_against_their_waiver(tmp_path):
+    run = asked(tmp_path, 0.0005)  # 3 mm less 0.5 mm, waived to 2 mm; 8 mm less 0.5 mm, of 5 mm
+    rows = run.summary["tolerances"]["rules"]
+    keys = ("waived", "fail", "keeps", "proven")
+    assert [[row[key] for key in keys] for row in rows] == [
+        [None, 0.005, True, pytest.approx(0.0075, abs=1e-4)],
+        [["*", "left"], 0.002, True, pytest.approx(0.0025, abs=1e-4)],
+    ]
+    (base,) = rows[1]["worst"][0]["sources"]
+    assert 0.0009 < base["largest"][0] <= 0.001  # a proof is off by 0.1 mm at most
+    lines = printed(run)
+    assert any("keeps the 2 mm of its waiver, others as given: base of" in one for one in lines)
+    assert not any("not enough" in one for one in lines)

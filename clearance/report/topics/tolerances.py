@@ -106,7 +106,7 @@ def _lines(model: ReportModel) -> Iterator[str]:
     record, session = model.record, model.session
     if record.budget is None:
         return
-    found = [(one, session.least_left(one)) for one in record.budget]
+    found = [(one, session.least_left(one)) for one in model.budgets]
     known = [(one, moments[0].proven - one.limits.fail) for one, moments in found if moments]
     if known:
         worst = min(known, key=lambda pair: pair[1])[0]
@@ -134,7 +134,10 @@ def _largest_lines(
     record: Record, one: RuleBudget, sources: Sequence[ErrorSource]
 ) -> Iterator[str]:
     """What of some errors would keep the limit, and which alone are not enough."""
-    limit = f"the fail limit of {limit_mm(one.limits.fail)} mm{of_rule(one.rule)}"
+    level = f"{limit_mm(one.limits.fail)} mm"
+    limit = f"the fail limit of {level}{of_rule(one.rule)}"
+    if one.waiver is not None:
+        limit = f"the {level} of its waiver"
     sizes = [(source_text(record, source), largest_text(source)) for source in sources]
     enough = [f"{name} {largest}" for name, largest in sizes if largest]
     others = [name for name, largest in sizes if not largest]
@@ -155,9 +158,7 @@ def data(model: ReportModel) -> dict[str, Any]:
         "unproven_ok": budget.unproven_ok,
         "sources": list(budget.sources),
         "lines": list(tolerance_lines(record)),
-        "rules": [
-            _rule_row(record, one, model.least_left[one.rule]) for one in record.budget or ()
-        ],
+        "rules": [_rule_row(record, one, moments) for one, moments in model.least_left.items()],
         "verdict": model.verdict.tolerances,
     }
     return {"tolerances": row}
@@ -166,6 +167,7 @@ def data(model: ReportModel) -> dict[str, Any]:
 def _rule_row(record: Record, one: RuleBudget, worst: Sequence[BudgetMoment]) -> dict[str, Any]:
     return {
         "rule": one.rule,
+        "waived": None if one.waiver is None else list(one.waiver.between),
         "fail": one.limits.fail,
         "warn": one.limits.warn,
         "keeps": one.keeps,
@@ -306,7 +308,9 @@ def _source_row(i: int, source: dict[str, Any]) -> Row:
 
 def _rule(rule: dict[str, Any]) -> Row:
     cells: list[Content | Cell] = [
-        name_shown(rule["rule"]),
+        name_shown(rule["rule"])
+        if rule["waived"] is None
+        else f"waiver {' - '.join(rule['waived'])}",
         number(limit_mm(rule["fail"])),
         number(mm(rule["proven"])),
         number("" if rule["expected"] is None else mm(rule["expected"])),
