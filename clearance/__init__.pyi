@@ -21,8 +21,7 @@ from .planar.minimum import minimum_distance
 from .profiles.fit import Fit, fit
 from .profiles.profile import Profile
 from .profiles.sweep import swept_profile
-from .query.common_point import common_point
-from .query.common_point_paper import common_point_paper
+from .query.common_point import common_point, common_point_paper
 from .query.contact import Contact, contact
 from .query.distance import distance, polygon_distance, polygon_distances
 from .query.intersection import Intersection, intersect

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
-from typing import Protocol
 
 Progress = Callable[[int, int], None]
 """Called with how many steps are done, and how many there are."""
@@ -16,16 +15,6 @@ EVERY = 10.0
 
 _doing: list[Callable[[], str]] = []
 """What is being done, the innermost part last."""
-
-
-class _End(Protocol):
-    """The end of some work, as `threading.Event`."""
-
-    def wait(self, timeout: float) -> bool:
-        """True if it is reached within so many seconds."""
-
-    def set(self) -> None:
-        """Marks it as reached."""
 
 
 @contextmanager
@@ -39,17 +28,17 @@ def doing(line: Callable[[], str]) -> Iterator[None]:
 
 
 @contextmanager
-def never_silent(line: Callable[[], str], end: _End | None = None) -> Iterator[None]:
+def never_silent(line: Callable[[], str]) -> Iterator[None]:
     """Writes the innermost line to stderr every `EVERY` seconds until the block ends, with the time so far.
 
     Args:
-        line: of the whole. end: set when the block ends.
+        line: of the whole.
     """
     with doing(line):
         if len(_doing) > 1:  # somebody writes already
             yield
             return
-        end = Event() if end is None else end
+        end = Event()
         thread = Thread(target=_write_lines, args=(end,), daemon=True)
         thread.start()
         try:
@@ -59,7 +48,7 @@ def never_silent(line: Callable[[], str], end: _End | None = None) -> Iterator[N
             thread.join()
 
 
-def _write_lines(end: _End) -> None:
+def _write_lines(end: Event) -> None:
     n = 0
     while not end.wait(EVERY):
         n += 1

@@ -44,3 +44,10 @@ class CountedEnd:
     def set(self) -> None:
         """The work is done."""
         self._ended.set()
+
+
+def counted_end(monkeypatch, n: int) -> CountedEnd:
+    """The end of all work that `clearance.progress` waits for."""
+    end = CountedEnd(n)
+    monkeypatch.setattr("clearance.progress.Event", lambda: end)
+    return end

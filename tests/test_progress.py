@@ -7,13 +7,13 @@ import pytest
 import clearance as cl
 from clearance.cli import progress as shown
 from clearance.progress import doing, never_silent
-from tests.counted_end import CountedEnd
+from tests.counted_end import counted_end
 
 
-def test_the_innermost_line_is_written_with_the_time_so_far(capsys):
-    end = CountedEnd(3)
+def test_the_innermost_line_is_written_with_the_time_so_far(monkeypatch, capsys):
+    end = counted_end(monkeypatch, 3)
     parts = iter(["reading", "", "measuring: 5 of 9"])
-    with never_silent(lambda: "check", end), doing(lambda: next(parts)):
+    with never_silent(lambda: "check"), doing(lambda: next(parts)):
         end.pass_all()
     assert capsys.readouterr().err.splitlines() == [
         "reading, 10 s so far",
@@ -21,18 +21,18 @@ def test_the_innermost_line_is_written_with_the_time_so_far(capsys):
     ]
 
 
-def test_a_part_that_shows_nothing_itself_is_named_by_the_whole(capsys):
-    end = CountedEnd(1)
-    with never_silent(lambda: "gain", end), never_silent(lambda: "a Checker"):
+def test_a_part_that_shows_nothing_itself_is_named_by_the_whole(monkeypatch, capsys):
+    end = counted_end(monkeypatch, 1)
+    with never_silent(lambda: "gain"), never_silent(lambda: "a Checker"):
         with doing(lambda: "searching"):
             pass
         end.pass_all()
     assert capsys.readouterr().err == "a Checker, 10 s so far\n"
 
 
-def test_passes_are_told_apart_by_their_counting(capsys):
-    end = CountedEnd(1)
-    with never_silent(lambda: "check", end):
+def test_passes_are_told_apart_by_their_counting(monkeypatch, capsys):
+    end = counted_end(monkeypatch, 1)
+    with never_silent(lambda: "check"):
         with shown.shown_progress(False, ["measuring", "certifying"]) as progress:
             for pair in ((1, 8), (8, 8), (2, 7)):
                 progress(*pair)
@@ -57,8 +57,7 @@ def test_commands_are_within_it(name, monkeypatch, capsys):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("clearance.case.case_file.load_case", read)
-    end = CountedEnd(2)
-    monkeypatch.setattr("clearance.progress.Event", lambda: end)
+    end = counted_end(monkeypatch, 2)
     asked = COMMANDS[name]
     assert run(asked) == ExitCode.INTERRUPTED
     lines = capsys.readouterr().err.splitlines()
@@ -73,8 +72,7 @@ def test_commands_are_within_it(name, monkeypatch, capsys):
 
 
 def test_a_checker_is_within_it(monkeypatch, capsys):
-    end = CountedEnd(1)
-    monkeypatch.setattr("clearance.progress.Event", lambda: end)
+    end = counted_end(monkeypatch, 1)
     monkeypatch.setattr(
         "clearance.simulate.measure.checker.AskedPositions", lambda *_: sys.exit(end.pass_all())
     )

@@ -182,7 +182,7 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
         if is_zip(file):
             files = InputFiles(file.parent)
             files.unread(file)
-            case = case.with_remarks(sources=files.sources)
+            case = replace(case, sources=files.sources)
         return ReadItem(case, case.sources)
     cell, since = _cell(item.file, batch)
     reading = TrajectoryOptions.model_validate(json.loads(given.reading))

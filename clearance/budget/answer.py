@@ -9,14 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.budget.expected import expected_between, expected_of_steps
-from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
-from clearance.budget.section_budget import SectionBudget
+from clearance.budget.proven import PairsWithErrors, SectionBudget, proven_between, proven_of_steps
 from clearance.budget.worst import WorstMoments
 from clearance.errors import BadTolerance
 from clearance.record.budget import RuleBudget
 from clearance.simulate.measure.resources import Resources
-from clearance.simulate.measure.section_answer import SectionAnswer
-from clearance.simulate.measure.sections import SectionPlan, rule_limits
+from clearance.simulate.measure.sections import SectionAnswer, SectionPlan, rule_limits
 from clearance.world.budget import Budget
 from clearance.world.case import Case, Limits
 from clearance.world.waiver import Waiver

@@ -17,7 +17,7 @@ from clearance.record.measurement import Measurement
 from clearance.record.rows.blocks import blocks
 from clearance.world.budget import Budget
 from clearance.world.case import Case
-from clearance.world.cubic import Cubics, cubics_of, position_on
+from clearance.world.cubic import values_along
 from clearance.world.forest import Forest, forest_of, joined_positions
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -104,12 +104,10 @@ def clock_rates(
     ]
     if not owners:
         return {}
-    forest, whole = forest_of(case), slice(0, motions[0].n_steps)
-    samples = joined_positions(case, motions, whole)
     here, before, after = (
-        _at(motions, samples, times + shift) for shift in (0.0, -A_MOMENT, A_MOMENT)
+        _at(case, motions, times + shift) for shift in (0.0, -A_MOMENT, A_MOMENT)
     )
-    return {name: _rate(forest, here, before, after, own) for name, own in owners}
+    return {name: _rate(forest_of(case), here, before, after, own) for name, own in owners}
 
 
 def _rate(
@@ -123,20 +121,12 @@ def _rate(
     return (ends[1] - ends[0]) / (2.0 * A_MOMENT)
 
 
-def _at(motions: Sequence[Motion], samples: np.ndarray, times: np.ndarray) -> np.ndarray:
+def _at(case: Case, motions: Sequence[Motion], times: np.ndarray) -> np.ndarray:
     """(n, columns) the positions at some times; before and after the run its first and last."""
     knots = motions[0].times
-    found = np.column_stack([np.interp(times, knots, column) for column in samples.T])
-    first = 0
-    for motion in motions:
-        own = slice(first, first + motion.positions.shape[1])
-        first = own.stop
-        if motion.velocities is not None and motion.n_steps > 1:
-            place = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
-            share = np.clip((times - knots[place]) / np.diff(knots)[place], 0.0, 1.0)[:, None]
-            cubics = cubics_of(knots, motion.positions, motion.velocities)
-            found[:, own] = position_on(Cubics(*(part[place] for part in cubics)), share)
-    return found
+    found = [values_along(knots, one.positions, one.velocities, times) for one in motions]
+    tables = [one.moves.columns for one in case.obstacles if one.moves is not None]
+    return np.column_stack([*found, *(values_along(knots, table, None, times) for table in tables)])
 
 
 def _columns(case: Case) -> list[tuple[str, int, int]]:

@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.budget.proven import PairsWithErrors, PathMoments
-from clearance.budget.section_budget import SectionBudget
+from clearance.budget.proven import PairsWithErrors, PathMoments, SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
 from clearance.kernels.search.proof import FINEST_GAP
 from clearance.record.budget import most_searched

@@ -27,6 +27,7 @@ from clearance.record.measurement import Measurement
 from clearance.simulate.measure.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.measure.layout import PairsInMotion, positions_at
 from clearance.simulate.measure.parts import in_order, parts
+from clearance.simulate.measure.sections import Section, SectionAnswer
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions
 
@@ -269,3 +270,27 @@ def _writable(numbers: np.ndarray) -> np.ndarray:
     if flags.c_contiguous and flags.writeable:
         return numbers
     return np.require(numbers, requirements=["C", "W"])
+
+
+@dataclass(frozen=True, eq=False)
+class SectionBudget:
+    """The distances that a budget leaves in a section, without padding; pairs and steps are the section's own.
+
+    Attributes:
+        answer: as measured. pairs: with their errors.
+        steps: proven at each step. between: proven from each step to the next; None without a certificate.
+        expected: (n,) [m]. expected_between: of the least moment after each, NaN where the steps are nearer; None
+            like `between`.
+    """
+
+    answer: SectionAnswer
+    pairs: PairsWithErrors
+    steps: BudgetRows
+    between: BudgetRows | None
+    expected: np.ndarray
+    expected_between: np.ndarray | None
+
+    @property
+    def section(self) -> Section:
+        """The section."""
+        return self.answer.section

@@ -20,6 +20,7 @@ from clearance.budget.errors_of import (
     surface_of,
 )
 from clearance.kernels.motion.kinematics import NO_PARENT
+from clearance.simulate.answers.point_motion import carrying_links
 from clearance.world.body import Obstacle
 from clearance.world.budget import (
     Budget,
@@ -186,13 +187,7 @@ Effects = Iterator[tuple[SourceKey, int, np.ndarray]]
 
 def _common(case: Case, pair: Pair) -> set[int]:
     """The links that both bodies of a pair hang on: their errors move both alike."""
-    above = [
-        set()
-        if (frame := body.frame_in(case)) == WORLD
-        else set(carried_by(forest_of(case), frame))
-        for body in pair
-    ]
-    return above[0] & above[1]
+    return carrying_links(case, pair.a) & carrying_links(case, pair.b)
 
 
 def _of_body(case: Case, budget: Budget, side: _Side, common: set[int]) -> Effects:

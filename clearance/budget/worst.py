@@ -11,8 +11,7 @@ import numpy as np
 from clearance.budget.errors_of import NOW
 from clearance.budget.expected import clock_rates, deviations, variance_of
 from clearance.budget.largest import ToleranceSearch
-from clearance.budget.proven import PairsWithErrors, PathMoments
-from clearance.budget.section_budget import SectionBudget
+from clearance.budget.proven import PairsWithErrors, PathMoments, SectionBudget
 from clearance.budget.sources import (
     Slope,
     SourceKey,

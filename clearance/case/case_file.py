@@ -239,7 +239,7 @@ def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     on_motion = notes_on_motion(case, start, end)
     on_robots = [*read.notes, *(note for robot in read.motion_notes for note in robot)]
     every_note = (*notes, *dict.fromkeys(on_robots), *attached_notes, *read.scene_notes, *on_motion)
-    return case.with_remarks(sources=tuple(sources), notes=every_note)
+    return replace(case, sources=tuple(sources), notes=every_note)
 
 
 def _run_through(case: Case) -> Timeline:

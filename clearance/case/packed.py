@@ -113,9 +113,8 @@ class Unpacked:
         for one in case.sources:
             if one.is_file and not Path(one.read_from).is_relative_to(self.folder):
                 raise BadPack(f"{one.path!r} is read from outside", valid=REMEDY)
-        return case.with_remarks(
-            sources=tuple(replace(one, read_from=str(self.path)) for one in case.sources)
-        )
+        sources = tuple(replace(one, read_from=str(self.path)) for one in case.sources)
+        return replace(case, sources=sources)
 
 
 def is_zip(path: Path) -> bool:

@@ -24,10 +24,9 @@ from clearance.formats.robot.srdf import (
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.case import states_of
 from clearance.formats.schema.timed import TrajectoryFile
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed
-from clearance.world.robot import Robot
-from clearance.world.start import started
+from clearance.world.quintic import started
+from clearance.world.robot import Robot, require_moving_joints
 from clearance.world.trajectory import Trajectory
 
 

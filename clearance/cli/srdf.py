@@ -66,7 +66,7 @@ def audit(
     from clearance.formats.robot.srdf import load_srdf
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary
     from clearance.report.summary import json_text
-    from clearance.simulate.answers.audit.srdf import audit as audited
+    from clearance.simulate.answers.audit.pair import audit as audited
 
     robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
     matrix = load_srdf(srdf_file, robot)
@@ -105,7 +105,7 @@ def make(
     from clearance.errors import unwritable
     from clearance.files import refuse_inputs, require_file_place
     from clearance.report.srdf import proposal_headline, proposed_srdf
-    from clearance.simulate.answers.audit.srdf import propose
+    from clearance.simulate.answers.audit.pair import propose
 
     require_file_place(out)
     if out is not None:

@@ -18,7 +18,7 @@ from clearance.crosscheck.settle import off_body, peer_is_wrong
 from clearance.record.record import CrossCheck, Disagreement, Samples
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.steps import RunAnswer, StepColumns
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.tolerance import CROSS_CHECK
 from clearance.world.pairs import Pair
 
@@ -26,34 +26,20 @@ GIVE_UP = 64
 """Steps that exact arithmetic examines, or does not settle, after which it examines no others."""
 
 
-def cross_check(
-    record: Samples,
-    progress: Callable[[int, int], None] | None = None,
-    measured: Sequence[Pair] | None = None,
-) -> CrossCheck:
-    """The comparison of every step of a record with FCL on the same bodies.
+def compared(
+    record: Samples, pairs: Sequence[Pair], progress: Callable[[int, int], None] | None = None
+) -> tuple[CrossCheck, np.ndarray]:
+    """The comparison of every step of a record with FCL on the same bodies, and the steps that exact arithmetic
+    settles for us.
 
     Args:
-        record: what we measured.
+        record: what we measured. pairs: those that it is of.
         progress: called with (steps done, all steps) now and then.
-        measured: the pairs, where they are not all that the case measures.
 
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
-    return compared(record, progress, measured)[0]
-
-
-def compared(
-    record: Samples,
-    progress: Callable[[int, int], None] | None = None,
-    measured: Sequence[Pair] | None = None,
-) -> tuple[CrossCheck, np.ndarray]:
-    """The comparison, and the steps at which exact arithmetic settles it for us.
-
-    Args, Raises: as `cross_check`.
-    """
-    run = PeerRun(record, measured)
+    run = PeerRun(record, pairs)
     answers = run.measure(progress)
     tolerance = CROSS_CHECK * answers.diagonal + run.point_size
     differences = np.abs(record.clearances - answers.clearances)
@@ -193,23 +179,22 @@ class _Witnesses:
         )
 
 
-def cross_check_sections(
+def cross_check(
     answers: Sequence[SectionAnswer], progress: Callable[[int, int], None] | None = None
 ) -> CrossCheck:
     """The comparison of every step of all sections with FCL; steps are those of the run.
 
-    Sections whose clocks are not tied are omitted: FCL measures one time only.
+    The clocks of each section are tied: FCL measures one time only.
 
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
-    tied = [answer for answer in answers if answer.section.tied]
-    found = [_of_section(answer, progress) for answer in tied]
+    found = [_of_section(answer, progress) for answer in answers]
     checks = [check for check, _ in found]
     worst = max(checks, key=lambda check: check.greatest_difference)
     return replace(
         worst,
-        n_steps=len({step for answer in tied for step in _steps_of(answer)}),
+        n_steps=len({step for answer in answers for step in _steps_of(answer)}),
         worst_witness_error=max(check.worst_witness_error for check in checks),
         disagreements=tuple(row for check in checks for row in check.disagreements),
         n_settled=len({step for _, settled in found for step in settled}),
@@ -231,7 +216,7 @@ def _of_section(
     judged = RunAnswer((alone,), answer.found, None, answer.found, None)
     case, motions = section.phase.case, section.phase.motions
     samples = Samples(case, motions, StepColumns(case, motions, section.pairs, judged), ())
-    found, settled = compared(samples, progress, section.pairs)
+    found, settled = compared(samples, section.pairs, progress)
     rows = tuple(replace(row, step=row.step + first) for row in found.disagreements)
     moved = replace(found, worst_step=found.worst_step + first, disagreements=rows)
     return moved, (settled + first).tolist()

@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.fcl_adapter import PeerBody
-from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
+from clearance.crosscheck.triangles import TriangleSoup, is_inside, triangle_soup
 from clearance.geometry.point_cloud import PointCloud
-from clearance.record.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case
-from clearance.world.pairs import BodyIndex, Pair, measured_pairs
+from clearance.world.pairs import BodyIndex, Pair
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -88,33 +86,18 @@ class Mover:
     side: PeerSide
 
 
-def peer_pairs(
-    record: Samples, measured: Sequence[Pair] | None = None
-) -> tuple[list[Mover], list[PeerPair]]:
-    """The bodies that take part and every pair that the record does not list as unmeasured.
+def peer_pairs(case: Case, measured: Sequence[Pair]) -> tuple[list[Mover], list[PeerPair]]:
+    """The bodies of some pairs of a case, and these pairs.
 
     Links are named as in the record: with their robot's name where there are several.
-
-    Args:
-        measured: the pairs, where they are not all that the case measures.
     """
-    case = record.case
-    omitted = {(entry.link, entry.obstacle) for entry in record.unmeasured}
-    places: dict[BodyIndex, int] = {}
-    movers: list[Mover] = []
-
-    def place_of(body: BodyIndex) -> int:
-        if body not in places:
-            places[body] = len(movers)
-            movers.append(Mover(body, _side_of(case, body)))
-        return places[body]
-
-    pairs: list[PeerPair] = []
-    for pair in measured_pairs(case)[0] if measured is None else measured:
-        if (pair.a.name_in(case), pair.b.name_in(case)) in omitted:
-            continue
-        a, b = place_of(pair.a), place_of(pair.b)
-        pairs.append(PeerPair(a, movers[a].side, b, movers[b].side))
+    bodies = dict.fromkeys(body for pair in measured for body in pair)
+    movers = [Mover(body, _side_of(case, body)) for body in bodies]
+    place = {body: i for i, body in enumerate(bodies)}
+    pairs = [
+        PeerPair(place[a], movers[place[a]].side, place[b], movers[place[b]].side)
+        for a, b in measured
+    ]
     return movers, pairs
 
 

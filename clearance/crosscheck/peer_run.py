@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
+from clearance.crosscheck.triangles import is_inside
 from clearance.record.record import Samples
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
@@ -46,9 +46,9 @@ class PeerAnswers:
 class PeerRun:
     """The bodies of a record in FCL, and the measuring of all its steps."""
 
-    def __init__(self, record: Samples, measured: Sequence[Pair] | None = None) -> None:
+    def __init__(self, record: Samples, measured: Sequence[Pair]) -> None:
         self.record = record
-        self.movers, self.pairs = peer_pairs(record, measured)
+        self.movers, self.pairs = peer_pairs(record.case, measured)
         self._i_movers = np.array([pair.i_mover for pair in self.pairs])
         self._i_others = np.array([pair.i_other for pair in self.pairs])
         self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)

@@ -30,11 +30,10 @@ from clearance.formats.schema.timed import Choice, PoseFile, TrajectoryFile
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import counted
 from clearance.world.joint_positions import turns
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed
 from clearance.world.pose_table import PoseTable, require_samples_to_loop
 from clearance.world.reach import require_few_turns
-from clearance.world.robot import Robot
+from clearance.world.robot import Robot, require_moving_joints
 from clearance.world.trajectory import AS_WRITTEN, SHORTEST
 from clearance.world.wrap import long_steps, meant, wrapping_joints
 

@@ -176,7 +176,7 @@ def _most(offsets: JointOffsets, approach: Approach, row: int, keep: ToolKeep, l
     tool = forest.robot_starts[offsets.i_robot] + link
     if frame == WORLD or forest.rigid_part(frame) != forest.rigid_part(tool):
         return float("inf")
-    corners = np.stack(np.meshgrid(*body.shape_in(case).bounds.T), axis=-1).reshape(-1, 3)
+    corners = body.shape_in(case).box_corners
     pose = body.poses_in(case, approach.poses[row : row + 1])[0]
     world = corners @ pose[:3, :3].T + pose[:3, 3]
     arms = np.linalg.norm(world - approach.poses[row, tool, :3, 3], axis=1)

@@ -17,6 +17,7 @@ from clearance.errors import BadPolygon, ClearanceError, Unavailable
 from clearance.extras import install
 from clearance.geometry import boolean, decompose
 from clearance.geometry.envelope import envelope, is_clearly_concave
+from clearance.geometry.nesting import is_wound_round
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.tolerance import TESSELLATION
@@ -305,9 +306,7 @@ def _union(parts: list[Polytope]) -> Any:
 
 def solid_of(part: Polytope) -> Any:
     """manifold3d's solid of a convex part."""
-    rings = np.split(part.face_vertices, part.face_starts[1:-1])
-    fans = [(r[0], r[i], r[i + 1]) for r in rings for i in range(1, len(r) - 1)]
-    return boolean.solid(part.vertices, np.array(fans))
+    return boolean.solid(part.vertices, part.triangles())
 
 
 def _depth_in(part: Polytope, triangles: np.ndarray) -> float:
@@ -345,17 +344,4 @@ def _proves(part: Polytope, stands_out: float, surface: np.ndarray) -> bool:
     body's surface, where the depth is at most `stands_out`; if the centroid is deeper than that, the point is
     not.
     """
-    return bool(part.face_widths.min() > stands_out) and _inside(part.centroid, surface)
-
-
-def _inside(point: np.ndarray, surface: np.ndarray) -> bool:
-    """True if the winding number of the closed surface (t, 3, 3) about the point is not 0.
-
-    Source: van Oosterom & Strackee (1983), the solid angle of a triangle.
-    """
-    a, b, c = np.moveaxis(surface - point, 1, 0)
-    la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
-    dots = [np.einsum("ij,ij->i", *two) for two in ((a, b), (b, c), (c, a))]
-    below = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
-    turns = 2.0 * np.arctan2(np.einsum("ij,ij->i", a, np.cross(b, c)), below)
-    return bool(abs(turns.sum()) > 2.0 * np.pi)
+    return bool(part.face_widths.min() > stands_out and is_wound_round(surface - part.centroid))

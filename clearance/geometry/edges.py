@@ -37,6 +37,18 @@ def rings_of(starts: np.ndarray) -> Ring:
     return Ring(face, ahead, behind)
 
 
+def fans_of(starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(t, 3) the entries of the triangles that faces are cut into, from the first entry of each; (t,) their faces.
+
+    Args:
+        starts: (m + 1,) where the entries of each face begin.
+    """
+    ring = rings_of(starts)
+    firsts, entries = starts[ring.face], np.arange(len(ring.face))
+    middle = (entries > firsts) & (ring.ahead > entries)
+    return np.stack([firsts, entries, ring.ahead], axis=1)[middle], ring.face[middle]
+
+
 def distinct_vertices(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The different rows of `vertices` and, for each row, which of them it is.
 

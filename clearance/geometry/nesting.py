@@ -167,7 +167,7 @@ def _is_inside(part: _Part, point: np.ndarray) -> bool | None:
     near = ON * np.stack([_size(a) * _size(b), _size(b) * _size(c), _size(c) * _size(a)])
     volume = (a * np.cross(b, c)).sum(axis=1)
     if (np.abs(sides) <= near).any() or (np.abs(volume) <= _size(a) * near[1]).any():
-        return _is_wound_round(part.corners - point)
+        return is_wound_round(part.corners - point)
     ways = np.sign(sides)
     hit = (ways[0] == ways[1]) & (ways[1] == ways[2]) & (np.sign(volume) == ways[0])
     return bool(ways[0][hit].sum() != 0)
@@ -182,7 +182,7 @@ def _size(a: np.ndarray) -> np.ndarray:
     return np.linalg.norm(a, axis=1)
 
 
-def _is_wound_round(corners: np.ndarray) -> bool | None:
+def is_wound_round(corners: np.ndarray) -> bool | None:
     """True if a closed surface (m, 3, 3) encloses the origin; None if the origin is on it.
 
     Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.

@@ -7,6 +7,7 @@ index in range, every face flat and convex. Everything else is computed on first
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +17,7 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.coplanar import merge_coplanar
-from clearance.geometry.edges import rings_of
+from clearance.geometry.edges import fans_of, rings_of
 from clearance.geometry.faces import (
     check_flat_and_convex,
     check_indices,
@@ -198,17 +199,18 @@ class Polyhedron:
 
     @cached_property
     def _fans(self) -> tuple[np.ndarray, np.ndarray]:
-        ring = rings_of(self.face_starts)
-        firsts = self.face_starts[ring.face]
-        entries = np.arange(len(ring.face))
-        middle = (entries > firsts) & (ring.ahead > entries)
-        return np.stack([firsts, entries, ring.ahead], axis=1)[middle], ring.face[middle]
+        return fans_of(self.face_starts)
 
     @cached_property
     def bounds(self) -> np.ndarray:
         """(2, 3) [m] the least and greatest coordinates of the faces in the body frame."""
         used = self.vertices[self.face_vertices]
         return np.array([used.min(axis=0), used.max(axis=0)])
+
+    @property
+    def box_corners(self) -> np.ndarray:
+        """(8, 3) [m] the corners of `bounds`."""
+        return np.array([*itertools.product(*self.bounds.T)])
 
     @cached_property
     def _planes(self) -> Planes:

@@ -8,19 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from clearance.errors import BadPolygon
-from clearance.geometry.edges import rings_of
+from clearance.geometry.edges import fans_of, rings_of, twins
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.polytope_graph import (
-    TrivalentPolytope,
-    trivalent_form,
-    twins,
-    vertex_graph,
-)
 from clearance.geometry.polytope_hull import (
     NotSolid,
     checked_rows,
@@ -30,6 +24,66 @@ from clearance.geometry.polytope_hull import (
 from clearance.kernels.polytope.body import HEAD, LEAD, ROW, PackedBody
 from clearance.kernels.polytope.exits import bound_cells, exit_cells
 from clearance.kernels.polytope.faces import face_areas, ring_moments
+
+
+class TrivalentPolytope(NamedTuple):
+    """A polytope in which each vertex lies on three planes; see `kernels.polytope.cut`.
+
+    Attributes:
+        corner: (t,) which corner each vertex is at. planes, across: (t, 3). mesh: (t, 8) int32, both as the
+            kernels take them.
+    """
+
+    corner: np.ndarray
+    planes: np.ndarray
+    across: np.ndarray
+    mesh: np.ndarray
+
+
+def vertex_graph(
+    face_starts: np.ndarray, face_vertices: np.ndarray, n_vertices: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """(n + 1,) starts and (e,) neighbours of each vertex over the edges."""
+    order = np.argsort(face_vertices, kind="stable")
+    starts = np.searchsorted(face_vertices[order], np.arange(n_vertices + 1))
+    return starts, face_vertices[rings_of(face_starts).ahead][order]
+
+
+def trivalent_form(
+    face_starts: np.ndarray, face_vertices: np.ndarray, twin: np.ndarray, n_vertices: int
+) -> TrivalentPolytope:
+    """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon; in its order."""
+    ring = rings_of(face_starts)
+    before = np.empty_like(ring.ahead)
+    before[ring.ahead] = np.arange(len(before))
+    turn = twin[before]
+    first = np.full(n_vertices, -1)
+    first[face_vertices[::-1]] = np.arange(len(face_vertices))[::-1]
+    i, j = turn[first], turn[turn[first]]
+    vertex, vertices, fans = np.arange(n_vertices), [], []
+    while len(vertex):
+        vertices.append(vertex)
+        fans.append(np.stack([ring.face[first[vertex]], ring.face[i], ring.face[j]], axis=1))
+        i, j = j, turn[j]
+        more = j != first[vertex]
+        vertex, i, j = vertex[more], i[more], j[more]
+    corners = np.concatenate(vertices)
+    near = np.argsort(corners, kind="stable")
+    planes = np.concatenate(fans)[near]
+    across = _across(planes, len(face_starts) - 1)
+    mesh = np.column_stack([across, planes, np.zeros((len(near), 2), dtype=np.int64)])
+    return TrivalentPolytope(corners[near], planes, across, mesh.astype(np.int32))
+
+
+def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:
+    """(t, 3) the other vertex that shares the two planes besides plane k."""
+    a, b = np.roll(planes, -1, axis=1).ravel(), np.roll(planes, -2, axis=1).ravel()
+    order = np.argsort(np.minimum(a, b) * n_faces + np.maximum(a, b), kind="stable").reshape(-1, 2)
+    across = np.empty(planes.size, dtype=np.int64)
+    across[order[:, 0]] = order[:, 1] // 3
+    across[order[:, 1]] = order[:, 0] // 3
+    return across.reshape(-1, 3)
+
 
 FACES_PER_CELL = 0.5
 
@@ -125,12 +179,11 @@ class Polytope:
 
     def polyhedron(self) -> Polyhedron:
         """The same surface as a `Polyhedron`."""
-        triangles = [
-            (ring[0], ring[i], ring[i + 1])
-            for ring in np.split(self.face_vertices, self.face_starts[1:-1])
-            for i in range(1, len(ring) - 1)
-        ]
-        return Polyhedron.from_triangles(self.vertices, np.array(triangles))
+        return Polyhedron.from_triangles(self.vertices, self.triangles())
+
+    def triangles(self) -> np.ndarray:
+        """(t, 3) vertex indices: each face cut from its first vertex, faces in order."""
+        return self.face_vertices[fans_of(self.face_starts)[0]]
 
     @cached_property
     def size(self) -> float:
@@ -197,9 +250,9 @@ class Polytope:
 
     @cached_property
     def _twin(self) -> np.ndarray:
-        twin = twins(self.face_starts, self.face_vertices, len(self.vertices))
-        assert twin is not None, "`hull_faces` gives only faces of which each edge has its reverse"
-        return twin
+        """(e,) of each directed edge the entry of its reverse; `hull_faces` sees to it that each has one."""
+        flat = self.face_vertices
+        return twins(flat, flat[rings_of(self.face_starts).ahead])
 
     @cached_property
     def vertex_graph(self) -> tuple[np.ndarray, np.ndarray]:

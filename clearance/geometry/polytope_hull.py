@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
-from clearance.geometry.polytope_graph import twins
+from clearance.geometry.edges import rings_of, twins
+from clearance.kernels.arithmetic.union_find import joined_labels
 
 
 class NotSolid(BadDimension):
@@ -57,7 +58,7 @@ def hull_faces(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         rings = sorted(_rings(hull, group), key=min)
         starts = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])])
         flat = np.concatenate(rings)
-        if twins(starts, flat, len(points)) is not None:
+        if (twins(flat, flat[rings_of(starts).ahead]) >= 0).all():
             used, flat = np.unique(flat, return_inverse=True)
             return points[used], starts, flat
     raise NotSolid("the hull of the points is thinner than rounding", valid="a thicker body")
@@ -74,16 +75,22 @@ def _qhull(points: np.ndarray):
         ) from None
 
 
+def hull_corners(points: np.ndarray) -> np.ndarray:
+    """(k, 3) those of points (n, 3) that are corners of their hull; all of them where Qhull finds them flat."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return points[ConvexHull(points).vertices]
+    except QhullError:
+        return points
+
+
 def _groups(hull) -> np.ndarray:
     """(t,) the merged face of each triangle: neighbours to which Qhull gives one plane."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     n = len(hull.simplices)
-    row, column = np.repeat(np.arange(n), 3), hull.neighbors.ravel()
+    row, column = np.repeat(np.arange(n), 3), hull.neighbors.ravel().astype(np.int64)
     same = (hull.equations[row] == hull.equations[column]).all(axis=1)
-    graph = coo_array((np.ones(same.sum()), (row[same], column[same])), shape=(n, n))
-    return connected_components(graph, directed=False)[1]
+    return joined_labels(n, row[same], column[same])
 
 
 def _rings(hull, group: np.ndarray) -> list[np.ndarray]:

@@ -19,10 +19,10 @@ from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.surface_cache import cached_surface
-from clearance.geometry.tree_nodes import nodes_over
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.face_planes import face_planes
 from clearance.kernels.mesh.surface import ANYTHING, LISTED, Surface
+from clearance.kernels.mesh.tree_build import build_tree, most_groups
 from clearance.ordered import ascending
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
@@ -61,48 +61,38 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
     return joined
 
 
+_ROWS_OF = {
+    "face_vertices": "vertices", "owned_vertices": "vertices", "owned_edges": "vertices",
+    "probes": "vertices", "roots": "children",
+}  # fmt: skip
+"""Columns of a `Surface` that are rows of another one."""
+
+_STARTS_OF = {
+    "face_starts": "face_vertices", "vertex_starts": "owned_vertices", "edge_starts": "owned_edges",
+    "probe_starts": "probes", "cap_starts": "caps",
+}  # fmt: skip
+"""Columns that say where each item's rows of another one begin, and after the last where they end."""
+
+
 def _join(parts: Sequence[Surface]) -> Surface:
     n_before = {
         name: _offsets([len(getattr(part, name)) for part in parts]) for name in Surface._fields
     }
 
-    def stacked(name: str, shift: str | None = None) -> np.ndarray:
-        shifts = n_before[shift] if shift else None
-        if shifts is None:
-            return np.concatenate([getattr(p, name) for p in parts])
-        return np.concatenate([getattr(p, name) + s for p, s in zip(parts, shifts, strict=True)])
+    def joined(name: str) -> np.ndarray:
+        columns = [getattr(part, name) for part in parts]
+        if name == "children":
+            return _joined_children(parts, n_before[name] // WIDTH, n_before["normals"])
+        if name in _STARTS_OF:
+            items = n_before[_STARTS_OF[name]]
+            rows = [column[:-1] + n for column, n in zip(columns, items, strict=True)]
+            return np.concatenate([*rows, columns[-1][-1:] + items[-1]])
+        if name in _ROWS_OF:
+            shifts = n_before[_ROWS_OF[name]]
+            columns = [column + n for column, n in zip(columns, shifts, strict=True)]
+        return np.concatenate(columns)
 
-    def starts(name: str, items: str) -> np.ndarray:
-        rows = [getattr(p, name)[:-1] + s for p, s in zip(parts, n_before[items], strict=True)]
-        return np.append(np.concatenate(rows), n_before[items][-1] + len(getattr(parts[-1], items)))
-
-    return Surface(
-        vertices=stacked("vertices"),
-        exact=stacked("exact"),
-        face_starts=starts("face_starts", "face_vertices"),
-        face_vertices=stacked("face_vertices", "vertices"),
-        normals=stacked("normals"),
-        blunt=stacked("blunt"),
-        width=stacked("width"),
-        bent=stacked("bent"),
-        corner_normals=stacked("corner_normals"),
-        vertex_starts=starts("vertex_starts", "owned_vertices"),
-        owned_vertices=stacked("owned_vertices", "vertices"),
-        edge_starts=starts("edge_starts", "owned_edges"),
-        owned_edges=stacked("owned_edges", "vertices"),
-        owns=stacked("owns"),
-        centres=stacked("centres"),
-        boxes=stacked("boxes"),
-        cones=stacked("cones"),
-        children=_joined_children(parts, n_before["children"] // WIDTH, n_before["normals"]),
-        roots=stacked("roots", "children"),
-        probe_starts=starts("probe_starts", "probes"),
-        probes=stacked("probes", "vertices"),
-        turns=stacked("turns"),
-        cap_starts=starts("cap_starts", "caps"),
-        caps=stacked("caps"),
-        radii=stacked("radii"),
-    )
+    return Surface(*map(joined, Surface._fields))
 
 
 def _offsets(lengths: Sequence[int]) -> np.ndarray:
@@ -312,3 +302,19 @@ def _with_balls(boxes: np.ndarray, radius: float) -> np.ndarray:
     grown[9:12, :WIDTH] += np.float32(radius * _ROUNDED_UP)
     grown[9:12, :WIDTH] *= np.float32(_ROUNDED_UP)
     return grown
+
+
+def nodes_over(
+    corner_points: np.ndarray, starts: np.ndarray, faces: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`Surface.centres`, `boxes` and `children` of a tree over some `faces` (k,).
+
+    Args:
+        corner_points: (c, 3) [m] of all faces, which begin at `starts` (f + 1,).
+    """
+    most = most_groups(len(faces))
+    centres = np.empty((3 * most, WIDTH))
+    boxes = np.empty((12 * most, WIDTH), dtype=np.float32)
+    children = np.empty((WIDTH * most, 2), dtype=np.int32)
+    n = build_tree(corner_points, starts, faces.copy(), centres, boxes, children)
+    return centres[: 3 * n].copy(), boxes[: 12 * n].copy(), children[: WIDTH * n].copy()

@@ -69,7 +69,7 @@ class PlaneView:
 
     def box(self) -> np.ndarray:
         """(2, 2) [m] a box in the plane that contains the body at all knots."""
-        corners = np.stack(np.meshgrid(*self.shape.bounds.T), axis=-1).reshape(-1, 3)
+        corners = self.shape.box_corners
         seen = self.placed(self.knots.poses, corners)[:, :, :2].reshape(-1, 2)
         return np.stack([seen.min(axis=0), seen.max(axis=0)])
 

@@ -16,6 +16,7 @@ from clearance.errors import BadInput, ClearanceError
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import ConvexParts, convex_parts, hull_drawn_in
+from clearance.geometry.edges import fans_of
 from clearance.geometry.point_cloud import require_surface
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
@@ -403,5 +404,5 @@ def _joined(parts: list[ConvexCorners]) -> ConvexCorners:
 def _mesh_of(shared: Intersection) -> ClosedMesh:
     if shared.relation != "overlap":
         return ClosedMesh.empty()
-    fans = [(r[0], r[i], r[i + 1]) for r in shared.faces for i in range(1, len(r) - 1)]
-    return ClosedMesh(np.asarray(shared.vertices), np.array(fans, dtype=np.int64).reshape(-1, 3))
+    starts = np.cumsum([0, *map(len, shared.faces)])
+    return ClosedMesh(shared.vertices, np.concatenate(shared.faces)[fans_of(starts)[0]])

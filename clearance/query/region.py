@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.edges import rings_of
+from clearance.kernels.arithmetic.union_find import joined_labels
 from clearance.kernels.polytope.faces import ring_moments
 from clearance.query.cutting import Cutting, CuttingTask, cut_whole
 
@@ -95,11 +96,5 @@ def _opened(ring: list[int], on_seam: set[int]) -> list[int] | None:
 
 
 def _least_of_each_cluster(n: int, pairs: np.ndarray) -> np.ndarray:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    labels = connected_components(graph, directed=False)[1]
-    least = np.full(n, n)
-    np.minimum.at(least, labels, np.arange(n))
-    return least[labels]
+    labels = joined_labels(n, *np.ascontiguousarray(pairs.T))
+    return np.unique(labels, return_index=True)[1][labels]

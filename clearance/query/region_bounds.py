@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.arithmetic.union_find import joined_labels
 from clearance.query.retreat import Ray
 
 MOST_WAYS = 16
@@ -41,14 +42,10 @@ def ways_through(region: ClosedMesh) -> list[Ray]:
 
 def thickness(region: ClosedMesh, directions: np.ndarray) -> np.ndarray:
     """(k,) [m] how thick the thickest piece of a region is along each unit direction (k, 3)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n, sides = len(region.vertices), region.triangles[:, [0, 1, 1, 2]].reshape(-1, 2)
-    graph = coo_array((np.ones(len(sides)), (sides[:, 0], sides[:, 1])), shape=(n, n))
-    n_pieces, piece = connected_components(graph, directed=False)
+    sides = region.triangles[:, [0, 1, 1, 2]].reshape(-1, 2)
+    piece = joined_labels(len(region.vertices), *np.ascontiguousarray(sides.T))
     order = np.argsort(piece, kind="stable")
-    starts = np.searchsorted(piece[order], np.arange(n_pieces))
+    starts = np.searchsorted(piece[order], np.arange(piece.max() + 1))
     heights = (region.vertices @ directions.T)[order]
     return (np.maximum.reduceat(heights, starts) - np.minimum.reduceat(heights, starts)).max(axis=0)
 

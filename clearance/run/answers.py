@@ -17,8 +17,7 @@ from clearance.run.question import Question
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.measure.section_answer import SectionAnswer
-from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
+from clearance.simulate.measure.sections import Section, SectionAnswer, SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion

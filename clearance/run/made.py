@@ -21,11 +21,10 @@ from clearance.run.notices import notices_of
 from clearance.run.question import Question
 from clearance.run.session import RunSession
 from clearance.simulate.answers.deepest import WorstMoments
-from clearance.simulate.answers.run_answer import JudgedRun, judged
-from clearance.simulate.answers.steps import cut_throughout, every_pair
+from clearance.simulate.answers.run_answer import JudgedRun, cut_throughout, every_pair, judged
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.simulate.replay.bodies import notes_on_drawing
 from clearance.world.case import Case
 from clearance.world.notice import WRAP, Notice
@@ -104,7 +103,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     run = judged(plan.sections, found, question.case, plan.motions)
     budget = _budget(plan, found, resources)
     samples = _samples(plan, run, budget, resources)
-    peer = _peer(question.case, samples, found, resources) if question.cross_check else None
+    peer = _peer(question.case, found, resources) if question.cross_check else None
     return Answers(
         run,
         samples,
@@ -155,7 +154,7 @@ def _contacts(
     """The pairs in contact and the overlaps asked for; loads what that needs only where there is one."""
     if not any((one.found.clearance[b] <= 0.0).any() for one in found for b in _blocks(one)):
         return None
-    from clearance.simulate.answers.contact.contacts import contacts_of
+    from clearance.simulate.answers.contact.rows import contacts_of
 
     question, pairs, times = plan.question, plan.sections.pairs, plan.motions[0].times
     return contacts_of(question.case, pairs, found, times, question.contact, resources.progress)
@@ -173,18 +172,12 @@ def _profiles(plan: MeasurementPlan) -> tuple[AnsweredProfile, ...]:
     return answer_profiles(plan.question.case, plan.timeline)
 
 
-def _peer(
-    case: Case, samples: Samples, found: Sequence[SectionAnswer], resources: Resources
-) -> CrossCheck | None:
-    """The comparison with FCL; None where nothing is measured but clouds that are too large for it."""
-    from clearance.crosscheck import cross_check, cross_check_sections, is_too_large
+def _peer(case: Case, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck | None:
+    """The comparison with FCL; None where all that is measured is clouds too large for it, or clocks not tied."""
+    from clearance.crosscheck import cross_check
 
-    if any(is_too_large(case, pair) for one in found for pair in one.section.pairs):
-        parts = [part for one in found if one.section.tied for part in _for_peer(case, one)]
-        return cross_check_sections(parts, resources.progress) if parts else None
-    if len(found) == 1 and found[0].section.padding == 0.0:
-        return cross_check(samples, resources.progress)
-    return cross_check_sections(found, resources.progress)
+    parts = [part for one in found if one.section.tied for part in _for_peer(case, one)]
+    return cross_check(parts, resources.progress) if parts else None
 
 
 def _for_peer(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:

@@ -14,8 +14,7 @@ from clearance.run.question import Question
 from clearance.simulate.answers.carries import notices_on_carries
 from clearance.simulate.measure import inside
 from clearance.simulate.measure.neighbours import neighbours_that_meet
-from clearance.simulate.measure.section_answer import SectionAnswer
-from clearance.simulate.measure.sections import SectionPlan
+from clearance.simulate.measure.sections import SectionAnswer, SectionPlan
 from clearance.world.case import Case
 from clearance.world.extents import metres, reach_of
 from clearance.world.notice import Notice, Severity, listed, worst_first

@@ -5,7 +5,7 @@ Not for: the options (`options`), and answering (`answers`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -53,8 +53,7 @@ class Question(QuestionOptions):
             object.__setattr__(self, "certify_gap", CERTIFY_GAP)
         today = (self.today or datetime.now(UTC).date()) if self.case.waivers else None
         object.__setattr__(self, "today", today)
-        case = self.case.with_remarks()
-        object.__setattr__(case, "notices", notices_of(case))
+        case = replace(self.case, notices=notices_of(self.case))
         object.__setattr__(self, "case", case)
 
     @classmethod

@@ -22,13 +22,14 @@ from clearance.world.body import Obstacle
 from clearance.world.budget import Budget
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
-from clearance.world.distinct_bodies import (
+from clearance.world.field_types import require_two_patterns, require_types
+from clearance.world.names import (
+    checked_name,
     require_distinct_names,
     require_other_names,
+    require_own_names,
     require_surfaces,
 )
-from clearance.world.field_types import require_two_patterns, require_types
-from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice, accepted_kind
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level, ordered_warn
@@ -274,18 +275,6 @@ class Case:
             values += [placed.world_from_base.tobytes(), placed.exclude_links]
             values.append(tuple(sorted(placed.padding.items())))
         return cell_of(objects, tuple(values))
-
-    def with_remarks(
-        self, **values: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]
-    ) -> Case:
-        """The same with other `notices`, `notes` or `sources`, of which nothing is to be checked.
-
-        Its cell is found again: somebody may have written into an array since.
-        """
-        made = object.__new__(type(self))
-        made.__dict__.update(self.__dict__, **values)
-        made.__dict__.pop("cell", None)
-        return made
 
     def prefix_of(self, placed: PlacedRobot) -> str:
         """The prefix of a robot's links in tables: empty where there is one robot."""

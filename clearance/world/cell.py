@@ -11,7 +11,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from functools import wraps
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 Result = TypeVar("Result")
 
@@ -55,13 +55,6 @@ def cell_of(objects: Sequence[object], values: Hashable) -> Cell:
     return cell
 
 
-class CellOwner(Protocol):
-    """Anything with a cell: a case."""
-
-    @property
-    def cell(self) -> Cell: ...
-
-
 def once_a_cell(most: int) -> Callable[[Callable[..., Result]], Callable[..., Result]]:
     """Decorates a function of a case and of further keys whose answer follows from the case's cell and those.
 
@@ -72,7 +65,7 @@ def once_a_cell(most: int) -> Callable[[Callable[..., Result]], Callable[..., Re
         known: OrderedDict[tuple[Cell, tuple], Result] = OrderedDict()
 
         @wraps(work)
-        def found(case: CellOwner, *others: Any) -> Result:
+        def found(case: Any, *others: Any) -> Result:
             key = (case.cell, others)
             if key in known:
                 with suppress(KeyError):  # another thread may have let go of it

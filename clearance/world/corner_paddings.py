@@ -12,9 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import BadProgram, BadTime
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.corner_zone import CornerZone
+from clearance.world.extents import farthest_corner
 from clearance.world.forest import links_by_name, owner_of, resolved_mount
 from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase
@@ -102,7 +103,7 @@ def _off(placed: PlacedRobot, zone: CornerZone) -> Iterator[tuple[str, float]]:
     """Each link with a shape that may be off, and by how much [m]."""
     for body in placed.robot.bodies:
         if body.name in zone.links:
-            yield body.name, zone.links[body.name].at(farthest_of(body))
+            yield body.name, zone.links[body.name].at(farthest_corner(body))
 
 
 def _off_on_link(case: Case, i_robot: int, zone: CornerZone, obstacle: Obstacle) -> float:
@@ -120,10 +121,5 @@ def _off_on_link(case: Case, i_robot: int, zone: CornerZone, obstacle: Obstacle)
     if link not in zone.links:
         return 0.0
     return zone.links[link].at(
-        float(np.linalg.norm(mount.pose[:3, 3])) + farthest_of(obstacle.body)
+        float(np.linalg.norm(mount.pose[:3, 3])) + farthest_corner(obstacle.body)
     )
-
-
-def farthest_of(body: Body) -> float:
-    """[m] No point of a body is farther from the origin of its frame."""
-    return float(np.linalg.norm(np.abs(body.shape.bounds).max(axis=0)))

@@ -67,13 +67,17 @@ def extremes_between(
 
 def positions_along(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     """(len(times), k) the positions of a trajectory at any times; before and after it, its first and last."""
-    if trajectory.velocities is None or trajectory.n_steps == 1:
-        columns = [np.interp(times, trajectory.times, column) for column in trajectory.positions.T]
+    return values_along(trajectory.times, trajectory.positions, trajectory.velocities, times)
+
+
+def values_along(
+    knots: np.ndarray, positions: np.ndarray, velocities: np.ndarray | None, times: np.ndarray
+) -> np.ndarray:
+    """(len(times), k) the same of samples; shapes (n,) [s], (n, k) and (n, k)."""
+    if velocities is None or len(knots) == 1:
+        columns = [np.interp(times, knots, column) for column in positions.T]
         return np.array(columns).reshape(-1, len(times)).T
-    interval = np.clip(
-        np.searchsorted(trajectory.times, times, side="right") - 1, 0, trajectory.n_steps - 2
-    )
-    length = np.diff(trajectory.times)[interval]
-    share = np.clip((times - trajectory.times[interval]) / length, 0.0, 1.0)[:, None]
-    cubics = cubics_of(trajectory.times, trajectory.positions, trajectory.velocities)
+    interval = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
+    share = np.clip((times - knots[interval]) / np.diff(knots)[interval], 0.0, 1.0)[:, None]
+    cubics = cubics_of(knots, positions, velocities)
     return position_on(Cubics(*(part[interval] for part in cubics)), share)

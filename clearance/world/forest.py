@@ -9,6 +9,7 @@ quaternion). Not for: when a part changes hands (`timeline`); a forest is of a c
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -232,12 +233,7 @@ class _Planter:
 
     def _plant_riding(self, i_obstacle: int, obstacle: Obstacle) -> None:
         parent, pose = self._stands_on(obstacle.mount)
-        self._add(
-            Links(
-                np.array([parent]), np.array([FIXED]), np.zeros((1, 3)), pose[None],
-                np.array([NO_COLUMN]), np.ones(1), np.zeros(1),
-            )
-        )  # fmt: skip
+        self._add(standing_link(pose)._replace(parents=np.array([parent])))
         self.obstacle_links[i_obstacle] = self.n_links - 1
 
     def _stands_on(self, mount: Mount | None) -> tuple[int, np.ndarray]:
@@ -256,34 +252,27 @@ class _Planter:
         self._plant_robot(i_robot)
         return self.robot_starts[i_robot] + link, mount.pose
 
-    def _without_ring(self, name: str) -> _RingGuard:
-        return _RingGuard(self.under_way, name)
+    @contextmanager
+    def _without_ring(self, name: str) -> Iterator[None]:
+        """Refuses a ring of bodies where what a body stands on is planted inside."""
+        if name in self.under_way:
+            ring = [*self.under_way[self.under_way.index(name) :], name]
+            raise Contradiction(
+                f"{' on '.join(ring)}: a ring", valid="something that stands in the world"
+            )
+        self.under_way.append(name)
+        try:
+            yield
+        finally:
+            self.under_way.remove(name)
 
     def _add(self, links: Links) -> None:
         self.parts.append(links)
         self.n_links += len(links.parents)
 
 
-class _RingGuard:
-    """A context in which what a body stands on is planted; a ring of bodies is refused."""
-
-    def __init__(self, under_way: list[str], name: str) -> None:
-        self.under_way, self.name = under_way, name
-
-    def __enter__(self) -> None:
-        if self.name in self.under_way:
-            ring = [*self.under_way[self.under_way.index(self.name) :], self.name]
-            raise Contradiction(
-                f"{' on '.join(ring)}: a ring", valid="something that stands in the world"
-            )
-        self.under_way.append(self.name)
-
-    def __exit__(self, *problem: object) -> None:
-        self.under_way.remove(self.name)
-
-
 def carried_by(forest: Forest, link: int) -> Iterator[int]:
-    """A link and all above it, nearest first."""
+    """A link and all above it, nearest first; none for `WORLD`."""
     while link != NO_PARENT:
         yield link
         link = int(forest.links.parents[link])

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from clearance.world.case import Case
-from clearance.world.forest import WORLD, carried_by, forest_of
+from clearance.world.forest import carried_by, forest_of
 from clearance.world.phase import Phase
 
 
@@ -12,23 +14,19 @@ def link_below(phase: Phase, i_obstacle: int) -> tuple[int, int] | None:
     if i_obstacle in phase.absent_obstacles:
         return None
     case = phase.case
-    forest = forest_of(case)
-    link = forest.obstacle_links[i_obstacle]
-    if link == WORLD:
-        return None
-    for above in carried_by(forest, link):
-        for i_robot, start in enumerate(forest.robot_starts):
-            if start <= above < start + len(case.robots[i_robot].robot.link_names):
-                return i_robot, above - start
-    return None
+    return next(_carriers(case, forest_of(case).obstacle_links[i_obstacle]), None)
 
 
 def robots_below(case: Case, i_robot: int) -> list[int]:
     """The robots that a robot stands on, nearest first, in a case in which nothing changes hands."""
+    below = (i for i, _ in _carriers(case, forest_of(case).robot_starts[i_robot]) if i != i_robot)
+    return list(dict.fromkeys(below))
+
+
+def _carriers(case: Case, link: int) -> Iterator[tuple[int, int]]:
+    """The robot, and its link, of each link that carries a link of the forest, nearest first."""
     forest = forest_of(case)
-    found: list[int] = []
-    for above in carried_by(forest, forest.robot_starts[i_robot]):
-        for i, start in enumerate(forest.robot_starts):
-            if i != i_robot and start <= above < start + len(case.robots[i].robot.link_names):
-                found += [i] if i not in found else []
-    return found
+    for above in carried_by(forest, link):
+        for i_robot, start in enumerate(forest.robot_starts):
+            if start <= above < start + len(case.robots[i_robot].robot.link_names):
+                yield i_robot, above - start

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.world.joint_positions import (
     JointCourse,
-    JointExtent,
     extremes_of,
     joint_courses,
-    joint_extents,
     turns,
 )
 from clearance.world.notice import Notice, Severity, listed
@@ -37,18 +34,13 @@ class _Excess(NamedTuple):
     text: str
 
 
-def notices_on_joints(
-    placed: PlacedRobot, rule: str, before: str = "", extents: Sequence[JointExtent] | None = None
-) -> list[Notice]:
+def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
     """Joints beyond their limits, at the samples or between them, or where the robot stands.
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
-        extents: `joint_extents`, where they are known.
     """
     asked = placed.trajectory
-    if _all_within(joint_extents(placed) if extents is None else extents, asked):
-        return []
     found = [
         excess for course in joint_courses(placed) for excess in _excesses(course, asked, before)
     ]
@@ -64,15 +56,6 @@ def notices_on_joints(
     elif near:
         notices.append(Notice(Severity.WARNING, "limits", _in_words(near)))
     return notices
-
-
-def _all_within(extents: Sequence[JointExtent], asked: Trajectory | None) -> bool:
-    """True if no joint is beyond its limits at a sample, and between them it goes straight."""
-    if asked is not None and asked.velocities is not None:
-        return False
-    return all(
-        max(high - joint.upper, joint.lower - low) <= ROUNDING for joint, low, high in extents
-    )
 
 
 def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> list[_Excess]:

@@ -52,22 +52,9 @@ class JointExtent(NamedTuple):
 
 
 def joint_extents(placed: PlacedRobot) -> list[JointExtent]:
-    """The least and the greatest of each of `joint_courses`.
-
-    Exactness: those of the courses to the last bit, since rounding keeps the order of what it rounds.
-    """
-    asked, ends = placed.trajectory, {}
-    if asked is not None:
-        least, greatest = asked.positions.min(axis=0), asked.positions.max(axis=0)
-        columns = zip(least.tolist(), greatest.tolist(), strict=True)
-        ends = dict(zip(asked.joint_names, columns, strict=True))
-    found = []
-    for joint, master, factor, offset in followers(placed.robot):
-        resting = placed.fixed_positions.get(master, 0.0)
-        low, high = ends.get(master, (resting, resting))
-        one, other = factor * low + offset, factor * high + offset
-        found.append(JointExtent(joint, min(one, other), max(one, other)))
-    return found
+    """The least and the greatest of each of `joint_courses`."""
+    courses = ((one.joint, one.at_samples) for one in joint_courses(placed))
+    return [JointExtent(joint, float(at.min()), float(at.max())) for joint, at in courses]
 
 
 def extremes_of(

@@ -1,11 +1,13 @@
-"""Names from any file: what a line of text, a table and a report in XML can show. Not for: which names exist."""
+"""Names from any file: what a line of text, a table and a report in XML can show, and that all are different."""
 
 from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
 
-from clearance.errors import BadInput, DuplicateName, UnknownLink, at, nearest_name
+from clearance.errors import BadInput, BadShape, DuplicateName, UnknownLink, at, nearest_name
+from clearance.world.body import Obstacle
+from clearance.world.robot import Robot
 
 _BIDIRECTIONAL = frozenset(
     "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
@@ -74,3 +76,44 @@ def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]
                 f"unknown link {name!r}", where=f"[{i}]", valid=nearest_name(name, known)
             )
     return tuple(given)
+
+
+def require_surfaces(robot: Robot) -> None:
+    """Refuses links that are clouds of points."""
+    for body in robot.bodies:
+        if body.is_cloud:
+            raise BadShape(
+                f"link {body.name!r} of robot {robot.name!r} is a cloud of points",
+                valid="links have surfaces; only obstacles may be clouds",
+            )
+
+
+def require_distinct_names(robots: Sequence[Robot], obstacles: Sequence[Obstacle]) -> None:
+    """Refuses names that several links or obstacles share."""
+    for i, robot in enumerate(robots):
+        if "/" in robot.name:
+            raise BadInput(
+                f"robot {robot.name!r} has a '/' in its name",
+                where=f"robots[{i}]",
+                valid="another name, since links of several robots are called robot/link",
+            )
+    names = {robot.name for robot in robots}
+    names |= {f"{robot.name}/{link}" for robot in robots for link in robot.link_names}
+    names |= {link for robot in robots for link in robot.link_names}  # as patterns say them
+    for i, obstacle in enumerate(obstacles):
+        if obstacle.name in names:
+            raise DuplicateName(
+                f"an obstacle and a robot or its link are both called {obstacle.name!r}",
+                where=f"obstacles[{i}]",
+                valid="another name for the obstacle",
+            )
+
+
+def require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
+    """Refuses an obstacle with a link's name where a name could be either's."""
+    for obstacle in obstacles:
+        if obstacle.name in robot.link_names:
+            raise DuplicateName(
+                f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
+                valid="another name for the obstacle, since links are meant by their names too",
+            )

@@ -14,11 +14,10 @@ from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.field_types import require_types
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_links
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.recording import Recording
-from clearance.world.robot import Robot
+from clearance.world.robot import Robot, require_moving_joints
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.wrap import meant

@@ -16,7 +16,6 @@ import numpy as np
 from clearance.world.case import Case, Limits
 from clearance.world.extents import metres
 from clearance.world.joint_limits import notices_on_joints
-from clearance.world.joint_positions import joint_extents
 from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN, notices_on_speed
 from clearance.world.notice import WRAP, Notice, Severity, listed, worst_first
 from clearance.world.placed_robot import PlacedRobot
@@ -63,15 +62,15 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     for placed in case.robots:
         if not any(moves):
             break  # no robot has to move
-        before, extents = case.prefix_of(placed), joint_extents(placed)
+        before = case.prefix_of(placed)
         if placed.trajectory is not None:
-            found += notices_on_motion(placed, before, extents)
+            found += notices_on_motion(placed, before)
             found += notices_on_rest(placed, before)
             found += notices_on_speed(placed, case.limits.joints, before)
             found += notices_on_holes(placed, before)
             found += notices_on_unproven(placed, before)
             found += notices_on_wrap(placed, before)
-        found += notices_on_joints(placed, case.limits.joints, before, extents)
+        found += notices_on_joints(placed, case.limits.joints, before)
     return worst_first(found)
 
 

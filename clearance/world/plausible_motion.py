@@ -34,19 +34,16 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 """[rad], [m] A joint must go this far in sum before its speed says anything about the unit of time."""
 
 
-def notices_on_motion(
-    placed: PlacedRobot, before: str = "", extents: Sequence[JointExtent] | None = None
-) -> list[Notice]:
+def notices_on_motion(placed: PlacedRobot, before: str = "") -> list[Notice]:
     """Notices on motion of a robot that looks like another unit, and on an unknown start.
 
     Args:
-        before: what stands before the names of joints. extents: `joint_extents`, where they are known.
+        before: what stands before the names of joints.
     """
     texts = [*placed.given_trajectory.odd, *_odd_velocities(placed, before)]
     texts += _creeping(placed, before)
-    extents = joint_extents(placed) if extents is None else extents
     return [
-        *notices_on_positions(_as_given(placed, extents), before),
+        *notices_on_positions(_as_given(placed), before),
         *_suspect(texts),
         *_way_in(placed),
         *_assumed(placed),
@@ -54,11 +51,11 @@ def notices_on_motion(
     ]
 
 
-def _as_given(placed: PlacedRobot, extents: Sequence[JointExtent]) -> list[JointExtent]:
+def _as_given(placed: PlacedRobot) -> list[JointExtent]:
     """The ranges of joints as their file has them: a joint that turns on and on may be logged within one turn."""
-    asked = placed.given_trajectory
+    asked, extents = placed.given_trajectory, joint_extents(placed)
     if asked.given_extents is None:
-        return list(extents)
+        return extents
     given = dict(zip(asked.joint_names, asked.given_extents.T.tolist(), strict=True))
     return [JointExtent(one.joint, *given.get(one.joint.name, one[1:])) for one in extents]
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 
+from clearance.errors import UnknownJoint, nearest_name
 from clearance.world.body import Body
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.notice import Notice
@@ -100,3 +101,26 @@ class Robot:
         """True if its own file has a floor or walls: its root link is called `WORLD_LINK` and has a shape."""
         root = self.link_names[0]
         return root == WORLD_LINK and any(body.name == root for body in self.bodies)
+
+
+def require_moving_joints(robot: Robot, names: Iterable[str]) -> None:
+    """Nothing, if all are names of joints that can be set.
+
+    Raises:
+        UnknownJoint: not there, with the nearest name; or fixed, or a mimic of another joint.
+    """
+    by_name = {joint.name: joint for joint in robot.joints}
+    moving = [joint.name for joint in robot.moving_joints]
+    for name in names:
+        if name not in by_name:
+            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, moving))
+        joint = by_name[name]
+        if joint.kind is JointKind.FIXED:
+            raise UnknownJoint(
+                f"joint {name!r} is fixed", valid=f"moving joints: {', '.join(moving)}"
+            )
+        if joint.mimic is not None:
+            raise UnknownJoint(
+                f"joint {name!r} mimics {joint.mimic.joint!r} and cannot be set",
+                valid=f"leave it out or give {joint.mimic.joint!r}",
+            )

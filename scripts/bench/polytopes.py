@@ -20,8 +20,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from clearance.geometry.polytope import Polytope
-from clearance.query.common_point import common_point
-from clearance.query.common_point_paper import common_point_paper
+from clearance.query.common_point import common_point, common_point_paper
 from clearance.query.intersection import intersect
 
 SMALLEST = ["--corners", "50", "--seconds", "0.01"]

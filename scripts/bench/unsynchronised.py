@@ -86,11 +86,11 @@ def row_of(scene: Scene, apart: float, asked: argparse.Namespace, slack: float) 
     grid = 1e3 * least_of_grid(scene, slack, asked.grid) if asked.grid else None
     return {
         "arms": scene.name, "apart": apart, "pairs": len(scene.pairs), "slack": slack,
-        "proven_mm": 1e3 * bounds.lower_bound.min(), "seen_mm": 1e3 * bounds.upper_bound.min(),
+        "proven_mm": 1e3 * bounds.lower.min(), "seen_mm": 1e3 * bounds.upper.min(),
         "grid_mm": grid, "steps_s": steps, "proof_s": proof,
         "rectangles": found.steps_tally["rectangles"] + found.intervals_tally["rectangles"],
         "searches": found.steps_tally["queries"] + found.intervals_tally["queries"],
-        "gap_mm": 1e3 * (bounds.upper_bound - bounds.lower_bound).max(),
+        "gap_mm": 1e3 * (bounds.upper - bounds.lower).max(),
     }  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.run import BatchWatch
 from clearance.cli.batch_run import shown_progress
 from clearance.progress import never_silent
-from tests.counted_end import CountedEnd
+from tests.counted_end import counted_end
 
 ITEMS = [Item(i, name, f"{name}.yaml", None, None) for i, name in enumerate("abcd")]
 
@@ -27,9 +27,9 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
     assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
 
 
-def test_on_a_pipe_lines_come_until_it_is_done(capsys):
-    end = CountedEnd(2)
-    with never_silent(lambda: "batch", end), shown_progress(False) as watch:
+def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch, capsys):
+    end = counted_end(monkeypatch, 2)
+    with never_silent(lambda: "batch"), shown_progress(False) as watch:
         watch.begin(ITEMS)
         end.pass_all()
     assert capsys.readouterr().err.splitlines() == [

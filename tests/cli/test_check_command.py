@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-import clearance.crosscheck as crosscheck
+import clearance.crosscheck.compare as compare
 from clearance.case.case_file import load_case
 from clearance.cli import run
 from clearance.errors import MissingFile
@@ -72,15 +72,15 @@ def test_report_and_junit_are_where_they_were_asked_for(folder, capsys):
 @pytest.mark.peer
 @pytest.mark.parametrize("limit", ["50", "150"])
 def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, capsys, monkeypatch, limit):
-    ask = crosscheck.cross_check
+    ask = compare.compared
 
-    def asked_about_a_wrong_answer(record, progress=None):
+    def asked_about_a_wrong_answer(record, pairs, progress):
         clearances = record.clearances.copy()
         clearances[1] += 1e-6
         wrong = record.rows.with_columns({"clearance": clearances})
-        return ask(replace(record, table=wrong), progress)
+        return ask(replace(record, table=wrong), pairs, progress)
 
-    monkeypatch.setattr(crosscheck, "cross_check", asked_about_a_wrong_answer)
+    monkeypatch.setattr(compare, "compared", asked_about_a_wrong_answer)
     code, out, err = check(capsys, "--cross-check", "--fail-mm", limit)
     assert (code, err) == (3, "") and "DISAGREES at 1 step" in out
 

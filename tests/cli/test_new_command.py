@@ -310,6 +310,15 @@ def test_the_base_is_where_the_states_put_it(capsys):
     assert "joint 'root': it puts the robot's base elsewhere" in capsys.readouterr().err
 
 
+def test_a_base_that_moves_and_that_nobody_places_is_left_to_the_check(capsys):
+    srdf, root = Path("cell/arm.srdf"), '<virtual_joint name="root" type="planar"/></robot>'
+    srdf.write_text(srdf.read_text().replace("</robot>", root))
+    assert new("--srdf", "cell/arm.srdf", "--states", "home,out") == 0
+    assert "base:" not in Path("out/case.yaml").read_text()
+    assert run(["check", "out/case.yaml"]) in (0, 1)
+    assert "virtual joint 'root' of the SRDF moves the base" in capsys.readouterr().out
+
+
 def test_what_a_scene_says_is_held_is_carried_also_between_states():
     words = ["--srdf", "cell/arm.srdf", "--states", "home,out", "--scene", "cell/held.yaml"]
     assert new(*words) == 0

@@ -4,16 +4,31 @@ from __future__ import annotations
 
 import numpy as np
 
+from clearance.crosscheck.compare import compared
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.record.record import Samples
+from clearance.record.record import CrossCheck, Samples
 from clearance.record.table import Table
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
+from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.report.step_rows import rows_of
+
+
+def pairs_of(record: Samples) -> list[Pair]:
+    """The pairs of a record."""
+    case, omitted = record.case, {(one.link, one.obstacle) for one in record.unmeasured}
+    pairs = measured_pairs(case)[0]
+    return [pair for pair in pairs if (pair.a.name_in(case), pair.b.name_in(case)) not in omitted]
+
+
+def cross_check(record: Samples, progress=None) -> CrossCheck:
+    """The comparison of a record with FCL."""
+    return compared(record, pairs_of(record), progress)[0]
+
 
 BOX_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 

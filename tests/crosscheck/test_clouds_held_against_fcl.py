@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from clearance import PointCloud
-from clearance.crosscheck import cross_check
 from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import triangle_soup
-from tests.crosscheck.sliding import box, rail_record
+from tests.crosscheck.sliding import box, cross_check, rail_record
 from tests.query.test_clouds import GRID, KINDS, answer, scan, solid_of
 
 pytestmark = pytest.mark.peer

@@ -9,22 +9,20 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import clearance as cl
-from clearance.crosscheck import cross_check
-from clearance.crosscheck.containment import is_inside, winding_number
 from clearance.crosscheck.peer_run import (
     PeerRun,
     greatest_displacements,
     lower_bound_boxes,
     world_boxes,
 )
-from clearance.crosscheck.triangles import triangle_soup
+from clearance.crosscheck.triangles import is_inside, triangle_soup, winding_number
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
 from clearance.tolerance import CROSS_CHECK
 from clearance.world.case import Omission
 from clearance.world.placed_robot import PlacedRobot
-from tests.crosscheck.sliding import box, rail_record
+from tests.crosscheck.sliding import box, cross_check, pairs_of, rail_record
 from tests.made_cases import at, ball, faces_of, flying
 
 pytestmark = pytest.mark.peer
@@ -170,8 +168,6 @@ def test_every_step_agrees_and_links_have_their_robots_names() -> None:
 
 
 def test_a_wrong_clearance_of_either_robot_is_found() -> None:
-    from clearance.crosscheck import cross_check
-
     run = cl.check(two_robots())
     wrong = run.record.rows.with_columns({"clearance": run.record.clearances + 1e-6})
     check = cross_check(replace(run.record, table=wrong))
@@ -246,7 +242,8 @@ def test_skipping_changes_no_answer():
     }
     positions = np.cumsum(rng.uniform(-0.2, 0.25, 60)).tolist()
     rows = [(0.0, "o0", (0, 0, 0), (0, 0, 0))] * 60
-    run = PeerRun(rail_record(box(0.3, 0.2, 0.1), obstacles, positions, rows))
+    record = rail_record(box(0.3, 0.2, 0.1), obstacles, positions, rows)
+    run = PeerRun(record, pairs_of(record))
     answers = run.measure()
     poses = run.poses(0, 60)
     for step in range(60):

@@ -16,8 +16,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.crosscheck.containment import is_inside
-from clearance.crosscheck.triangles import triangle_soup
+from clearance.crosscheck.triangles import is_inside, triangle_soup
 from clearance.formats.robot.formats import load_robot
 from clearance.formats.robot.srdf import load_srdf
 from clearance.simulate.measure.layout import PairsInMotion

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from clearance import Polyhedron, check
-from clearance.crosscheck import compare, cross_check, peer_run
+from clearance.crosscheck import compare, peer_run
 from clearance.crosscheck.exact import placed, triangles_sq
 from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import triangle_soup
 from tests import oracle
+from tests.crosscheck.sliding import cross_check, pairs_of
 from tests.made_cases import at, ball, dented, flying
 from tests.strategies import FAMILIES, rotations
 
@@ -106,7 +107,8 @@ def test_points_on_needles_are_on_them() -> None:
         found = cross_check(record)
         assert found.agrees and found.worst_witness_error <= found.tolerance
         in_floats.append(
-            compare._Witnesses(peer_run.PeerRun(record)).errors().max() > found.tolerance
+            compare._Witnesses(peer_run.PeerRun(record, pairs_of(record))).errors().max()
+            > found.tolerance
         )
     assert sum(in_floats) >= 1
 

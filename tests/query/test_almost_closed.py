@@ -10,8 +10,7 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 from clearance import Polyhedron, Query, box, contact, distance
-from clearance.crosscheck.containment import winding_number
-from clearance.crosscheck.triangles import triangle_soup
+from clearance.crosscheck.triangles import triangle_soup, winding_number
 from clearance.errors import BadInput
 from clearance.geometry.closing import FEW, SOME, closing_of
 from tests import oracle

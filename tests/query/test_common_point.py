@@ -10,8 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.query.common_point import common_point
-from clearance.query.common_point_paper import common_point_paper
+from clearance.query.common_point import common_point, common_point_paper
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
 

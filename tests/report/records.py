@@ -186,11 +186,8 @@ def rules_of(case, motions, steps: Table) -> tuple[RuleAnswer, ...]:
 
 def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
-    from clearance.simulate.answers.contact.contacts import (
-        ContactPart,
-        joined_contacts,
-        overlap_finder,
-    )
+    from clearance.simulate.answers.contact.contacts import overlap_finder
+    from clearance.simulate.answers.contact.rows import ContactPart, joined_contacts
 
     pairs = measured_pairs(made.case)[0]
     named = list(zip(*pair_names(made.case, pairs), strict=True))

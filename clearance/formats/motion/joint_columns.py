@@ -24,9 +24,8 @@ from clearance.formats.text.yaml_text import flow
 from clearance.geometry.quaternions import of_unit_length, yaw_pitch_roll
 from clearance.world.joint_positions import turns
 from clearance.world.mimics import Follower, followers
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed
-from clearance.world.robot import Robot
+from clearance.world.robot import Robot, require_moving_joints
 from clearance.world.trajectory import Trajectory
 
 TURN_AGREES, SLIDE_AGREES = 1e-3, 1e-4

@@ -18,7 +18,7 @@ from clearance.formats.message.documents import Fields, described
 from clearance.formats.message.values import header_of, require_fields, require_spelt
 from clearance.formats.motion.joint_messages import READ, JointMessage
 from clearance.world.notice import listed
-from clearance.world.start import started
+from clearance.world.quintic import started
 from clearance.world.trajectory import Trajectory
 
 _STARTS = ("trajectory_start", "start_state")

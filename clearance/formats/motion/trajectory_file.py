@@ -1,7 +1,7 @@
 """What a reader of trajectories is asked for and gives, the reader of a file by its format, and the line of a
 table that a sample is on.
 
-Not for: the formats (`known_formats`), nor which joints the robot has (`world.moving_joints`).
+Not for: the formats (`known_formats`), nor which joints the robot has (`world.robot`).
 """
 
 from __future__ import annotations

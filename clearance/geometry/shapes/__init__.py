@@ -5,11 +5,48 @@ much the faceted one is larger. A new shape is a file in this folder and a row h
 schema and the checks of units follow the table. Not for: shapes from files (room `formats`).
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes.box import box
-from clearance.geometry.shapes.ellipsoid import ellipsoid
 from clearance.geometry.shapes.pipe import pipe
-from clearance.geometry.shapes.round import capsule, cylinder, sphere
-from clearance.geometry.shapes.shape import Measure, Shape
+from clearance.geometry.shapes.round import capsule, cylinder, ellipsoid, sphere
+
+
+class Measure(Enum):
+    """A dimension of a shape."""
+
+    LENGTH = "a length above 0 [m]"
+    LENGTH_OR_ZERO = "a length, 0 or more [m]"
+    SIZES = "three lengths above 0, along x, y, z [m]"
+    POINTS = "two points or more, each x, y, z [m]"
+    SIDES = "a whole number of sides, 3 or more"
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A kind of solid that files can name.
+
+    Attributes:
+        maker: called with the dimensions by their names; it refuses those that make no solid.
+        about: one sentence for the schema of case files.
+        dimensions: what must be given.
+        optional: what may be given.
+        in_urdf: robots' files may have it, its dimensions as attributes of its element.
+        radius: the dimension that a wrong unit shows in, if there is one.
+    """
+
+    maker: Callable[..., Polyhedron]
+    about: str
+    dimensions: Mapping[str, Measure]
+    optional: Mapping[str, Measure] = field(default_factory=dict)
+    in_urdf: bool = False
+    radius: str | None = None
+
 
 _LENGTH, _OR_ZERO = Measure.LENGTH, Measure.LENGTH_OR_ZERO
 _BENT = {

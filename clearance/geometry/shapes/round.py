@@ -1,4 +1,4 @@
-"""Cylinder, sphere and capsule, faceted from outside with as few flat faces as the tolerance allows.
+"""Cylinder, sphere, capsule and ellipsoid, faceted from outside with as few flat faces as the tolerance allows.
 
 A sphere is a stack of rings: n sectors round the axis times bands that touch the sphere, wider towards the
 poles, and one flat polygon at each pole. Not for: anything with a bore (`pipe`).
@@ -7,13 +7,19 @@ poles, and one flat polygon at each pole. Not for: anything with a bore (`pipe`)
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 
 from clearance.errors import BadDimension
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.shapes.dimension import at_least_zero, positive, sections_for
+from clearance.geometry.shapes.dimension import (
+    at_least_zero,
+    positive,
+    sections_for,
+    three_positive,
+)
 from clearance.geometry.shapes.rings import family_around, ring_around, stacked
 from clearance.tolerance import TESSELLATION
 
@@ -148,3 +154,18 @@ def _rings(latitudes: np.ndarray) -> np.ndarray:
     outward = 1.0 / np.cos(half_gaps)
     rings = np.stack([outward * np.cos(means), outward * np.sin(means)], axis=1)
     return rings[::-1]
+
+
+def ellipsoid(radii: Sequence[float], tolerance: float = TESSELLATION) -> Polyhedron:
+    """A polyhedron that contains the ellipsoid with semi-axes `radii` along x, y, z [m].
+
+    Raises:
+        BadDimension: not three finite numbers above 0, tolerance not above 0, or below 1e-5 of the largest.
+
+    Exactness: the ellipsoid lies inside; no corner is farther than `excess`, at most the tolerance [m], from it:
+        a corner at distance 1 + e from the unit ball's centre comes to lie within e times the largest semi-axis
+        of where its foot on the ball does. Stretching rounds by 2^-53, for which the facets are large enough.
+    """
+    sizes = three_positive(radii, "radii")
+    ratio = positive(tolerance, "tolerance") / float(sizes.max())
+    return sphere(1.0, ratio).scaled(sizes.tolist())

@@ -16,7 +16,7 @@ import numpy as np
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.pair_query import Query
-from clearance.simulate.answers.point_motion import motion_by_columns
+from clearance.simulate.answers.point_motion import motion_of_frame
 from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.measure.sections import Section
 from clearance.world.case import Case
@@ -66,7 +66,7 @@ class Approach:
     def by_columns(self) -> np.ndarray:
         """(k, columns) what it grows by for each rad or m of the columns of the forest."""
         moved = [
-            motion_by_columns(self.case, self.poses, body, self.points[:, side])
+            motion_of_frame(self.case, self.poses, body.frame_in(self.case), self.points[:, side])
             for side, body in enumerate(self.pair)
         ]
         return self.of_bodies(*moved)

@@ -14,7 +14,7 @@ from clearance.simulate.answers.handling import gap_between
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.extents import metres
-from clearance.world.forest import WORLD, carried_by, forest_of, link_poses_at, owner_of
+from clearance.world.forest import carried_by, forest_of, link_poses_at, owner_of
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.pairs import OBSTACLE, BodyIndex
@@ -95,10 +95,8 @@ def _gripping(case: Case, name: str, part: BodyIndex) -> list[BodyIndex]:
         bodies += [BodyIndex(i, k) for k in range(len(placed.robot.bodies))]
     bodies.remove(part)
     forest = forest_of(case)
-    frames = [(one, one.frame_in(case)) for one in bodies]
-    above = {one: {*carried_by(forest, frame)} for one, frame in frames if frame != WORLD}
-    link = forest.link_called(case, name)
-    for top in carried_by(forest, link) if link != WORLD else ():
+    above = {one: {*carried_by(forest, one.frame_in(case))} for one in bodies}
+    for top in carried_by(forest, forest.link_called(case, name)):
         is_rigid = forest.links.kinds[top] == FIXED and forest.links.parents[top] != NO_PARENT
         found = [] if is_rigid else [one for one, links in above.items() if top in links]
         if found:

@@ -28,7 +28,7 @@ from clearance.simulate.measure.certify import (
 )
 from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.simulate.measure.moment_query import MomentQuery
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionAnswer
 
 FAR_GAP = 0.01
 """[-] Largest gap of the bound of a pair that is not near: a hundredth of its clearance is enough for a table."""

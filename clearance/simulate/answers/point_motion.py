@@ -8,17 +8,16 @@ import numpy as np
 
 from clearance.kernels.motion.kinematics import SLIDING, TURNING
 from clearance.world.case import Case
-from clearance.world.forest import WORLD, carried_by, forest_of, owner_of
+from clearance.world.forest import carried_by, forest_of, owner_of
 from clearance.world.pairs import BodyIndex, Pair
+from clearance.world.tool import movers, rates_of
 
 Thing = tuple[bool, int]
 """An obstacle (True, its place among those of the case) or a robot (False, its place)."""
 
 
-def motion_by_columns(
-    case: Case, poses: np.ndarray, body: BodyIndex, points: np.ndarray
-) -> np.ndarray:
-    """How points that a body carries move with the columns of the forest, in first order.
+def motion_of_frame(case: Case, poses: np.ndarray, frame: int, points: np.ndarray) -> np.ndarray:
+    """How points that a link of the forest carries move with its columns, in first order; of `WORLD` they stand.
 
     Args:
         poses: (n, links, 4, 4) `world_from_link` [m] of the forest. points: (n, 3) one at each of them [m], world.
@@ -26,30 +25,15 @@ def motion_by_columns(
     Returns:
         (n, columns, 3) [m] for each rad or m of a column; 0 for the columns of tables of poses.
     """
-    return motion_of_frame(case, poses, body.frame_in(case), points)
-
-
-def motion_of_frame(case: Case, poses: np.ndarray, frame: int, points: np.ndarray) -> np.ndarray:
-    """The same of points that a link of the forest carries; of `WORLD` they stand."""
-    forest = forest_of(case)
-    links = forest.links
-    moved = np.zeros((len(points), int(links.columns.max(initial=-1)) + 1, 3))
-    if frame == WORLD:
-        return moved
-    for link in carried_by(forest, frame):
-        kind, column = links.kinds[link], links.columns[link]
-        if kind not in (TURNING, SLIDING):
-            continue
-        axes = poses[:, link, :3, :3] @ links.axes[link]
-        if kind == TURNING:
-            axes = np.cross(axes, points - poses[:, link, :3, 3])
-        moved[:, column] += links.factors[link] * axes
-    return moved
+    links = forest_of(case).links
+    n_columns = int(links.columns.max(initial=-1)) + 1
+    moved_by = movers(links, frame, range(n_columns))
+    return rates_of(links, poses, points, moved_by, n_columns)[:, :3].swapaxes(1, 2)
 
 
 def moves_with_joints(case: Case, body: BodyIndex, columns: Collection[int]) -> bool:
     """True if a joint that follows one of some columns of the forest moves a body."""
-    return _has_joint(case, _under(case, body), columns)
+    return _has_joint(case, carrying_links(case, body), columns)
 
 
 def has_joint_between(case: Case, pair: Pair, columns: Collection[int]) -> bool:
@@ -57,13 +41,12 @@ def has_joint_between(case: Case, pair: Pair, columns: Collection[int]) -> bool:
 
     If none is, these joints never change their distance. A joint that carries both is not between them.
     """
-    return _has_joint(case, _under(case, pair.a) ^ _under(case, pair.b), columns)
+    return _has_joint(case, carrying_links(case, pair.a) ^ carrying_links(case, pair.b), columns)
 
 
-def _under(case: Case, body: BodyIndex) -> set[int]:
+def carrying_links(case: Case, body: BodyIndex) -> set[int]:
     """The links of the forest that carry a body."""
-    frame = body.frame_in(case)
-    return set() if frame == WORLD else set(carried_by(forest_of(case), frame))
+    return set(carried_by(forest_of(case), body.frame_in(case)))
 
 
 def _has_joint(case: Case, under: set[int], columns: Collection[int]) -> bool:
@@ -77,9 +60,7 @@ def _has_joint(case: Case, under: set[int], columns: Collection[int]) -> bool:
 
 def moves_with_robot(case: Case, body: BodyIndex, i_robot: int) -> bool:
     """True if a body is carried by a robot's root link, so that it moves where that is placed elsewhere."""
-    frame = body.frame_in(case)
-    forest = forest_of(case)
-    return frame != WORLD and forest.robot_starts[i_robot] in carried_by(forest, frame)
+    return forest_of(case).robot_starts[i_robot] in carrying_links(case, body)
 
 
 def moves_with_obstacle(case: Case, body: BodyIndex, i_obstacle: int) -> bool:

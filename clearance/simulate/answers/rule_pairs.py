@@ -18,8 +18,7 @@ from clearance.record.rule_answer import MOST_NEAR_STEPS, NearRows, RuleAnswer
 from clearance.simulate.measure.measure import NearestPairs, pairs_within
 from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
 from clearance.simulate.measure.moment_query import MomentQuery
-from clearance.simulate.measure.section_answer import SectionAnswer
-from clearance.simulate.measure.sections import Section
+from clearance.simulate.measure.sections import Section, SectionAnswer
 from clearance.world.case import Limits
 from clearance.world.motion import Motion
 

@@ -12,9 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.record.every_pair import EveryPair
 from clearance.record.measurement import Measurement, Minima
 from clearance.record.moment import Moment
-from clearance.record.names import pair_names
+from clearance.record.names import pair_names, sides_of
+from clearance.record.record import CUT
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import sample_codes
 from clearance.record.steps import RunAnswer
@@ -24,11 +26,11 @@ from clearance.simulate.answers.rule_pairs import (
     SampleMoments,
     measured_rule,
 )
-from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
-from clearance.simulate.measure.section_answer import SectionAnswer
-from clearance.simulate.measure.sections import Section, SectionPlan, rule_limits
-from clearance.world.case import Case
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion, no_minima
+from clearance.simulate.measure.sections import Section, SectionAnswer, SectionPlan, rule_limits
+from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
 from clearance.world.rules import DEFAULT
 
 
@@ -246,9 +248,7 @@ def _minima(answers: Sequence[SectionAnswer], n_pairs: int) -> Callable[[int | N
     """Finds the least of each pair over some sections; infinite for pairs that are not theirs."""
 
     def found(most: int | None) -> Minima:
-        least = Minima(
-            np.full(n_pairs, np.inf), np.full(n_pairs, -1), np.full((n_pairs, 2, 3), np.nan)
-        )
+        least = no_minima(n_pairs)
         for answer in answers:
             assert answer.found.measure_pair_minima is not None
             own, places = answer.found.measure_pair_minima(most), answer.section.places
@@ -322,3 +322,25 @@ def _worst_rule(rules: Sequence[RuleAnswer], n_steps: int) -> np.ndarray:
 
 def _or_far(clearance: np.ndarray) -> np.ndarray:
     return np.where(np.isnan(clearance), np.inf, clearance)
+
+
+def every_pair(case: Case, pairs: Sequence[Pair], judged: RunAnswer) -> EveryPair | None:
+    """The clearance of every pair at every step; None if that was not asked for."""
+    every = judged.found.every
+    if every is None:
+        return None
+    own = [(rule.name, rule.measurement.every) for rule in judged.rules]
+    by_rule = tuple((name, found) for name, found in own if found is not None)
+    return EveryPair(*pair_names(case, pairs), every, sides_of(case), by_rule)
+
+
+def cut_throughout(
+    case: Case, pairs: Sequence[Pair], rules: Sequence[MeasuredRule]
+) -> list[Omission]:
+    """The pairs of which the paper's method says nothing at any step; none for the exact method."""
+    found = rules[0].measurement
+    if len(rules) > 1 or not found.may_cut_pairs or found.measure_pair_minima is None:
+        return []
+    links, obstacles = pair_names(case, pairs)
+    cut = np.flatnonzero(np.isinf(found.measure_pair_minima(None).clearance))
+    return [Omission(links[i], obstacles[i], CUT) for i in cut]

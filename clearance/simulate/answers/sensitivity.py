@@ -16,6 +16,7 @@ import numpy as np
 from clearance.query.pair_query import Query
 from clearance.record.moment import Moment
 from clearance.record.sensitivity import NO_SLOPE, Rate, Sensitivity
+from clearance.simulate.answers.handling import gap_between
 from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.answers.transfers import Transfers
@@ -122,30 +123,13 @@ def _near(section: Section, moment: Moment) -> list[_NearPair]:
         columns = joined_positions(case, motions, np.array([own]))[0]
     poses = forest_of(case).poses(columns[None])
     reach = moment.clearance + section.padding + BAND
-    bodies = dict.fromkeys(body for pair in section.pairs for body in pair)
-    places = {body: body.poses_in(case, poses) for body in bodies}
-    box_of = {body: _box(body.shape_in(case).bounds, places[body][0]) for body in bodies}
     found = []
     for pair in section.pairs:
-        if _gap(box_of[pair.a], box_of[pair.b]) > reach:
-            continue
-        query = Query(*(body.shape_in(case) for body in pair))
-        distance = float(query.distances(places[pair.a], places[pair.b]).distances[0])
+        a, b = ((body.shape_in(case), body.poses_in(case, poses)[0]) for body in pair)
+        distance = gap_between(*a, *b, far=reach)
         if distance <= reach:
             found.append(_NearPair(section, pair, columns, distance))
     return found
-
-
-def _box(bounds: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(3,) middle and (3,) half size of a box in the world that contains what is in the bounds."""
-    middle, half = bounds.mean(axis=0), (bounds[1] - bounds[0]) / 2.0
-    return pose[:3, :3] @ middle + pose[:3, 3], np.abs(pose[:3, :3]) @ half
-
-
-def _gap(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> float:
-    """[m] A lower bound on the distance of two boxes along the axes."""
-    gaps = np.abs(one[0] - other[0]) - one[1] - other[1]
-    return float(np.linalg.norm(np.maximum(gaps, 0.0))) * (1.0 - 1e-9) - 1e-12
 
 
 def _rates(near: list[_NearPair]) -> Iterator[Rate]:

@@ -23,8 +23,7 @@ from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.measure.certify import finer_path, prove_path
 from clearance.simulate.measure.measure import nearest_at
 from clearance.simulate.measure.moment_query import MomentQuery
-from clearance.simulate.measure.section_answer import SectionAnswer
-from clearance.simulate.measure.sections import Section
+from clearance.simulate.measure.sections import Section, SectionAnswer
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.forest import positions_along
 

@@ -21,7 +21,7 @@ from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.record.measurement import SWEEP_COUNTERS, Minima
 from clearance.record.rows.blocks import blocks
 from clearance.simulate.measure.layout import PairsInMotion, positions_at
-from clearance.simulate.measure.measured import MeasuredSteps
+from clearance.simulate.measure.measured import MeasuredSteps, no_minima
 from clearance.simulate.measure.parts import in_order, parts
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
 
@@ -192,7 +192,7 @@ def _rows_of(rows: StoredRows | None, span: slice) -> StepRows:
 def _gathered(known: dict[str, np.ndarray], n_pairs: int) -> tuple[Minima, np.ndarray]:
     """The minima and counters of the parts that are done."""
     if not known:
-        return _no_minima(n_pairs), np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
+        return no_minima(n_pairs), np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
     return Minima(known["clearance"], known["step"], known["points"]), known["tally"]
 
 
@@ -238,12 +238,6 @@ class NearestPairs(NamedTuple):
 
     pairs: np.ndarray
     distances: np.ndarray
-
-
-def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; what is separate is not measured."""
-    rows, pairs, _ = pairs_within(what, steps, 0.0)
-    return rows, pairs
 
 
 def pairs_within(
@@ -361,23 +355,9 @@ def _measurement(
     )
 
 
-_NO_PAIRS = Minima(np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 2, 3)))
-"""The minima of no pairs."""
-
-
-def _no_minima(n_pairs: int) -> Minima:
-    if n_pairs == 0:
-        return _NO_PAIRS
-    return Minima(
-        np.full(n_pairs, np.inf),
-        np.full(n_pairs, -1, dtype=np.int64),
-        np.full((n_pairs, 2, 3), np.nan),
-    )
-
-
 def _no_pair_rows(n_pairs: int, n_minima: int, every: np.ndarray | None = None) -> PairRows:
     """Arrays for what a part finds of each pair: every step, if `every` is given, and its least, if asked for."""
-    return PairRows(np.empty((0, n_pairs)) if every is None else every, *_no_minima(n_minima))
+    return PairRows(np.empty((0, n_pairs)) if every is None else every, *no_minima(n_minima))
 
 
 def _take_lesser(least: Minima, found: PairRows) -> None:

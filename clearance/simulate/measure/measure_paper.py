@@ -14,9 +14,8 @@ from clearance.errors import NothingToMeasure
 from clearance.progress import Progress
 from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
-from clearance.record.measurement import Minima
 from clearance.simulate.measure.layout import PairsInMotion
-from clearance.simulate.measure.measured import MeasuredSteps
+from clearance.simulate.measure.measured import MeasuredSteps, no_minima
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
@@ -43,11 +42,7 @@ def measure_paper(
     n_steps = motions[0].n_steps
     clearance, points = np.full(n_steps, np.inf), np.full((n_steps, 2, 3), np.nan)
     winner = np.zeros(n_steps, dtype=np.int64)
-    minima = Minima(
-        np.full(len(pairs), np.inf),
-        np.zeros(len(pairs), dtype=np.int64),
-        np.full((len(pairs), 2, 3), np.nan),
-    )
+    minima = no_minima(len(pairs))
     tally: Counter[str] = Counter()
     for step in range(n_steps):
         if step % CHUNK == 0:

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, TypeVar
 
+import numpy as np
+
 from clearance.record.certificate import Certificate
 from clearance.record.measurement import Measurement, Minima
 from clearance.record.moment import Moment
@@ -58,3 +60,9 @@ class ProvenMotion(Certificate):
     def nearest_moment(self) -> Moment | None:
         """The moment of the least distance seen between steps; None if all were nearest at a step."""
         return None if self.nearest_between is None else self.moment_of(self.nearest_between)
+
+
+def no_minima(n_pairs: int) -> Minima:
+    """The minima of pairs of which nothing is measured yet."""
+    steps = np.full(n_pairs, -1, dtype=np.int64)
+    return Minima(np.full(n_pairs, np.inf), steps, np.full((n_pairs, 2, 3), np.nan))

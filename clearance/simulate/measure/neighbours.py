@@ -10,7 +10,6 @@ Source of the advancement: Mirtich 1996.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
@@ -66,7 +65,7 @@ class Neighbours:
         self.joints = tuple(joint.name for joint in self._chain.masters)
         given = [robot.reference.get(name, 0.0) for name in self.joints]
         self.home = np.clip(given, *self._chain.ranges.T)
-        self._corners = np.array([*itertools.product(*b.shape.bounds.T)])
+        self._corners = b.shape.box_corners
 
     def gaps(self, positions: np.ndarray) -> np.ndarray:
         """(n,) [m] the distances of the links at positions (n, k) of the joints [rad or m]."""

@@ -40,47 +40,23 @@ def parts(n_rows: int, *, sparse: bool = False) -> list[slice]:
 def in_order(
     work: Callable[[slice], Result], spans: Sequence[slice], jobs: int
 ) -> Iterator[Result]:
-    """The results of `work` for each span, in order, from so many threads, of which this is one."""
+    """The results of `work` for each span, in order, from so many threads."""
     if jobs == 1 or len(spans) <= 1:
         yield from map(work, spans)
         return
-    pool = _threads(jobs - 1)
-    waiting = iter(spans)
-    ahead: deque[tuple[slice, Future[Result]]] = deque()
+    pool, waiting = _threads(jobs), iter(spans)
+    ahead: deque[Future[Result]] = deque()
     try:
         while True:
-            for span in itertools.islice(waiting, WAITING * jobs - len(ahead)):
-                ahead.append((span, pool.submit(work, span)))
+            room = WAITING * jobs - len(ahead)
+            ahead += [pool.submit(work, span) for span in itertools.islice(waiting, room)]
             if not ahead:
                 return
-            _help(work, ahead)
-            yield ahead.popleft()[1].result()
+            yield ahead.popleft().result()
     finally:  # also where the caller wants no more: then no thread writes any more
-        for _, result in ahead:
+        for result in ahead:
             result.cancel()
-        wait([result for _, result in ahead])
-
-
-def _help(work: Callable[[slice], Result], ahead: deque[tuple[slice, Future[Result]]]) -> None:
-    """Does what no thread has begun, in this one, until the first result is there or nothing remains to begin.
-
-    A thread that only waited for results would take the others' processor each time it woke.
-    """
-    for i, (span, result) in enumerate(ahead):
-        if ahead[0][1].done():
-            return
-        if result.cancel():
-            ahead[i] = span, _finished(work, span)
-
-
-def _finished(work: Callable[[slice], Result], span: slice) -> Future[Result]:
-    """The result or the error of a part, done here and now."""
-    result: Future[Result] = Future()
-    try:
-        result.set_result(work(span))
-    except Exception as error:
-        result.set_exception(error)
-    return result
+        wait(ahead)
 
 
 @functools.lru_cache(maxsize=1)

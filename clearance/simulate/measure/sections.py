@@ -7,7 +7,7 @@ A run without rules, padding and windows is one section.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
 from clearance.tolerance import AT_LEVEL
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import actors_of_clock, clock_pair, clocks_of
@@ -136,7 +137,7 @@ def section_plan(timeline: Timeline) -> SectionPlan:
     return SectionPlan(
         tuple(places),
         tuple(found),
-        _each_once(one for selection in selections for one in selection.unmeasured),
+        tuple(dict.fromkeys(one for selection in selections for one in selection.unmeasured)),
         tuple(phase for phase in phases if phase.first not in measured),
     )
 
@@ -227,5 +228,10 @@ def _absent(
     return frozenset((here - own) | (there & own))
 
 
-def _each_once(omissions: Iterable[Omission]) -> tuple[Omission, ...]:
-    return tuple(dict.fromkeys(omissions))
+@dataclass(frozen=True, eq=False)
+class SectionAnswer:
+    """What was found of a section; pairs and steps are the section's own, distances without padding."""
+
+    section: Section
+    found: MeasuredSteps
+    certificate: ProvenMotion | None

@@ -14,7 +14,6 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -85,19 +84,6 @@ def simulated_motion(
     return Motion(placed, times, positions, error, notes)
 
 
-def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
-    """The pose of every link as the engine's own kinematics sees it, to check ours against.
-
-    Args:
-        positions: (n, k) [rad] or [m], columns as `placed.robot.moving_joints`.
-
-    Returns:
-        (n, n_links, 4, 4) `world_from_link` [m], links as in `Robot.link_names`.
-    """
-    with _world(placed, with_shapes=False) as world:
-        return np.array([world.link_poses(row) for row in positions])
-
-
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) times [s] of the trajectory, (n, k) positions and (n, k) rates asked for at each simulation step."""
     trajectory, rate = placed.given_trajectory, placed.timing.rate
@@ -118,26 +104,13 @@ def _require_finite(times: np.ndarray, positions: np.ndarray) -> None:
         )
 
 
-@dataclass(frozen=True)
-class _Follower:
-    """A mimic joint: engine index, column of its master, factor and offset along the whole
-    chain of masters.
-    """
-
-    index: int
-    i_master: int
-    multiplier: float
-    offset: float
-
-
 class _World:
     """One robot on its base in one engine."""
 
     def __init__(self, engine: Any, body: int, placed: PlacedRobot, folder: Path) -> None:
-        self._engine, self._body, self._placed, self._folder = engine, body, placed, folder
+        self._engine, self._body, self._folder = engine, body, folder
         joints = [engine.getJointInfo(body, i) for i in range(engine.getNumJoints(body))]
         index = {joint[1].decode(): joint[0] for joint in joints}
-        self._link_index = {joint[12].decode(): joint[0] for joint in joints}
         moving = placed.robot.moving_joints
         self._indices = [index[joint.name] for joint in moving]
         efforts = [joints[i][10] for i in self._indices]
@@ -146,9 +119,9 @@ class _World:
         ]
         self._efforts = [effort if effort > 0.0 else _UNLIMITED for effort in efforts]
         columns = {joint.name: i for i, joint in enumerate(moving)}
-        self._followers = [
-            _Follower(index[joint.name], columns[master], multiplier, offset)
-            for joint, master, multiplier, offset in followers(placed.robot)
+        self._followers = [  # engine index, column of the master, factor and offset along all masters
+            (index[joint.name], columns[master], factor, offset)
+            for joint, master, factor, offset in followers(placed.robot)
             if joint.mimic is not None
         ]
 
@@ -214,36 +187,15 @@ class _World:
         self._place_followers(positions, np.array([state[1] for state in states]))
         return positions
 
-    def link_poses(self, positions: np.ndarray) -> np.ndarray:
-        """(n_links, 4, 4) `world_from_link` [m] at (k,) positions."""
-        self._place(positions, np.zeros(len(positions)))
-        poses = [self._link_pose(name) for name in self._placed.robot.link_names]
-        return np.array(poses)
-
-    def _link_pose(self, name: str) -> np.ndarray:
-        engine = self._engine
-        if name in self._link_index:
-            state = engine.getLinkState(
-                self._body, self._link_index[name], computeForwardKinematics=True
-            )
-            return _matrix(engine, state[4], state[5])
-        world_from_inertial = engine.getBasePositionAndOrientation(self._body)
-        base_from_inertial = engine.getDynamicsInfo(self._body, -1)[3:5]
-        inertial_from_base = engine.invertTransform(*base_from_inertial)
-        return _matrix(
-            engine, *engine.multiplyTransforms(*world_from_inertial, *inertial_from_base)
-        )
-
     def _place(self, positions: np.ndarray, rates: np.ndarray) -> None:
         for index, position, rate in zip(self._indices, positions, rates, strict=True):
             self._engine.resetJointState(self._body, index, float(position), float(rate))
         self._place_followers(positions, rates)
 
     def _place_followers(self, positions: np.ndarray, rates: np.ndarray) -> None:
-        for follower in self._followers:
-            position = follower.multiplier * positions[follower.i_master] + follower.offset
-            rate = follower.multiplier * rates[follower.i_master]
-            self._engine.resetJointState(self._body, follower.index, float(position), float(rate))
+        for index, column, factor, offset in self._followers:
+            position, rate = factor * positions[column] + offset, factor * rates[column]
+            self._engine.resetJointState(self._body, index, float(position), float(rate))
 
 
 @contextmanager
@@ -306,10 +258,3 @@ def _position_and_quaternion(pose: np.ndarray) -> tuple[list[float], list[float]
     from scipy.spatial.transform import Rotation
 
     return pose[:3, 3].tolist(), Rotation.from_matrix(pose[:3, :3]).as_quat().tolist()
-
-
-def _matrix(engine: Any, xyz: Sequence[float], quat: Sequence[float]) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:3, :3] = np.reshape(engine.getMatrixFromQuaternion(quat), (3, 3))
-    pose[:3, 3] = xyz
-    return pose

@@ -9,14 +9,14 @@ import numpy as np
 
 from clearance.record.certificate import Certificate, motion_codes
 from clearance.record.moment import Moment
-from clearance.record.names import pair_names
 from clearance.record.rows.blocks import blocks
 from clearance.record.rule_answer import standing_worst
 from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.measure.measure import nearest_at
 from clearance.simulate.measure.measured import ProvenMotion
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.moment_query import MomentQuery
+from clearance.simulate.measure.sections import SectionAnswer
 from clearance.tolerance import REACH
 from clearance.world.forest import positions_along
 
@@ -107,22 +107,7 @@ def nearest_moments(
     section, phase = answer.section, answer.section.phase
     own = step - phase.first
     found = nearest_at(section.in_motion, positions_along(phase.case, phase.motions, own, shares))
-    names = pair_names(phase.case, section.pairs)
-    start, end = phase.motions[0].times[own : own + 2]
-    return [
-        Moment(
-            step=step,
-            time=float(start + share * (end - start)),
-            between=True,
-            clearance=float(found.clearance[i] - section.padding),
-            link=names[0][found.pair[i]],
-            obstacle=names[1][found.pair[i]],
-            point_link=tuple(found.points[i, 0].tolist()),
-            point_obstacle=tuple(found.points[i, 1].tolist()),
-            positions=tuple(motion.positions_after(own, share) for motion in phase.motions),
-            share=share,
-            rule=rule.name,
-            touches=bool(found.clearance[i] <= 0.0),
-        )
-        for i, share in enumerate(shares.tolist())
-    ]
+    query = MomentQuery(phase.case, phase.motions, section.pairs)
+    nearest = zip(shares.tolist(), found.pair.tolist(), strict=True)
+    moments = (query.between(own, share, pair) for share, pair in nearest)
+    return [one.of_run(phase.first, section.padding, rule.name) for one in moments]

@@ -142,6 +142,15 @@ def test_the_cross_check_says_what_it_leaves_out():
     assert any("not cross-checked" in notice.text for notice in run.record.notices)
 
 
+@pytest.mark.peer
+def test_where_no_clocks_are_tied_nothing_is_cross_checked():
+    """At one time the blocks pass each other at 0.2; at times of their own at 0.1, all along."""
+    passing = along_x(gantry("one")), along_x(gantry("two"), start=1.0, end=-1.0, y=0.2)
+    run = cl.check(cl.Case("passing", passing, (), clock=Clock(np.inf)), cross_check=True)
+    assert run.cross_check is None
+    assert any("not cross-checked" in notice.text for notice in run.record.notices)
+
+
 @pytest.mark.slow
 def test_every_pair_has_its_least():
     case = loose(3, np.inf)

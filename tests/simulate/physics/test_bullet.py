@@ -15,7 +15,8 @@ from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.formats import read_robot
 from clearance.formats.robot.request import RobotRequest
 from clearance.geometry.point_cloud import PointCloud
-from clearance.simulate.physics.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
+from clearance.simulate.physics import bullet
+from clearance.simulate.physics.bullet import STEPS_PER_SECOND, simulated_motion
 from clearance.world.body import Body, Obstacle
 from clearance.world.kinematics import link_poses
 from clearance.world.placed_robot import PlacedRobot
@@ -71,6 +72,36 @@ def tilted_base() -> np.ndarray:
 def packaged_urdf(relative: str) -> Path:
     # found without importing: the import would start the engine's logging
     return Path(importlib.util.find_spec("pybullet_data").origin).parent / relative
+
+
+def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
+    """(n, n_links, 4, 4) [m] the pose of every link as the engine's own kinematics sees it."""
+    with bullet._world(placed, with_shapes=False) as world:
+        engine, body = world._engine, world._body
+        index = {
+            engine.getJointInfo(body, i)[12].decode(): i for i in range(engine.getNumJoints(body))
+        }
+        found = []
+        for row in positions:
+            world._place(row, np.zeros(len(row)))
+            found.append(
+                [pose_of(engine, body, index.get(name)) for name in placed.robot.link_names]
+            )
+    return np.array(found)
+
+
+def pose_of(engine, body: int, i_link: int | None) -> np.ndarray:
+    """The pose of a link, or of the base."""
+    if i_link is not None:
+        xyz, quat = engine.getLinkState(body, i_link, computeForwardKinematics=True)[4:6]
+    else:
+        world_from_inertial = engine.getBasePositionAndOrientation(body)
+        inertial_from_base = engine.invertTransform(*engine.getDynamicsInfo(body, -1)[3:5])
+        xyz, quat = engine.multiplyTransforms(*world_from_inertial, *inertial_from_base)
+    pose = np.eye(4)
+    pose[:3, :3] = np.reshape(engine.getMatrixFromQuaternion(quat), (3, 3))
+    pose[:3, 3] = xyz
+    return pose
 
 
 def assert_same_kinematics(placed: PlacedRobot) -> None:

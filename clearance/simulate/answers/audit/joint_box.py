@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polytope_hull import hull_corners
 from clearance.world.kinematic_chain import KinematicChain
 
 SLACK = 1e-9
@@ -109,7 +110,7 @@ class JointBox:
         size += sum(float(np.abs(shape.bounds).sum()) for shape in (shape_a, shape_b))
         size += chain.longest_slides
         corners = _hull_corners(shape_a), _hull_corners(shape_b)
-        return cls(chain, *corners, _box_corners(shape_b.bounds), SLACK * size)
+        return cls(chain, *corners, shape_b.box_corners, SLACK * size)
 
     def motion(self, half: np.ndarray, frames: np.ndarray) -> BoxMotion:
         """How far the second link moves over boxes of half widths (n, k) about `frames`."""
@@ -170,17 +171,7 @@ def _moved(poses: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.einsum("nij,mj->nmi", poses[:, :3, :3], points) + poses[:, None, :3, 3]
 
 
-def _box_corners(bounds: np.ndarray) -> np.ndarray:
-    x, y, z = bounds.T
-    return np.array(np.meshgrid(x, y, z)).reshape(3, 8).T
-
-
 def _hull_corners(shape: Polyhedron) -> np.ndarray:
-    """(n, 3) the corners of the hull of a shape, or of its box where that has too many or no volume."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        corners = shape.vertices[ConvexHull(shape.vertices).vertices]
-    except QhullError:
-        corners = shape.vertices
-    return corners if len(corners) <= MOST_CORNERS else _box_corners(shape.bounds)
+    """(n, 3) the corners of the hull of a shape, or of its box where that has too many."""
+    corners = hull_corners(shape.vertices)
+    return corners if len(corners) <= MOST_CORNERS else shape.box_corners

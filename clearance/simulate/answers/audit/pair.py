@@ -11,16 +11,19 @@ import math
 
 import numpy as np
 
+from clearance.progress import Progress
 from clearance.query.pair_query import Query
-from clearance.record.audit import PairFinding, PairStatus
+from clearance.record.audit import ExcusedPair, PairFinding, PairStatus, ProposedPair
 from clearance.simulate.answers.audit.joint_box import (
     BoxDistances,
     BoxMotion,
     JointBox,
     PositionBoxes,
 )
+from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.robot import JointKind, Robot
+from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
 
 GAP = 1e-4
 """[m] Links that come nearer than this without being seen to meet may stay undecided."""
@@ -197,3 +200,38 @@ def _spread(whole: PositionBoxes, n: int) -> np.ndarray:
     unit = qmc.Halton(k, scramble=False).random(n) if k else np.zeros((n, 0))
     unit[0] = 0.5
     return whole.middle + whole.half * (2.0 * unit - 1.0)
+
+
+def audit(
+    robot: Robot, matrix: CollisionMatrix, progress: Progress | None = None
+) -> list[ExcusedPair]:
+    """Every pair of links with geometry that the matrix excuses, and whether it can ever meet."""
+    excused = [
+        pair
+        for pair in self_pairs(robot, matrix, trust_never=True)
+        if pair.excused not in (None, RIGID)
+    ]
+    found = []
+    for i, pair in enumerate(excused, start=1):
+        found.append(ExcusedPair(str(pair.excused), audit_pair(robot, pair.link_a, pair.link_b)))
+        if progress:
+            progress(i, len(excused))
+    return found
+
+
+def propose(robot: Robot, progress: Progress | None = None) -> list[ProposedPair]:
+    """What can be excused of every pair that moves: neighbours, and what is proven never to meet."""
+    pairs = [pair for pair in self_pairs(robot) if pair.excused != RIGID]
+    found = []
+    for i, pair in enumerate(pairs, start=1):
+        found.append(_proposed(robot, pair))
+        if progress:
+            progress(i, len(pairs))
+    return found
+
+
+def _proposed(robot: Robot, pair: SelfPair) -> ProposedPair:
+    if pair.excused == ADJACENT:
+        return ProposedPair(pair, ADJACENT, None)
+    finding = audit_pair(robot, pair.link_a, pair.link_b)
+    return ProposedPair(pair, NEVER if finding.status is PairStatus.APART else None, finding)

@@ -30,10 +30,8 @@ from clearance.simulate.answers.contact.events import (
     hull_depths,
     rated_places,
 )
-from clearance.simulate.answers.contact.rows import ContactPart, FoundContacts, joined_contacts
 from clearance.simulate.measure.layout import PairsInMotion
-from clearance.simulate.measure.measure import pairs_in_contact
-from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.measure import pairs_within
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.motion import Motion
@@ -46,46 +44,6 @@ MOST_VOLUMES = 9
 """Steps of an event at which the volume shared is asked for, and as many again about the best."""
 
 
-def contacts_of(
-    case: Case,
-    pairs: Sequence[Pair],
-    answers: Sequence[SectionAnswer],
-    times: np.ndarray,
-    work_out: str,
-    progress: Progress | None = None,
-) -> FoundContacts | None:
-    """The contacts of a run, of what its sections have found; None where no pair that one time has touches.
-
-    Args:
-        pairs: those of the run. times: (n,) [s] of its steps.
-        work_out: of which rows depth, volume and separation vector are found: the deepest moment of each of the
-            "events", "every" one, or "none".
-        progress: called with how many of how many.
-    """
-    parts = [
-        _part_of(answer, work_out, progress)
-        for answer in answers
-        if answer.section.tied
-        and (answer.found.clearance <= 0.0).any()
-        and not all(pair.has_cloud(case) for pair in answer.section.pairs)
-    ]
-    names = list(zip(*pair_names(case, pairs), strict=True))
-    return joined_contacts(parts, names, times) if parts else None
-
-
-def _part_of(answer: SectionAnswer, work_out: str, progress: Progress | None) -> ContactPart:
-    section, found = answer.section, answer.found
-    finder = overlap_finder(
-        section.phase.case,
-        section.phase.motions,
-        section.pairs,
-        found.clearance,
-        found.pair,
-        work_out,
-    )
-    return ContactPart.of(finder, section.phase.first, section.places, progress)
-
-
 def overlap_finder(
     case: Case,
     motions: Sequence[Motion],
@@ -93,25 +51,26 @@ def overlap_finder(
     clearance: np.ndarray,
     nearest: np.ndarray,
     work_out: str,
-) -> _OverlapFinder:
+) -> OverlapFinder:
     """What finds the overlap of every pair in contact, step by step and pair by pair.
 
     Args:
         clearance: (n,) [m] of every step; those at 0 are checked.
         nearest: (n,) the pair that has it. It is in contact for sure; the others are asked.
-        work_out: as in `contacts_of`.
+        work_out: of which rows depth, volume and separation vector are found: the deepest moment of each of the
+            "events", "every" one, or "none".
     """
     touching = [
         block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))
     ]
     steps = np.concatenate(touching)
-    return _OverlapFinder(
+    return OverlapFinder(
         case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out
     )
 
 
 @dataclass(eq=False)
-class _OverlapFinder:
+class OverlapFinder:
     """Overlaps of one run; bodies are cut into parts once, and a pose between two bodies is asked once."""
 
     case: Case
@@ -129,9 +88,8 @@ class _OverlapFinder:
 
         Clouds of points are excluded: what of a ball is in a body says nothing of the thing that was scanned.
         """
-        rows, pairs = pairs_in_contact(
-            PairsInMotion(self.case, self.motions, self.pairs), self.steps
-        )
+        what = PairsInMotion(self.case, self.motions, self.pairs)
+        rows, pairs, _ = pairs_within(what, self.steps, 0.0)
         sure = np.arange(len(self.steps)) * len(self.pairs) + self.nearest
         both = np.union1d(rows * len(self.pairs) + pairs, sure)
         rows, pairs = np.divmod(both, len(self.pairs))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -12,33 +11,54 @@ from clearance.geometry.boolean import ClosedMesh
 from clearance.progress import Progress
 from clearance.query.contact import Contact
 from clearance.record.contact import FIGURES, OVERLAP, ContactRows, KnownOverlaps, StepContact
+from clearance.record.names import pair_names
+from clearance.simulate.answers.contact.contacts import OverlapFinder, overlap_finder
+from clearance.simulate.measure.sections import SectionAnswer
+from clearance.world.case import Case
+from clearance.world.pairs import Pair
 
 MOST_REGIONS = 2000
 """Regions of a part that are cached; one takes some 2 to 10 kB."""
 
 
-class ContactFinder(Protocol):
-    """What finds overlaps.
+def contacts_of(
+    case: Case,
+    pairs: Sequence[Pair],
+    answers: Sequence[SectionAnswer],
+    times: np.ndarray,
+    work_out: str,
+    progress: Progress | None = None,
+) -> FoundContacts | None:
+    """The contacts of a run, of what its sections have found; None where no pair that one time has touches.
 
-    Attributes:
-        work_out: of which rows depth, volume and separation vector are worked out: "none", "events" or "every".
+    Args:
+        pairs: those of the run. times: (n,) [s] of its steps.
+        work_out: of which rows depth, volume and separation vector are found: the deepest moment of each of the
+            "events", "every" one, or "none".
+        progress: called with how many of how many.
     """
+    parts = [
+        _part_of(answer, work_out, progress)
+        for answer in answers
+        if answer.section.tied
+        and (answer.found.clearance <= 0.0).any()
+        and not all(pair.has_cloud(case) for pair in answer.section.pairs)
+    ]
+    names = list(zip(*pair_names(case, pairs), strict=True))
+    return joined_contacts(parts, names, times) if parts else None
 
-    work_out: str
 
-    def touching(self) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) steps and (n,) pairs in contact, steps first."""
-
-    def contact(self, step: int, i_pair: int) -> Contact:
-        """The overlap of a pair that is in contact at a step, in the world frame."""
-
-    def chosen(
-        self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None
-    ) -> Iterator[tuple[int, Contact]]:
-        """The rows that the run works out, each with its overlap."""
-
-    def notes(self) -> tuple[str, ...]:
-        """What stands for the bodies so far, where it is not they themselves."""
+def _part_of(answer: SectionAnswer, work_out: str, progress: Progress | None) -> ContactPart:
+    section, found = answer.section, answer.found
+    finder = overlap_finder(
+        section.phase.case,
+        section.phase.motions,
+        section.pairs,
+        found.clearance,
+        found.pair,
+        work_out,
+    )
+    return ContactPart.of(finder, section.phase.first, section.places, progress)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +70,7 @@ class ContactPart:
         steps, pairs: (k,) of each row, as the part counts. worked: (m,) rows whose overlaps are known.
     """
 
-    finder: ContactFinder
+    finder: OverlapFinder
     first: int
     places: np.ndarray
     steps: np.ndarray
@@ -60,7 +80,7 @@ class ContactPart:
 
     @staticmethod
     def of(
-        finder: ContactFinder, first: int, places: np.ndarray, progress: Progress | None = None
+        finder: OverlapFinder, first: int, places: np.ndarray, progress: Progress | None = None
     ) -> ContactPart:
         """The part with the overlaps that are asked for; `progress` is called with how many of how many."""
         steps, pairs = finder.touching()

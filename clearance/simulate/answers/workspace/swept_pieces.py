@@ -19,6 +19,7 @@ from clearance.geometry.convex_parts import convex_parts
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
+from clearance.geometry.polytope_hull import hull_corners
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL, SLIDING, TURNING, Links
 from clearance.simulate.measure.certify import path_of
@@ -61,7 +62,7 @@ class SweptPiece:
     @cached_property
     def body(self) -> Polytope:
         """The convex body that contains the part throughout: the hull, wider by a cube."""
-        corners = _corners_of_hull(self.points)
+        corners = hull_corners(self.points)
         cube = (self.leaves + ROUNDING) * np.array(list(product((-1.0, 1.0), repeat=3)))
         return Polytope((corners[:, None] + cube[None]).reshape(-1, 3))
 
@@ -137,16 +138,6 @@ def _pieces_of_phase(
                 points = np.einsum("nij,kj->nki", chosen[:, :3, :3], part) + chosen[:, None, :3, 3]
                 steps = phase.first + first, phase.first + last
                 yield SweptPiece(body.name, *steps, points.reshape(-1, 3), leaves)
-
-
-def _corners_of_hull(points: np.ndarray) -> np.ndarray:
-    """The points that are corners of their hull; all of them where Qhull finds them flat."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        return points[ConvexHull(points).vertices]
-    except QhullError:
-        return points
 
 
 def _parts(shape: Polyhedron, cut: bool) -> list[np.ndarray]:

@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from clearance.kernels.clocks.unsynchronised import TwoClockBounds
 from clearance.record.measurement import SWEEP_COUNTERS, Minima
 from clearance.simulate.measure.clocks.pairs import PairsOfTwoClocks
 from clearance.simulate.measure.clocks.unsynchronised import (
     UnsynchronisedAnswers,
-    UnsynchronisedIntervals,
     least_of_all_steps,
     least_unsynchronised,
 )
-from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion, no_minima
 from clearance.simulate.measure.resources import Resources
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
@@ -51,8 +51,7 @@ def _measurement(
 
 def _minima(what: PairsOfTwoClocks, resources: Resources) -> Minima:
     """The least of each pair, each asked about by itself."""
-    n = len(what.pairs)
-    least = Minima(np.full(n, np.inf), np.full(n, -1), np.full((n, 2, 3), np.nan))
+    least = no_minima(len(what.pairs))
     for i, pair in enumerate(what.pairs):
         steps = least_of_all_steps(replace(what, pairs=(pair,)), resources)
         if (steps.pair < 0).all():  # no two steps occur together
@@ -68,10 +67,10 @@ def _certificate(what: PairsOfTwoClocks, found: UnsynchronisedAnswers) -> Proven
     if found.intervals is None:
         return None
     own, last = found.intervals, found.steps.clearance[-1:]
-    occurs = np.isfinite(own.upper_bound)
+    occurs = np.isfinite(own.upper)
     return ProvenMotion(
-        np.append(own.lower_bound, last * ROUNDED_DOWN),
-        np.append(own.upper_bound, last),
+        np.append(own.lower, last * ROUNDED_DOWN),
+        np.append(own.upper, last),
         np.append(np.where(occurs, own.share_a, -1.0), -1.0),
         np.append(np.where(occurs, own.pair, -1), -1),
         _widest(own, found.gap),
@@ -81,8 +80,8 @@ def _certificate(what: PairsOfTwoClocks, found: UnsynchronisedAnswers) -> Proven
     )
 
 
-def _widest(intervals: UnsynchronisedIntervals, gap: float) -> float:
+def _widest(intervals: TwoClockBounds, gap: float) -> float:
     """[m] The gap that the bounds of an interval were allowed."""
-    known = np.isfinite(intervals.upper_bound)
-    gaps = intervals.upper_bound[known] - intervals.lower_bound[known]
+    known = np.isfinite(intervals.upper)
+    gaps = intervals.upper[known] - intervals.lower[known]
     return max(gap, float(gaps.max(initial=0.0)))

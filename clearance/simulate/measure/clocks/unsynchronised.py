@@ -61,65 +61,26 @@ TIME_ROUNDING = 2.0**-48
 
 
 @dataclass(frozen=True, eq=False)
-class UnsynchronisedSteps:
-    """The least clearance of each step of the first clock over all steps of the second in the band.
-
-    Attributes:
-        clearance: (n,) [m]; ties go to the least pair, then to the least step of the second clock.
-        pair: (n,) which pair. step_b: (n,) the step of the second clock.
-        points: (n, 2, 3) witness points in the world [m], each of its body at its own time.
-    """
-
-    clearance: np.ndarray
-    pair: np.ndarray
-    step_b: np.ndarray
-    points: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class UnsynchronisedIntervals:
-    """What is proven of each interval of the first clock over all times of the second in the band.
-
-    Attributes:
-        lower_bound: (n - 1,) [m] proven. upper_bound: (n - 1,) [m] the least distance seen.
-        share_a: (n - 1,) where in the interval that was, 0 to 1.
-        step_b, share_b: (n - 1,) the step of the second clock before it, and where in the interval after it.
-        pair: (n - 1,) which pair.
-    """
-
-    lower_bound: np.ndarray
-    upper_bound: np.ndarray
-    share_a: np.ndarray
-    step_b: np.ndarray
-    share_b: np.ndarray
-    pair: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
 class UnsynchronisedAnswers:
     """What is known of two clocks' motions.
 
     Attributes:
-        slack: [s]. gap: [m] how far lower bounds may be below the upper bounds.
-        steps, intervals: of the first clock; no intervals where only the steps were checked.
+        gap: [m] how far lower bounds may be below the upper bounds.
+        steps: the least of each step of the first clock over all steps of the second in the band; ties go to the
+            least pair, then to the least step of the second clock. Where there is none, the pair is -1.
+        intervals: what is proven of each interval of the first clock over all times of the second in the band; not
+            there where only the steps were checked.
         tally: counters by name, of the steps and of the intervals.
         moment_of: the moment of an interval at which its upper bound was seen.
     """
 
-    slack: float
     gap: float
-    steps: UnsynchronisedSteps
-    intervals: UnsynchronisedIntervals | None
+    steps: StepMinima
+    intervals: TwoClockBounds | None
     steps_tally: dict[str, int]
     intervals_tally: dict[str, int]
     moment_of: Callable[[int], Moment] = field(repr=False)
     notices: tuple[Notice, ...] = ()
-
-    @property
-    def worst(self) -> int:
-        """The first interval of least upper bound."""
-        assert self.intervals is not None
-        return int(np.argmin(self.intervals.upper_bound))
 
 
 def least_unsynchronised(
@@ -139,13 +100,12 @@ def least_unsynchronised(
     work = _Work.of(what, resources)
     steps, steps_tally = work.steps()
     if gap is None:
-        return UnsynchronisedAnswers(what.slack, np.inf, steps, None, steps_tally, {}, _no_moment)
+        return UnsynchronisedAnswers(np.inf, steps, None, steps_tally, {}, _no_moment)
     finest = [no_finer_than_rounding(side.case, side.motions, gap) for side in (what.a, what.b)]
     gap = max(gap for gap, _ in finest)
     goal = CertificateGoal(gap, what.limits.fail, MOST_RECTANGLES)
     intervals, intervals_tally = work.intervals(steps, goal)
     return UnsynchronisedAnswers(
-        what.slack,
         gap,
         steps,
         intervals,
@@ -156,7 +116,7 @@ def least_unsynchronised(
     )
 
 
-def least_of_all_steps(what: PairsOfTwoClocks, resources: Resources) -> UnsynchronisedSteps:
+def least_of_all_steps(what: PairsOfTwoClocks, resources: Resources) -> StepMinima:
     """The least of all steps of the first clock, in the first row of least clearance; others may be too much."""
     _require_two_clocks(what)
     return _Work.of(what, resources).steps(least_only=True)[0]
@@ -213,7 +173,7 @@ class _Work:
     def n_b(self) -> int:
         return len(self.what.b.times)
 
-    def steps(self, *, least_only: bool = False) -> tuple[UnsynchronisedSteps, dict[str, int]]:
+    def steps(self, *, least_only: bool = False) -> tuple[StepMinima, dict[str, int]]:
         """The least of each step, or what is right of the least of all only."""
         n = self.n_a
         found = StepMinima(
@@ -235,11 +195,11 @@ class _Work:
         tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), 0)
         none = found.step_b < 0  # no step of the other clock is in the band, or none is nearer
         found.pair[none], found.points[none] = -1, np.nan
-        return UnsynchronisedSteps(found.clearance, found.pair, found.step_b, found.points), tally
+        return found, tally
 
     def intervals(
-        self, steps: UnsynchronisedSteps, goal: CertificateGoal
-    ) -> tuple[UnsynchronisedIntervals, dict[str, int]]:
+        self, steps: StepMinima, goal: CertificateGoal
+    ) -> tuple[TwoClockBounds, dict[str, int]]:
         """What is proven of each interval."""
         n = self.n_a - 1
         numbers, places = np.empty((4, n)), np.empty((2, n), dtype=np.int64)
@@ -262,10 +222,7 @@ class _Work:
                 return span.stop, counts
 
             tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), self.n_a)
-        found = UnsynchronisedIntervals(
-            bounds.lower, bounds.upper, bounds.share_a, bounds.step_b, bounds.share_b, bounds.pair
-        )
-        return found, tally
+        return bounds, tally
 
     def _of_a(self, span: slice) -> slice:
         """The rows of the path at some steps or intervals of clock a."""
@@ -298,7 +255,7 @@ class _TwoClockQuery:
     """Measures the pair of an interval at the two times at which it was seen nearest."""
 
     what: PairsOfTwoClocks
-    intervals: UnsynchronisedIntervals
+    intervals: TwoClockBounds
 
     def of_interval(self, interval: int) -> Moment:
         """The moment at which the upper bound of an interval was seen."""
@@ -316,7 +273,7 @@ class _TwoClockQuery:
             pose_a=pair.a.poses_in(what.a.case, poses[0])[0],
             pose_b=pair.b.poses_in(what.b.case, poses[1])[0],
         )
-        touches = bool(found.upper_bound[interval] <= 0.0)
+        touches = bool(found.upper[interval] <= 0.0)
         names = pair_names(case, [pair])
         positions = tuple(
             what.b.motions[i].positions_after(*at_b)
