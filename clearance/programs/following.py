@@ -184,16 +184,13 @@ class Follower:
             near[~self.free] = self._held(at)[0, ~self.free]
             pose = self.poses(at)
             solved = joints_at(self.arm.tool, pose, near[None], self.free)
-            if (
-                solved.residual[0] <= REACHED
-                and np.abs(solved.positions[0] - near).max() <= FORESEEN
-            ):
+            off = np.abs(solved.positions[0] - near).max()
+            if solved.residual[0] <= REACHED and off <= FORESEEN:
                 come.append(ahead)
                 found.append(solved.positions[0])
                 rates.append(self.rates_at(found[-1], ahead))
-                reached.append(
-                    rates[-1] if self.ride is None else self.rates_at(found[-1], ahead, before=True)
-                )
+                is_same = self.ride is None
+                reached.append(rates[-1] if is_same else self.rates_at(found[-1], ahead, True))
                 step *= 2.0
             elif (step := 0.5 * step) < SHORTEST * whole:
                 raise self._stuck(ahead, found[-1])

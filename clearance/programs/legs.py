@@ -373,13 +373,8 @@ def _rate_in_corner(arm: Arm, zone: Corner) -> float:
         turned = second.slopes(np.zeros(1)) - first.slopes(np.ones(1))
         bend = float(np.linalg.norm(turned)) + 2.0 * (first.bend + second.bend)
         acceleration = min(before.acceleration, after.acceleration)
-        held = np.array(
-            [
-                side.joints_on_path.held[0]
-                for side in zone.sides
-                if isinstance(side, Stretch) and side.joints_on_path
-            ]
-        )
+        on_path = (side.joints_on_path for side in zone.sides if isinstance(side, Stretch))
+        held = [one.held[0] for one in on_path if one is not None]
         bends = np.abs(held[1] - held[0]) / fastest(arm.joints)
         rates.append(float(np.sqrt(0.5 / RUN_UP / max(float(bends.max()), 1e-12))))
     else:

@@ -118,10 +118,8 @@ class _Samples:
         if isinstance(leg.move, Wait) and leg.move.seen_from:
             self._ride(leg.move)
         elif isinstance(leg.move, Wait):
-            still = np.zeros((2, len(self.at)))
-            self.laid.add(
-                np.array([0.0, leg.move.seconds]), self.at + still, still, still, self.may_jump
-            )
+            still, times = np.zeros((2, len(self.at))), np.array([0.0, leg.move.seconds])
+            self.laid.add(times, self.at + still, still, still, self.may_jump)
         elif leg.way is None and leg.corner is not None:
             self._beside_joints(leg, leg.corner)
         elif isinstance(leg.way, JointWay):
@@ -137,11 +135,8 @@ class _Samples:
 
     def _carriage_of(self, move: Move) -> Carriage | None:
         """What the tool goes on with in a move."""
-        return (
-            self.program.carriages.get(move.seen_from)
-            if isinstance(move, PathMove | Wait)
-            else None
-        )
+        own = move.seen_from if isinstance(move, PathMove | Wait) else ""
+        return self.program.carriages.get(own)
 
     def note_targets(self, ways: Sequence[PlannedWay], carriage: Carriage | None) -> None:
         """Says which joints are taken in moves to a pose; on a carriage, when it is there."""

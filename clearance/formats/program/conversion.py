@@ -95,17 +95,15 @@ def converted(
     Raises:
         BadInput: with the line, or the key of the case.
     """
-    has_poses = any(
-        isinstance(one, ControllerMove) and isinstance(one.to, PoseTarget) for one in read.moves
-    )
+    moving = [one for one in read.moves if isinstance(one, ControllerMove)]
+    has_poses = any(isinstance(one.to, PoseTarget) for one in moving)
     arm = ControlledArm(asked, robot, read.base if has_poses else "", read.maker, root_from_world)
     made = _Conversion(read, arm)
     assert made.arm.link  # a fault of the case, and of no line
     own, starts_anywhere = made.start(start)
     made.begins_at_first = starts_anywhere
-    on_axes = (
-        [*arm.doubts_on_axes()] if made.names_axes else []
-    )  # before flags of configurations are held against them
+    # before flags of configurations are held against them
+    on_axes = [*arm.doubts_on_axes()] if made.names_axes else []
     named = list(made.moves())
     tool = {"link": made.arm.link, **pose_written(made.first_tool)}
     program = {
@@ -126,7 +124,7 @@ def converted(
     left_out = (*read.left_out, *([UNTIMED] if made.has_untimed_moves else []))
     return ConvertedProgram(
         *(checked, places, names, notes, starts_anywhere, rests_on, left_out, contradicted),
-        is_rough=any(one.is_rough for one in read.moves if isinstance(one, ControllerMove)),
+        is_rough=any(one.is_rough for one in moving),
     )
 
 

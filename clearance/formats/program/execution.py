@@ -271,28 +271,25 @@ class Execution(Remarks):
             BadInput: other arguments than it has; too many routines in one another.
         """
         if len(self.frames) > MOST_CALLS:
-            raise BadProgram(
-                f"more than {MOST_CALLS} routines call one another", valid="end the calls"
-            )
-        given = arguments_of(routine, call)
+            fault = f"more than {MOST_CALLS} routines call one another"
+            raise BadProgram(fault, valid="end the calls")
+        given, persistent = arguments_of(routine, call), self.persistent
         self.doubts |= self.effects.doubts_on_handlers(routine)
         frame = {name: self.evaluated(value) for name, value in given.items()}
-        self.persistent.origins.append(
-            {name: self.persistent.origin_of([one]) for name, one in given.items()}
-        )
+        origins = {name: persistent.origin_of([one]) for name, one in given.items()}
+        persistent.origins.append(origins)
         self.frames.append(frame)
         left = self.run(routine.body)
         value = None
         if left is not None and left.what == RETURN and left.value is not None:
             value = self.evaluated(left.value)
         self.frames.pop()
-        origins = self.persistent.origins.pop()
+        persistent.origins.pop()
         for name in routine.returned & given.keys():
             if (target := assigned(given[name])) is not None:
                 self._assign(Assign(call.line, given[name], Constant(frame[name])))
-                self.persistent.put(
-                    target.name, origins.get(name, ""), self._place(target.name), True
-                )
+                place = self._place(target.name)
+                persistent.put(target.name, origins.get(name, ""), place, True)
         return value, left if left is not None and left.what == STOP else None
 
     def _branch(self, one: If) -> Leave | None:

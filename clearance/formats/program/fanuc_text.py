@@ -298,12 +298,8 @@ class _Reader(BlockReader):
     def _point(self, kind: str, index: str) -> tuple[str, Position | None]:
         """A point's name, and its position; none of a register, or of one that the file does not have."""
         index, kind = index.strip(), kind.upper()
-        own = (
-            self.positions.get(int(index))
-            if kind == "P" and re.fullmatch("[0-9]{1,9}", index)
-            else None
-        )
-        return f"{kind}[{index}]", own
+        is_own = kind == "P" and re.fullmatch("[0-9]{1,9}", index)
+        return f"{kind}[{index}]", self.positions.get(int(index)) if is_own else None
 
 
 def _first(text: str) -> str:

@@ -75,10 +75,8 @@ def _nearest(name: str, words: list[str]) -> str:
 
 def _plain(program: ControllerProgram) -> str:
     """The moves to their last digit, without the tools that do not matter to them."""
-    moves = (
-        replace(one, tool=np.eye(4))
-        if isinstance(one, ControllerMove) and not one.uses_tool
-        else one
-        for one in program.moves
-    )
+    moves = list(program.moves)
+    for i, one in enumerate(moves):
+        if isinstance(one, ControllerMove) and not one.uses_tool:
+            moves[i] = replace(one, tool=np.eye(4))
     return digits_of(*moves)

@@ -102,10 +102,8 @@ def _with_own_names(tokens: list[Token]) -> list[Token]:
 
     A name that a routine of the module has for something of its own stays as it is.
     """
-    found, begins = (
-        list(tokens),
-        [i for i, one in enumerate(tokens) if one.text.upper() == "MODULE"],
-    )
+    begins = [i for i, one in enumerate(tokens) if one.text.upper() == "MODULE"]
+    found = list(tokens)
     for begin, end in pairwise([*begins, len(tokens)]):
         own, inner = _declared(tokens[begin:end])
         for i in range(begin + 2, end):
