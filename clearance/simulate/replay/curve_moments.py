@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
+from operator import attrgetter
 
 import numpy as np
 
@@ -31,12 +33,15 @@ FINE = 200
 
 
 def curve_moments(run: MeasuredRun, worst: Moment | None = None) -> list[Moment]:
-    """The moments, in order of time; `worst`, the most critical and the nearest of all are among them."""
+    """The moments, in order of time, each of its most critical pair, waived or not, as one curve needs them.
+    The times of `worst`, and of the most critical and the nearest of all are among them.
+    """
     record = run.record
     if record.certificate is None:
         return []
     reported = [one for one in (worst, record.nearest, record.worst) if one and one.between]
-    found = [*_evenly(run), *_dips(run.rules), *reported]  # of one moment the last counts
+    found = [*_evenly(run), *_dips(run.rules)]  # of one moment the last counts
+    found += [_most_critical_at(run, one) for one in reported]
     each = {(one.step, one.share): one for one in found}
     return [each[key] for key in sorted(each)]
 
@@ -76,12 +81,30 @@ def _is_dip(rule: MeasuredRule, certificate: Certificate, block: slice) -> np.nd
     return (certificate.pair[block] >= 0) & (deeper | touches)
 
 
+def _tied_answers(run: MeasuredRun) -> list[tuple[MeasuredRule, SectionAnswer]]:
+    """All answers; none where clocks are not tied, which have no pair that is nearest at a time."""
+    answers = [(rule, one) for rule in run.rules if rule.pairs for one in rule.pairs.answers]
+    return answers if all(answer.section.tied for _, answer in answers) else []
+
+
+def _most_critical_at(run: MeasuredRun, moment: Moment) -> Moment:
+    """The moment, or that of another pair which is more critical at its time."""
+    worst = standing_worst(
+        (rule, nearest_moments(rule, answer, moment.step, np.array([moment.share]))[0])
+        for rule, answer in _tied_answers(run)
+        if answer.section.phase.first <= moment.step < answer.section.phase.last
+    )
+    names = attrgetter("rule", "link", "obstacle")
+    is_it = worst is None or names(worst) == names(moment)
+    return moment if is_it else replace(worst, time=moment.time)
+
+
 def _evenly(run: MeasuredRun) -> list[Moment]:
     """Moments in intervals that are longer than a part of the run, by the most critical pair."""
     times = run.record.motions[0].times
     part = (times[-1] - times[0]) / FINE
-    answers = [(rule, one) for rule in run.rules if rule.pairs for one in rule.pairs.answers]
-    if part <= 0.0 or not all(answer.section.tied for _, answer in answers):
+    answers = _tied_answers(run)
+    if part <= 0.0 or not answers:
         return []
     found = []
     for step, (start, end) in enumerate(pairwise(times.tolist())):

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.errors import BadSyntax, MissingFile
 from clearance.record.replay import load_replay
 from clearance.simulate.replay.replay import frame_steps
+from clearance.world.rules import Rule
+from clearance.world.waiver import Waiver
+from tests.findings.gates import load_gates
 from tests.report.made import replay_of, run_of
 from tests.report.records import record
 
@@ -76,3 +82,31 @@ def test_a_replay_that_is_not_there_or_damaged_is_refused_in_one_line(tmp_path):
         (tmp_path / "replay.npz").write_bytes(damaged)
         with pytest.raises(BadSyntax):
             load_replay(tmp_path / "replay.npz")
+
+
+@pytest.mark.parametrize("by", ["waiver", "rule"])
+def test_the_curve_has_the_most_critical_pair_at_each_time_also_where_another_decides(by, tmp_path):
+    """A pair that is waived, or has another limit, is 1 mm nearer when the one that decides is at its nearest."""
+    case = load_gates(tmp_path, {"gate_a": (0.12, 0.003), "gate_b": (0.3, 0.004)})
+    leaving = {
+        "joint_names": ["slide_x", "slide_y"]
+    }  # so that each gate is nearest where it begins
+    case = case.with_trajectory([0.0, 2.0], [[-1.0, 0.001], [1.0, 0.0]], **leaving)
+    waiver = Waiver(("box", "gate_a"), at_least=0.002, reason="known", by="J. Doe")
+    rule = Rule(("box", "gate_b"), name="far", fail=0.0065)
+    changes = (
+        {"waivers": (waiver,)} if by == "waiver" else {"limits": cl.Limits(0.005, rules=(rule,))}
+    )
+    run = cl.check(replace(case, **changes))
+    drawn = run.replay()
+    x, y = drawn.times - 1.0, 0.001 - drawn.times / 2000
+    gaps = [
+        np.hypot(np.maximum(0.0, abs(x - at) - 0.15), gap - y)
+        for at, gap in ((0.12, 0.003), (0.3, 0.004))
+    ]
+    limits = (0.005, 0.005 if by == "waiver" else 0.0065)
+    margins = [gap - limit for gap, limit in zip(gaps, limits, strict=True)]
+    critical = np.where(margins[0] <= margins[1], *gaps)
+    assert np.any(drawn.between) and drawn.clearances == pytest.approx(critical, abs=1e-9)
+    assert run.worst["obstacle"] == "gate_b"
+    assert abs(drawn.times - run.worst["time"]).min() < 1e-12
