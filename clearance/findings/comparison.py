@@ -111,6 +111,7 @@ class Comparison:
         doubts: what stands beside the findings of either run, what alarms first.
         less: what is not known any more that was known before, one line each.
         shorter: how the motion is shorter than before, one line each; that alone fails nothing.
+        excused: findings that are waived now and were not, or to a lower level; that alone fails nothing either.
     """
 
     before: str
@@ -120,6 +121,7 @@ class Comparison:
     doubts: tuple[ComparedDoubt, ...] = ()
     less: tuple[str, ...] = ()
     shorter: tuple[str, ...] = ()
+    excused: tuple[Finding, ...] = ()
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -198,7 +200,8 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
     rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
     doubts, less = doubts_compared(before, now), known_less(before, now)
     shorter = tuple(motion_shorter(before, now))
-    return Comparison(before.case, now.case, tuple(rows), whole, doubts, less, shorter)
+    excused = tuple(row.now for row in rows if row.now is not None and _is_excused(row))
+    return Comparison(before.case, now.case, tuple(rows), whole, doubts, less, shorter, excused)
 
 
 def _measured_otherwise(before: MeasurementConditions, now: MeasurementConditions) -> str:
@@ -359,6 +362,12 @@ def _lost_excuse(before: Finding, now: Finding) -> str:
     if before.fails or not now.fails or not before.broken:
         return ""
     return f"{'waived' if before.waived else 'accepted'} before, and is not now"
+
+
+def _is_excused(row: ComparedFinding) -> bool:
+    """True if it is waived now, and was not, or to a level that is higher."""
+    was, is_now = (one and one.waived for one in (row.before, row.now))
+    return is_now is not None and (was is None or is_now.at_least < was.at_least)
 
 
 def _by_key(found: FindingList) -> dict[_Key, Finding]:

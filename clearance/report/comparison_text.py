@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 
 from clearance.codes import coded
 from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
-from clearance.findings.finding_text import bodies_text
+from clearance.findings.finding_text import bodies_text, waived_text
 from clearance.record.wording import count, near_mm
 from clearance.report.moment import name_shown
+from clearance.world.notice import listed
 
 HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", "why")
 """What `comparison_cells` are."""
@@ -42,6 +44,8 @@ def _in_doubt(comparison: Comparison) -> list[str]:
         for kind in kinds
     ]
     parts += ["LESS IS KNOWN"] * bool(comparison.less)
+    n_excused = len(comparison.excused)
+    parts += [f"{count(n_excused, 'finding')} newly waived"] * bool(n_excused)
     unchanged = [row for row in rows if row.doubt.fails and row.before and row.now]
     kinds = dict.fromkeys(row.doubt.kind for row in unchanged)
     parts += [
@@ -64,9 +68,12 @@ _NAMES = {
 
 
 def doubt_lines(comparison: Comparison) -> list[str]:
-    """Lines: what is known less, a shorter motion, and each doubt that changed or fails the run as before."""
+    """Lines: what is known less, a shorter motion, what is newly waived, and each doubt that changed or fails the
+    run as before.
+    """
     lines = [f"less is known: {text}" for text in comparison.less]
     lines += [f"shorter: {text}" for text in comparison.shorter]
+    lines += [*_newly_waived(comparison)]
     rows = [row for row in comparison.doubts if row.doubt.fails or row.change != "as before"]
     notes = Counter(row.change for row in rows if row.doubt.kind == NOTE)
     only_counted = notes["new"] + notes["gone"] > MOST_NOTES
@@ -76,6 +83,15 @@ def doubt_lines(comparison: Comparison) -> list[str]:
     if only_counted:
         lines.append(f"notes: {notes['new']} new, {notes['gone']} gone")
     return lines
+
+
+def _newly_waived(comparison: Comparison) -> Iterator[str]:
+    """A line for each waiver, with the bodies."""
+    waived: dict[str, list[str]] = {}
+    for one in comparison.excused:
+        waived.setdefault(waived_text(one), []).append(bodies_text(one) or one.kind)
+    for text, bodies in waived.items():
+        yield f"newly waived: {listed(bodies)}: {text.removeprefix('waived ')}"
 
 
 def doubt_text(doubt: Doubt) -> str:

@@ -39,6 +39,7 @@ def notices_of(
     measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_idle_rules(question.case, plan)]
+    empty += _waivers_of_all(question.case)
     empty += _far_off(question.case, found)
     empty += notices_on_carries(phases) if question.case.carries else ()
     empty += neighbours_that_meet(phases)
@@ -64,6 +65,15 @@ def _idle_rules(case: Case, plan: SectionPlan) -> Iterator[Notice]:
                 "later rules or `allow` take all of its pairs"
             )
             yield Notice(Severity.WARNING, "rules", text)
+
+
+def _waivers_of_all(case: Case) -> Iterator[Notice]:
+    """A warning on each waiver that names neither a body nor a rule."""
+    for waiver in case.waivers:
+        if waiver.is_of_case(case.name) and not "".join((*waiver.between, waiver.rule)).strip("*"):
+            level = f"down to {waiver.at_least * 1000:g} mm"
+            text = f"{waiver} is for every pair: it waives later faults too, {level}"
+            yield Notice(Severity.WARNING, "waivers", text)
 
 
 def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:

@@ -14,6 +14,8 @@ from rich.console import Console
 from clearance.batch.rows import row_of
 from clearance.case.waiver_file import load_waivers
 from clearance.errors import BadInput
+from clearance.findings.comparison import compared
+from clearance.report.comparison_text import comparison_text, doubt_lines
 from clearance.report.glb import glb_of
 from clearance.report.model import PageContent
 from clearance.report.moveit_moments import moments_of
@@ -280,3 +282,30 @@ def test_the_nearest_moment_is_the_least_clearance_whatever_judges_or_waives_it(
         assert found == [("fence", pytest.approx(0.05)), (A, pytest.approx(0.003))]
     rest = checked(tmp_path, {A: (-0.5, 0.003), B: (0.0, 0.004)}, waiver())
     assert (rest.worst["obstacle"], rest.nearest["obstacle"]) == (B, A)
+
+
+def test_a_comparison_names_what_is_newly_waived(tmp_path):
+    bare, waived, lower = (
+        checked(tmp_path, NEAR_A, *waivers).finding_list
+        for waivers in ((), (waiver(),), (waiver(at_least=0.001),))
+    )
+    line = "newly waived: box - gate_a: to at least {} mm until 2027-03-31 by N. N.: the gate gives way"
+    for before, now, level in ((bare, waived, 2), (bare, lower, 1), (waived, lower, 1)):
+        found = compared(before, now)
+        assert found.passed and doubt_lines(found) == [line.format(level)]
+        assert comparison_text(found).startswith("since the baseline: 1 finding newly waived; ")
+    for before, now in ((waived, bare), (lower, waived), (lower, lower)):
+        assert compared(before, now).excused == ()
+
+
+def test_a_waiver_of_every_pair_is_warned_of_and_one_of_some_pairs_is_not(tmp_path):
+    every = dataclasses.replace(waiver(), between=("*", "*"))
+    told = {one: checked(tmp_path, NEAR_A, one).verdict.warnings for one in (every, waiver("*"))}
+    assert told == {
+        every: (
+            "waiver * - * is for every pair: it waives later faults too, down to 2 mm [CL512]",
+        ),
+        waiver("*"): (),
+    }
+    of_rule = dataclasses.replace(every, rule="default")
+    assert checked(tmp_path, NEAR_A, of_rule).verdict.warnings == ()
