@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from clearance.sketch.equations import Across, Lengths, Linear, LineCircle, MiddleOn, PointLine, are
+from clearance.sketch.equations import Across, FromLine, Lengths, Linear, MiddleOn, are
 from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, run
 from clearance.sketch.graph.graph import POINT, TURN
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
@@ -25,7 +25,7 @@ MOST = 10
 TRIED = 40_000
 """Steps of a plan, over all branches, up to which a closed circuit's branches are tried: a tenth of a second."""
 
-STRAIGHT = (Linear, PointLine, LineCircle, MiddleOn, Across)
+STRAIGHT = (Linear, FromLine, MiddleOn, Across)
 """Equations that keep a point on a straight line: two of them meet in one point."""
 
 

@@ -13,16 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.sketch.equations import (
-    CODES,
-    Across,
-    CircleCircle,
-    InLine,
-    LineCircle,
-    PointCircle,
-    PointLine,
-    are,
-)
+from clearance.sketch.equations import CODES, Across, FromCircle, FromLine, InLine, are
 from clearance.sketch.solve.system import System
 
 
@@ -48,13 +39,15 @@ def contacts_of(system: System, plain: np.ndarray, sound: np.ndarray) -> Contact
         sound: (m,) marks the equations of parts in which none follows from others: there, another would follow
         if one of touching were replaced.
     """
-    touching = np.flatnonzero(are(system.code, LineCircle, CircleCircle) & sound).tolist()
+    equations = system.plain.equations
+    both = np.flatnonzero(are(system.code, FromLine, FromCircle)).tolist()
+    touching = [row for row in both if equations[row][-1] >= 0 and sound[row]]
     if not touching:
         return None
-    equations = system.plain.equations
     on: dict[tuple[int, int], list[int]] = {}
-    for row in np.flatnonzero(plain & are(system.code, PointLine, PointCircle)).tolist():
-        on.setdefault(_carrier(equations[row]), []).append(equations[row].px)
+    for row in both:
+        if equations[row][-1] < 0 and plain[row]:
+            on.setdefault(_carrier(equations[row]), []).append(equations[row].px)
     found = [(row, _regular(equations[row], on)) for row in touching]
     known = [(row, other) for row, other in found if other is not None]
     if not known:
@@ -66,23 +59,20 @@ def contacts_of(system: System, plain: np.ndarray, sound: np.ndarray) -> Contact
     return Contacts(np.array(rows), np.array(codes), variables)
 
 
-def _carrier(e: PointLine | PointCircle) -> tuple[int, int]:
+def _carrier(e: FromLine | FromCircle) -> tuple[int, int]:
     """What a point lies on: the numbers of a line, or a circle's centre and radius."""
-    return (e.theta, e.d) if isinstance(e, PointLine) else (e.cx, e.r)
+    return (e.theta, e.d) if isinstance(e, FromLine) else (e.cx, e.r)
 
 
-def _regular(e: LineCircle | CircleCircle, on: dict) -> Across | InLine | None:
+def _regular(e: FromLine | FromCircle, on: dict) -> Across | InLine | None:
     """The equation that says the same as one of touching; None without a point of contact.
 
     `on` are the points (first variables) on every line and circle.
     """
-    if isinstance(e, LineCircle):
-        first, second = (e.theta, e.d), (e.cx, e.r)
-    else:
-        first, second = (e.ax, e.r), (e.bx, e.s)
-    p = next((p for p in on.get(first, []) if p in on.get(second, [])), None)
+    others = on.get((e.px, e[-1]), [])  # those on the circle about p
+    p = next((p for p in on.get(_carrier(e), []) if p in others), None)
     if p is None:
         return None
-    if isinstance(e, LineCircle):
-        return Across(p, p + 1, e.cx, e.cy, e.theta)
-    return InLine(p, p + 1, e.ax, e.ay, e.bx, e.by)
+    if isinstance(e, FromLine):
+        return Across(p, p + 1, e.px, e.py, e.theta)
+    return InLine(p, p + 1, e.cx, e.cy, e.px, e.py)

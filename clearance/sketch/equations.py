@@ -31,72 +31,40 @@ class PointPoint(NamedTuple):
         return _span_slopes(self.px - self.qx, self.py - self.qy)
 
 
-class PointLine(NamedTuple):
-    """n . p - d = value"""
+class FromLine(NamedTuple):
+    """n . p - d - coef0 r = value, with a radius r about p, or none"""
 
     px: Any
     py: Any
     theta: Any
     d: Any
+    r: Any = -1
 
     def residual(self, m, coef, value) -> Any:
-        return m.cos(self.theta) * self.py - m.sin(self.theta) * self.px - self.d - value
-
-    def slopes(self, coef, value) -> list:
-        s, c = np.sin(self.theta), np.cos(self.theta)
-        return [-s, c, -c * self.px - s * self.py, -1.0]
-
-
-class PointCircle(NamedTuple):
-    """|p - c| - r = value"""
-
-    px: Any
-    py: Any
-    cx: Any
-    cy: Any
-    r: Any
-
-    def residual(self, m, coef, value) -> Any:
-        return m.hypot(self.px - self.cx, self.py - self.cy) - self.r - value
-
-    def slopes(self, coef, value) -> list:
-        return [*_span_slopes(self.px - self.cx, self.py - self.cy), -1.0]
-
-
-class LineCircle(NamedTuple):
-    """n . c - d - coef0 r = value"""
-
-    cx: Any
-    cy: Any
-    theta: Any
-    d: Any
-    r: Any
-
-    def residual(self, m, coef, value) -> Any:
-        gap = m.cos(self.theta) * self.cy - m.sin(self.theta) * self.cx - self.d
+        gap = m.cos(self.theta) * self.py - m.sin(self.theta) * self.px - self.d
         return gap - coef[0] * self.r - value
 
     def slopes(self, coef, value) -> list:
         s, c = np.sin(self.theta), np.cos(self.theta)
-        return [-s, c, -c * self.cx - s * self.cy, -1.0, -coef[0]]
+        return [-s, c, -c * self.px - s * self.py, -1.0, -coef[0]]
 
 
-class CircleCircle(NamedTuple):
-    """|a - b| - coef0 r - coef1 s = value, with the centres a and b and the radii r and s"""
+class FromCircle(NamedTuple):
+    """|p - c| - coef0 r - coef1 s = value, with the circle's radius r about c, and a radius s about p, or none"""
 
-    ax: Any
-    ay: Any
-    bx: Any
-    by: Any
+    px: Any
+    py: Any
+    cx: Any
+    cy: Any
     r: Any
-    s: Any
+    s: Any = -1
 
     def residual(self, m, coef, value) -> Any:
-        between = m.hypot(self.ax - self.bx, self.ay - self.by)
+        between = m.hypot(self.px - self.cx, self.py - self.cy)
         return between - coef[0] * self.r - coef[1] * self.s - value
 
     def slopes(self, coef, value) -> list:
-        return [*_span_slopes(self.ax - self.bx, self.ay - self.by), -coef[0], -coef[1]]
+        return [*_span_slopes(self.px - self.cx, self.py - self.cy), -coef[0], -coef[1]]
 
 
 class Linear(NamedTuple):
@@ -223,15 +191,14 @@ def _span_slopes(dx, dy, factor: Any = 1.0) -> list:
 
 
 KINDS: Any = (
-    PointPoint, PointLine, PointCircle, LineCircle, CircleCircle, Linear, Lengths, MiddleOn, Across,
-    Ratio, InLine,
+    PointPoint, FromLine, FromCircle, Linear, Lengths, MiddleOn, Across, Ratio, InLine,
 )  # fmt: skip
 """Every kind of equation; the place of a kind is its code in arrays."""
 
 CODES: dict[type, int] = {kind: code for code, kind in enumerate(KINDS)}
 """The code of every kind."""
 
-OF_LENGTH = (PointPoint, PointLine, PointCircle, LineCircle, CircleCircle)
+OF_LENGTH = (PointPoint, FromLine, FromCircle)
 """The kinds whose value is a length."""
 
 
@@ -256,8 +223,8 @@ class Rows:
     def __init__(self, code, var, coef, value) -> None:
         self.m = code.size
         self._blocks = []
-        for kind in (KINDS[k] for k in np.unique(code).tolist()):
-            at = np.flatnonzero(are(code, kind))
+        for k in np.unique(code).tolist():
+            kind, at = KINDS[k], np.flatnonzero(code == k)
             places = np.maximum(var[at, : len(kind._fields)], 0).T.copy()
             self._blocks.append((kind, at, places, coef[at].T, value[at]))
 

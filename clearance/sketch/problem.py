@@ -15,7 +15,7 @@ import numpy as np
 from clearance.sketch.contacts import Contacts, contacts_of
 from clearance.sketch.effort import UNLIMITED, TimeLimit
 from clearance.sketch.entities import Entity
-from clearance.sketch.equations import CODES, OF_LENGTH, CircleCircle, Linear, are, places
+from clearance.sketch.equations import CODES, OF_LENGTH, FromCircle, Linear, are, places
 from clearance.sketch.graph.graph import (
     DIRECTION,
     FREEDOMS,
@@ -262,8 +262,8 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     The drawing says it where a radius is not known: how large a circle is drawn is often rough.
     """
     coef, n = tables.coef, tables.role.size
-    inside = are(tables.code, CircleCircle) & (coef[:, 0] * coef[:, 1] < 0.0)
-    circles = places(CircleCircle, var)
+    inside = are(tables.code, FromCircle) & (coef[:, 0] * coef[:, 1] < 0.0)
+    circles = places(FromCircle, var)
     first, second = circles.r, circles.s
     inside &= (parent[first] == n) & (parent[second] == n) & (shift[first] != shift[second])
     if not inside.any():

@@ -12,13 +12,11 @@ from typing import Any, NamedTuple
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point
 from clearance.sketch.equations import (
     Across,
-    CircleCircle,
+    FromCircle,
+    FromLine,
     Lengths,
     Linear,
-    LineCircle,
     MiddleOn,
-    PointCircle,
-    PointLine,
     PointPoint,
     Ratio,
 )
@@ -118,11 +116,11 @@ def point_point(x, p, q):
 
 
 def point_line(x, p, line):
-    return [Row(PointLine(*pair(p), *pair(line)), scale=sign(gap(x, p, line)))]
+    return [Row(FromLine(*pair(p), *pair(line)), scale=sign(gap(x, p, line)))]
 
 
 def point_circle(x, p, c):
-    return [Row(PointCircle(*pair(p), *rim(c)), scale=sign(clear(x, p, c)))]
+    return [Row(FromCircle(*pair(p), *rim(c)), (1.0,), scale=sign(clear(x, p, c)))]
 
 
 def line_line(x, a, b):
@@ -133,11 +131,11 @@ def line_line(x, a, b):
 
 
 def on_line(x, p, line):
-    return [Row(PointLine(*pair(p), *pair(line)))]
+    return [Row(FromLine(*pair(p), *pair(line)))]
 
 
 def on_circle(x, p, c):
-    return [Row(PointCircle(*pair(p), *rim(c)))]
+    return [Row(FromCircle(*pair(p), *rim(c)), (1.0,))]
 
 
 def together(x, p, q):
@@ -151,7 +149,7 @@ def same_line(x, a, b):
 
 def line_touches(x, line, c):
     side = sign(gap(x, c, line))
-    return [Row(LineCircle(*pair(c), *pair(line), c.variable), (side,))]
+    return [Row(FromLine(*pair(c), *pair(line), c.variable), (side,))]
 
 
 def shared_end(c, d) -> Point | None:
@@ -174,7 +172,7 @@ def circles_touch(x, c, d, inside=None):
     elif inside is None:
         inside = abs(between - abs(r - q)) < abs(between - (r + q))
     signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
-    place = CircleCircle(*pair(c), *pair(d), c.variable, d.variable)
+    place = FromCircle(*pair(d), *rim(c), d.variable)
     return [Row(place, signs)]
 
 

@@ -10,13 +10,11 @@ import math
 from typing import NamedTuple
 
 from clearance.sketch.equations import (
-    CircleCircle,
+    FromCircle,
+    FromLine,
     Lengths,
     Linear,
-    LineCircle,
     MiddleOn,
-    PointCircle,
-    PointLine,
     PointPoint,
 )
 from clearance.sketch.solve.system import PlainSystem
@@ -59,9 +57,7 @@ def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus | None:
             rest = sum(c * x[k] for c, k in pairs if k >= 0 and k not in (i, i + 1))
             a, b = (sum(c for c, k in pairs if k == at) for at in (i, i + 1))
             return _straight(a, b, value - rest)
-        case PointLine():
-            return Straight(-math.sin(x[e.theta]), math.cos(x[e.theta]), x[e.d] + value)
-        case LineCircle():
+        case FromLine():
             c = x[e.d] + value + coef[0] * x[e.r]
             return Straight(-math.sin(x[e.theta]), math.cos(x[e.theta]), c)
         case Lengths():
@@ -72,9 +68,7 @@ def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus | None:
     match e:
         case PointPoint():
             return Round(qx, qy, value)
-        case PointCircle():
-            return Round(qx, qy, x[e.r] + value)
-        case CircleCircle():
+        case FromCircle():
             return Round(qx, qy, coef[0] * x[e.r] + coef[1] * x[e.s] + value)
     sin, cos = math.sin(x[e.theta]), math.cos(x[e.theta])
     if isinstance(e, MiddleOn):

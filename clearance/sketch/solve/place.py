@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from clearance.sketch.equations import Across, LineCircle, MiddleOn
+from clearance.sketch.equations import Across, MiddleOn
 from clearance.sketch.graph.graph import POINT, SIZE, TURN
 from clearance.sketch.graph.steps import PlanStep
 from clearance.sketch.solve.loci import locus, meet, nearest_on, root_of
@@ -129,7 +129,7 @@ class _Line:
         px, py = x[e[0]], x[e[1]]
         if isinstance(e, MiddleOn):
             px, py, w = 0.5 * (px + x[e.qx]), 0.5 * (py + x[e.qy]), 0.0
-        elif isinstance(e, LineCircle):
+        else:
             w += s.coef[row][0] * x[e.r]
         same = 1.0 if math.cos(s.shift[e.theta] - s.shift[self.own]) > 0.0 else -1.0
         return _Passes(px, py, same * (w + s.shift[e.d]))

@@ -81,7 +81,7 @@ class PlainSystem:
     def residual(self, row: int, x: list[float]) -> float:
         """The error of one equation."""
         places = self.equations[row]
-        numbers = type(places)(*(x[i] for i in places))
+        numbers = places._make([x[i] for i in places])
         return numbers.residual(math, self.coef[row], self.value[row])
 
     def holds(self, rows, x: list[float], tolerance: float) -> bool:
