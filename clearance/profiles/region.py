@@ -151,18 +151,12 @@ def boundary_distance(region: Region, rings: Sequence[np.ndarray]) -> float:
     return float(shapely.distance(boundary, lines))
 
 
-class RegionIndex:
-    """Finds which of many regions is nearest to a point; the first one on ties."""
-
-    def __init__(self, parts: np.ndarray) -> None:
-        self._tree = shapely.STRtree(parts)
-
-    def __call__(self, points: np.ndarray) -> np.ndarray:
-        """(n,) index of the nearest region to each of points (n, 2)."""
-        asked, found = self._tree.query_nearest(shapely.points(points))
-        first = np.full(len(points), np.iinfo(np.int64).max)
-        np.minimum.at(first, asked, found)
-        return first
+def nearest_parts(parts: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(n,) index of the region that is nearest to each of points (n, 2); the first one on ties."""
+    asked, found = shapely.STRtree(parts).query_nearest(shapely.points(points))
+    first = np.full(len(points), np.iinfo(np.int64).max)
+    np.minimum.at(first, asked, found)
+    return first
 
 
 def touching(region: Region, parts: np.ndarray) -> np.ndarray:

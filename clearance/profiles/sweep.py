@@ -21,8 +21,8 @@ from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Origin, Profile
 from clearance.profiles.region import (
     Region,
-    RegionIndex,
     covered_region,
+    nearest_parts,
     polygons,
     touching,
     union,
@@ -207,23 +207,16 @@ def _views(
     bodies: Sequence[SweptBody], plane: Plane, section: float | None, tolerance: float
 ) -> list[Silhouette | CrossSection]:
     if section is None:
+        limit = SHARE * tolerance
         return [
-            Silhouette(
-                one.body.shape,
-                one.knots(plane, SHARE * tolerance, solid=False),
-                plane,
-            )
+            Silhouette(one.body.shape, one.knots(plane, limit, solid=False), plane)
             for one in bodies
         ]
     from clearance.profiles.cross_section import CrossSection
 
+    limit = CUT_SHARE * tolerance
     return [
-        CrossSection(
-            one.label,
-            one.body.shape,
-            one.knots(plane, CUT_SHARE * tolerance, solid=True),
-            plane,
-        )
+        CrossSection(one.label, one.body.shape, one.knots(plane, limit, solid=True), plane)
         for one in bodies
     ]
 
@@ -274,5 +267,5 @@ class PolygonCollection:
     def origin(self, contours: Sequence[Contour], labels: tuple[str, ...]) -> Origin:
         """The maker of each piece: whose polygon is nearest to its middle, the first on ties."""
         middles = np.concatenate([contour.middles() for contour in contours])
-        makers = self._makers[RegionIndex(self._parts)(middles)]
+        makers = self._makers[nearest_parts(self._parts, middles)]
         return Origin(labels, makers[:, 0].copy(), makers[:, 1].copy())

@@ -20,6 +20,7 @@ from clearance.sketch.mobility import (
     Equations,
     Motions,
     are_independent,
+    dependent,
     implied,
     motions_of,
     rank_of,
@@ -247,15 +248,11 @@ def _loose_motions(problem: Problem, x: np.ndarray, part: int):
 
 def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> list[int]:
     """The columns of vertices placed first that fix a part: as many as its remaining rigid motions."""
-    vertices, first = equations.vertices, equations.first
+    vertices, first = equations.vertices.tolist(), equations.first
     motions = rigid_motions(problem, x, equations.columns)[:, : (3, 2, 0)[problem.fixing[part]]]
-    inside = set(map(int, vertices))
-    columns: list[int] = []
+    inside, kind = set(vertices), problem.system.kind
     placed = [v for step in problem.plan.steps for v in step.vertices if v in inside]
-    for v in dict.fromkeys([*placed, *map(int, vertices)]):
-        for c in range(first[v], first[v] + (2 if problem.system.kind[v] == POINT else 1)):
-            if len(columns) == motions.shape[1]:
-                return columns
-            if rank_of(motions[[*columns, c]]) == len(columns) + 1:
-                columns.append(c)
-    return columns
+    in_order = dict.fromkeys([*placed, *vertices])
+    columns = [int(first[v]) + k for v in in_order for k in range(2 if kind[v] == POINT else 1)]
+    spanned = set(dependent(motions[columns]))
+    return [c for k, c in enumerate(columns) if k not in spanned]
