@@ -9,9 +9,12 @@ Source: Kwon, Lee, Lee 2001, section 3.5; Hoffmann, Lomonosov, Sitharam 1997 for
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
+from graphlib import TopologicalSorter
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from clearance.sketch.graph.bodies import Bodies
 from clearance.sketch.graph.graph import (
@@ -252,43 +255,18 @@ class _Core:
         return PlanStep(placed, rows, IN_CORE, numeric=not (single and (len(placed) == 1 or line)))
 
 
-def strong_parts(nodes: Iterable[int], near: Mapping[int, list[int]]) -> list[list[int]]:
-    """The strongly connected parts of a directed graph, each after those that it leads to.
-
-    Source: Tarjan 1972, without recursion.
-    """
-    index: dict[int, int] = {}
-    low: dict[int, int] = {}
-    stack, done, parts = [], set[int](), []
-    for first in nodes:
-        calls = [] if first in index else [first]
-        where: list[Iterable[int]] = []
-        while calls:
-            u = calls[-1]
-            if len(where) < len(calls):
-                index[u] = low[u] = len(index)
-                stack.append(u)
-                where.append(iter(near.get(u, ())))
-            fresh = _next_fresh(u, where[-1], index, low, done)
-            if fresh is not None:
-                calls.append(fresh)
-                continue
-            calls.pop(), where.pop()
-            if calls:
-                low[calls[-1]] = min(low[calls[-1]], low[u])
-            if low[u] == index[u]:
-                at = next(k for k in reversed(range(len(stack))) if stack[k] == u)
-                parts.append(stack[at:])
-                done.update(stack[at:])
-                del stack[at:]
-    return parts
-
-
-def _next_fresh(u, following, index, low, done) -> int | None:
-    """The next node after u that was not seen; notes the least index of those on the stack."""
-    for w in following:
-        if w not in index:
-            return w
-        if w not in done:
-            low[u] = min(low[u], index[w])
-    return None
+def strong_parts(nodes: Sequence[int], near: Mapping[int, list[int]]) -> list[list[int]]:
+    """The strongly connected parts of a directed graph, each after those that it leads to."""
+    at = {node: k for k, node in enumerate(nodes)}
+    pairs = [(at[u], at[w]) for u in nodes for w in near.get(u, ())]
+    i, j = np.array(pairs, np.int64).reshape(-1, 2).T
+    links = coo_array((np.ones(i.size), (i, j)), (len(nodes), len(nodes)))
+    labels = connected_components(links, connection="strong")[1].tolist()
+    parts: dict[int, list[int]] = {}
+    for node, label in zip(nodes, labels, strict=True):
+        parts.setdefault(label, []).append(node)
+    order = TopologicalSorter(dict.fromkeys(parts, ()))
+    for u, w in pairs:
+        if labels[u] != labels[w]:
+            order.add(labels[u], labels[w])
+    return [parts[label] for label in order.static_order()]
