@@ -89,7 +89,7 @@ class Curve(CurveFacts):
             control: (n, 2) control points, n > degree.
             degree: 1 to 24.
             knots: (n + degree + 1,) non-decreasing; None for clamped uniform on [0, 1].
-            weights: (n,) positive; None for a polynomial spline.
+            weights: (n,) positive, within 1e6 times of each other; None for a polynomial spline.
 
         Raises: BadShape, NotFinite, BadCurve.
         """
