@@ -239,6 +239,8 @@ def _by_path(case: Case, request: Request) -> Gain:
         at_least = least_offset(offsets, first, request.margin)
         blocked = _path_obstruction(first, offsets, request)
         found = SearchResult(first, None, 1) if blocked else _least_path(search, offsets, first)
+        if not found.kept and blocked is None:  # moments between the steps are looked at by now
+            blocked = _left_as_it_is(found.state, offsets, request)
         if found.kept or blocked:
             break
     who = ", ".join(case.robots[i].robot.name for i in changed)
@@ -256,9 +258,17 @@ def _path_obstruction(first: State, offsets: PathChange, request: Request) -> Ob
     """What no change of the path mends; None where that is not known."""
     blocked = blocked_by(first, offsets.gradient, offsets.transfers)
     if blocked is not None:
-        blocked = _kept_still(blocked, first, offsets, request)
-        return blocked if blocked.why in HOPELESS else None
+        return _left_as_it_is(first, offsets, request)
     return tool_obstruction(first, offsets.parts[0])
+
+
+def _left_as_it_is(state: State, offsets: PathChange, request: Request) -> Obstruction | None:
+    """The worst pair that falls short where every change leaves the path as it is; None without one."""
+    blocked = blocked_by(state, offsets.gradient, offsets.transfers)
+    if blocked is None:
+        return None
+    blocked = _kept_still(blocked, state, offsets, request)
+    return blocked if blocked.why in HOPELESS else None
 
 
 def _least_path(search: Search, offsets: PathChange, first: State) -> SearchResult:

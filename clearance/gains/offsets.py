@@ -102,8 +102,8 @@ class JointOffsets:
         thirds = np.diff(asked.times)[:, None] / 3.0
         rates = self.basis.at(asked.times, 1)
         between = (samples[:-1] + thirds * rates[:-1], samples[1:] - thirds * rates[1:])
-        rows = np.stack([samples[:-1], *between], axis=1).reshape(-1, samples.shape[1])
-        return np.concatenate([rows, samples[-1:]])
+        rows = np.stack([samples[:-1], *between], axis=1)
+        return np.concatenate([*rows, samples[-1:]])
 
     @cached_property
     def few_samples(self) -> np.ndarray:

@@ -49,17 +49,19 @@ def require_in_path(placed: PlacedRobot, tool_keeps: Sequence[ToolKeep]) -> None
 
 def fixed_spans(case: Case, i_robot: int, request: Request) -> tuple[tuple[float, float], ...]:
     """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
-    next to a window draw the path in it."""
+    next to a window draw the path in it. Samples that follow each other and are kept are one window."""
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].given_trajectory.times
-    spans = []
+    kept = np.zeros(len(times), dtype=bool)
     for window in request.keep:
         start, end = ((time - timing.start) * timing.rate for time in window)
         before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
         after = min(int(np.searchsorted(times, end)), len(times) - 1)
-        spans.append((times[before], times[after]))
+        kept[before : after + 1] = True
     if request.keep_ends:
-        spans += [(times[0], times[0]), (times[-1], times[-1])]
-    return tuple((float(start), float(end)) for start, end in spans)
+        kept[[0, -1]] = True
+    edges = np.flatnonzero(np.diff(kept, prepend=False, append=False))
+    starts, ends = times[edges[::2]], times[edges[1::2] - 1]
+    return tuple(zip(starts.tolist(), ends.tolist(), strict=True))
 
 
 def windows_of(case: Case, i_robot: int, request: Request) -> list[tuple[float, float]]:

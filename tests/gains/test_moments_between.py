@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.gains.obstruction import NOT_MOVED
+from clearance.gains.obstruction import KEPT_STILL, NOT_MOVED
 from clearance.gains.search import FINE
+from clearance.gains.sentences import lines_of
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, gantry, standing
 
@@ -76,3 +77,15 @@ def test_a_path_across_a_beam_goes_round_it():
 def test_what_is_too_wide_to_go_beside_is_not_said_to_be_impossible():
     found = cl.gain(above_a_beam(4.0, wide=2.0), "waypoints", keep_ends=False)
     assert not found.kept and found.blocked.why != NOT_MOVED
+
+
+@pytest.mark.parametrize("timing", [None, Timing(0.5, 0.8)])
+@pytest.mark.parametrize("rates", [False, True])
+def test_a_path_of_two_samples_whose_ends_are_kept_is_said_to_stay_as_it_is(rates, timing):
+    """It is clear at both ends, and has no sample between that may change."""
+    case = leaping(n=2, rates=rates, timing=timing)
+    found = cl.gain(case, "waypoints")
+    assert not found.kept and found.blocked.why == KEPT_STILL
+    told = dict(lines_of(found))["not kept"]
+    assert told.endswith("while the ends of the path are kept (--free-ends frees them)")
+    assert cl.gain(case, "waypoints", keep_ends=False).kept
