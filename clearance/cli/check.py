@@ -47,7 +47,9 @@ def _report_unread(given: dict[str, Any], error: click.UsageError) -> None:
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option(
-    "--quiet", is_flag=True, help="Print nothing but errors; the exit code has the answer."
+    "--quiet",
+    is_flag=True,
+    help="Print nothing but errors, and JSON with --json; the exit code has the answer.",
 )
 @click.option("-q", "--brief", is_flag=True, help="Print the verdict and errors only.")
 @click.option(

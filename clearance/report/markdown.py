@@ -71,11 +71,11 @@ def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
 
 
 def _verdict_lines(verdict: Verdict) -> list[str]:
-    """What stands beside the verdict: reasons, warnings, what is not checked."""
+    """What stands beside the verdict: reasons, other warnings, what is not checked."""
     lines = [
         *verdict.reasons,
         *verdict.with_tolerances,
-        *(f"warning: {text}" for text in verdict.warnings),
+        *(f"warning: {text}" for text in verdict.warnings if text not in verdict.warned),
     ]
     return [*lines, *verdict.scope]
 

@@ -128,6 +128,13 @@ def test_without_a_step_summary_that_is_said(place, capsys):
     assert out.startswith("::error file=") and "GITHUB_STEP_SUMMARY is not set" in err
 
 
+def test_a_step_summary_that_cannot_be_written_is_an_error(place, capsys, monkeypatch):
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(place / "none" / "step.md"))
+    assert check("clear/case.yaml", "--github", "--quiet") == 2
+    out, err = capsys.readouterr()
+    assert out.startswith("::error file=") and "step.md: cannot write here" in err
+
+
 @pytest.mark.slow
 def test_two_runs_side_by_side(reports, capsys):
     assert run(["compare", "of_broken", "of_worse", "--out", "page"]) == 1

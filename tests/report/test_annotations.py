@@ -28,6 +28,8 @@ from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates, write_gates, write_way
+from tests.findings.test_verdict import WARNING, made
+from tests.report.made import model_of
 from tests.report.records import arm
 
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)}
@@ -196,3 +198,9 @@ def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):
     assert lines[0].startswith("::warning title=clearance%3A gates::waived: 3.000 mm, below")
     table = markdown(waived.report)
     assert "| violated, waived |" in table and "with 2 waivers" in table
+
+
+def test_markdown_names_a_warning_once_whether_it_fails_or_not():
+    for strict in (False, True):
+        text = markdown(model_of(made(notices=(WARNING,), strict=strict)))
+        assert text.count("links without a collision shape: antenna") == 1
