@@ -26,6 +26,7 @@ _MERGED = object()
 """The key `<<`, under which a mapping takes what others have."""
 
 _CORE = "tag:yaml.org,2002:"
+_NUMBERS = (f"{_CORE}int", f"{_CORE}float")
 _PLAIN = (f"{_CORE}map", f"{_CORE}seq")
 
 
@@ -136,6 +137,8 @@ class PlainValues:
             raise not_plain(event)
         if tag is None or tag == "!":
             tag = self.reader.resolver.resolve(self._node, event.value, event.implicit)
+            if "_" in event.value and tag in _NUMBERS:  # which YAML 1.1 has, and 1.2 has not
+                tag = f"{_CORE}str"
         node = self._node(tag, event.value, event.start_mark, event.end_mark, style=event.style)
         return self.reader.constructor.construct_non_recursive_object(node)
 

@@ -49,7 +49,7 @@ def test_an_alias_of_what_it_stands_in_is_refused(text):
 @pytest.mark.parametrize(
     "text",
     [
-        b"a: !!bool maybe", b"a: !!int ''", b"a: !!float ''", b"a: !!timestamp x", b"%YAML 1.1\n---\na: -_",
+        b"a: !!bool maybe", b"a: !!int ''", b"a: !!float ''", b"a: !!timestamp x",
         b"a: " + b"1" * 5000, b"? {a: [1]}\n: 2", b"a: *b", b"a\0", b"\xff", b"[" * 500, b"a: [",
         b"--- 1\n--- 2", b"!!python/object:os.system x", b"a: !degrees -10",
     ],
@@ -57,6 +57,12 @@ def test_an_alias_of_what_it_stands_in_is_refused(text):
 def test_what_no_plain_data_is_made_of_is_refused_in_one_line(text):
     with pytest.raises(BadSyntax):
         plain_data(text)
+
+
+def test_what_only_yaml_1_1_takes_for_a_number_is_text():
+    given = ["1_000", "1_0.5", "-_", "1e_3", "0x_f"]
+    assert plain_data(f"[{', '.join(given)}, 010, 1e3]".encode()) == [*given, 10, 1000.0]
+    assert plain_data(b"%YAML 1.1\n---\n[1_000, -_]") == ["1_000", "-_"]
 
 
 def test_a_key_twice_is_refused_with_its_line():

@@ -44,6 +44,8 @@ def watch(check_once: Callable[[], object], out: Path | None, *, quiet: bool) ->
     Args:
         out: the folder of the report, if there is one.
     """
+    from clearance.record.wording import count
+
     try:
         while True:
             with files_opened() as opened:
@@ -53,7 +55,7 @@ def watch(check_once: Callable[[], object], out: Path | None, *, quiet: bool) ->
             if is_bad:  # a file that is missing may come
                 before |= {one.parent: state_of(one.parent) for one in opened}
             if not quiet:
-                click.echo(f"watching {len(opened)} files; Ctrl-C ends it", err=True)
+                click.echo(f"watching {count(len(opened), 'file')}; Ctrl-C ends it", err=True)
             with doing(lambda: ""):
                 wait_for_change(before)
     finally:

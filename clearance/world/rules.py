@@ -142,6 +142,8 @@ def checked_level(given: float, name: str) -> float:
         BadDimension: no number, below 0 or not finite.
     """
     try:
+        if isinstance(given, str):
+            raise ValueError
         level = float(given)
     except (TypeError, ValueError):
         raise BadDimension(f"limit {name} is {given!r:.60}", valid="a number of metres") from None
