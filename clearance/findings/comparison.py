@@ -366,7 +366,7 @@ def _lost_excuse(before: Finding, now: Finding) -> str:
 
 def _is_excused(row: ComparedFinding) -> bool:
     """True if it is waived now, and was not, or to a level that is higher."""
-    was, is_now = (one and one.waived for one in (row.before, row.now))
+    was, is_now = (None if one is None else one.waived for one in (row.before, row.now))
     return is_now is not None and (was is None or is_now.at_least < was.at_least)
 
 

@@ -145,7 +145,7 @@ def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Violated
     for sign in (1.0, -1.0):
         x = _until_short(shift, sign * way / np.linalg.norm(way), NEAR, 1.0, rng)
         if x is not None:
-            return ViolatedCase(source.name, HOW[0], shift.case_of(x), kind, who, shift.size(x))
+            return ViolatedCase(source.name, HOW[0], _case_of(shift, x), kind, who, shift.size(x))
     return None
 
 
@@ -158,7 +158,7 @@ def _bent(
         return None
     who = offsets.placed.robot.name
     return ViolatedCase(
-        source.name, HOW[0], PathChange((offsets,)).case_of(x), "waypoints", who, offsets.size(x)
+        source.name, HOW[0], _case_of(offsets, x), "waypoints", who, offsets.size(x)
     )
 
 
@@ -178,8 +178,8 @@ def _raised(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase
         ways = [_random_shift(rng) for _ in range(TRIED)]
     if not ways:
         return None
-    best = max(ways, key=lambda x: _above(change.case_of(x)))
-    low, high = _above(case), _proven(change.case_of(best))
+    best = max(ways, key=lambda x: _above(_case_of(change, x)))
+    low, high = _above(case), _proven(_case_of(change, best))
     if high < low + 1e-4:
         return None
     fail = low + float(rng.uniform(*OPENED)) * (high - low)
@@ -235,6 +235,11 @@ def _bend_of_one(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
     return np.asarray(way / offsets.size(way))
 
 
+def _case_of(change: Perturbation, x: np.ndarray) -> Case:
+    """The case after a change."""
+    return (PathChange((change,)) if isinstance(change, JointOffsets) else change).case_of(x)
+
+
 def _until_short(
     change: Perturbation, way: np.ndarray, most: float, lever: float, rng: np.random.Generator
 ) -> np.ndarray | None:
@@ -245,16 +250,16 @@ def _until_short(
     """
     fail = change.case.limits.fail
     low, high = 0.0, most / 16.0
-    while _above(change.case_of(high * way)) >= fail:
+    while _above(_case_of(change, high * way)) >= fail:
         low, high = high, 2.0 * high
         if high > most:
             return None
     for _ in range(4):
         middle = 0.5 * (low + high)
-        below = _above(change.case_of(middle * way)) < fail
+        below = _above(_case_of(change, middle * way)) < fail
         low, high = (low, middle) if below else (middle, high)
     x = (high + rng.uniform(*SHORT) / lever) * way
-    return x if _above(change.case_of(x)) < fail else None
+    return x if _above(_case_of(change, x)) < fail else None
 
 
 def _within_limits(offsets: JointOffsets, x: np.ndarray) -> bool:

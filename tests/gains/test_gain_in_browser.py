@@ -19,7 +19,7 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
         for width in (420, 1400):
             page.open(f"file://{out}/gain.html", "document.readyState === 'complete'", width)
             assert page.run("document.documentElement.scrollWidth") <= width
-            assert page.run("document.querySelectorAll('svg .curve').length") == 2
+            assert page.run("document.querySelectorAll('svg g .curve').length") == 2
         assert "kept, 1 joint changed" in page.run("document.querySelector('.verdict').textContent")
         links = page.run("[...document.querySelectorAll('a')].map(a => a.href)")
         assert len(links) == 2

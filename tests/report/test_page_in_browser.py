@@ -372,7 +372,7 @@ def test_both_pages_fit_every_width_and_a_finding_moves_the_replay(folder):
                 f"file://{folder}/both/comparison.html", "document.readyState === 'complete'", width
             )
             assert page.run("document.documentElement.scrollWidth") <= width
-            assert page.run("document.querySelectorAll('svg .curve').length") == 2
+            assert page.run("document.querySelectorAll('svg g .curve').length") == 2
             assert page.run("document.querySelectorAll('.findings tbody tr').length") == 3
         assert not page.errors and all(url.startswith(("file:", "data:")) for url in page.requests)
         for width in WIDTHS:

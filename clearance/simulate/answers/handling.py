@@ -18,7 +18,6 @@ import numpy as np
 from clearance.errors import BadInput
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
-from clearance.query.contact import contact
 from clearance.query.distance import distance
 from clearance.record.record import Record
 from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
@@ -246,6 +245,8 @@ class _Placed:
     @cached_property
     def _depth(self) -> float:
         """[m] An upper bound; NaN for bodies without an inside."""
+        from clearance.query.contact import contact
+
         try:
             found = contact(self.a, self.b, pose_a=self.world_from_a, pose_b=self.world_from_b,
                             rough=True, bounded=False)  # fmt: skip

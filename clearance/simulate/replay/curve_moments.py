@@ -95,8 +95,9 @@ def _most_critical_at(run: MeasuredRun, moment: Moment) -> Moment:
         if answer.section.phase.first <= moment.step < answer.section.phase.last
     )
     names = attrgetter("rule", "link", "obstacle")
-    is_it = worst is None or names(worst) == names(moment)
-    return moment if is_it else replace(worst, time=moment.time)
+    if worst is None or names(worst) == names(moment):
+        return moment
+    return replace(worst, time=moment.time)
 
 
 def _evenly(run: MeasuredRun) -> list[Moment]:
