@@ -29,7 +29,8 @@ from clearance.formats.mesh.triangles import (
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.tolerance import TESSELLATION
 
-OPEN = "the surface is open: it has no inside"
+_OF_OPEN = "open: a body inside is found only if the holes are small"
+OPEN = f"the surface is {_OF_OPEN}"
 """The note on a mesh of which no part is closed; the same text for all, so that one line can name them all."""
 
 
@@ -158,8 +159,7 @@ def _on_parts(given: Polyhedron, shape: Polyhedron) -> Iterator[str]:
     if n_open == n_parts:
         yield OPEN
     elif n_open:
-        are = "is open: it has" if n_open == 1 else "are open: they have"
-        yield f"{n_open} of its {n_parts} parts {are} no inside"
+        yield f"{n_open} of its {n_parts} parts {'is' if n_open == 1 else 'are'} {_OF_OPEN}"
 
 
 def _counted(n: int, one: str, many: str) -> str:

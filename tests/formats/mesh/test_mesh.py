@@ -203,7 +203,10 @@ PARTS = {
         "2 of its 3 parts were inside out and are turned round", 3,
     ),
     "open": ([CUBE_CORNERS[1:]], OPEN, None),
-    "one open": ([CUBE_CORNERS[1:], CUBE_CORNERS + 3.0], "1 of its 2 parts is open: it has no inside", None),
+    "one open": (
+        [CUBE_CORNERS[1:], CUBE_CORNERS + 3.0],
+        "1 of its 2 parts is open: a body inside is found only if the holes are small", None,
+    ),
 }  # fmt: skip
 
 
