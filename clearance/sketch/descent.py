@@ -3,7 +3,7 @@
 The sum of squared errors goes down by Newton's method in a trust region. Two things distinguish it from the damped
 descent of numeric clusters (`solve.search`): the second derivatives of the equations, which
 lead away from where slivers lie flat, and corrections of second order, which follow the curved valleys that
-slivers make, with the factors that are at hand. It may end in another minimum than a root.
+slivers make, with the factors that are at hand. Not for: the other minima that it may end in (`folds`).
 Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (corrections of second order).
 """
 
@@ -16,7 +16,6 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.problem import FLOOR, Problem
 from clearance.sketch.solve.columns import Columns
 
@@ -60,7 +59,7 @@ class ProblemPart:
     """The columns and equations of one part of a problem of a size near 1, in an order that factors well."""
 
     def __init__(self, problem: Problem, part: int) -> None:
-        self.limit = problem.limit
+        self.system, self.limit = problem.system, problem.limit
         self.rows, vertices = problem.independent_rows(part), problem.vertices_of(part)
         self.columns = Columns(problem.system, vertices, self.rows)
         if self.rows.size and self.columns.n:
@@ -69,6 +68,7 @@ class ProblemPart:
             order = np.argsort(place[self.columns.first[vertices]])
             del self._pattern
             self.columns = Columns(problem.system, vertices[order], self.rows)
+        self.first, self.n = self.columns.first, self.columns.n
         self.enough = self.rows.size * (FLOOR * problem.size) ** 2
 
     @cached_property
@@ -105,40 +105,34 @@ class ProblemPart:
         return csc_array((data, indices, starts), (self.columns.n, self.columns.n))
 
 
-def solve_from(problem: Problem, part: int, x: np.ndarray, tolerance: float) -> np.ndarray | None:
-    """Numbers (n,) near x at which all equations of a part hold to `tolerance`; None when none were found.
-
-    Raises:
-        OutOfTime: with the numbers that it had come to.
-    """
-    work = ProblemPart(problem, part)
-    if not work.rows.size or not work.columns.n:
-        return None
-    place = descend(work, x.copy())
-    sizes = place.x[problem.tables.role == RADIUS]
-    return place.x if np.abs(place.error).max() <= tolerance and (sizes > 0.0).all() else None
-
-
-def descend(part: ProblemPart, x: np.ndarray) -> Iterate:
+def descend(
+    part: ProblemPart,
+    x: np.ndarray,
+    damping: float = FIRST,
+    longest: int = LONGEST,
+    corrections: int = CORRECTIONS,
+) -> Iterate:
     """The end of a descent of the sum of squares from x: a root, or another minimum.
 
     Raises:
         OutOfTime: with the numbers that it had come to.
     """
-    place, damping = part.at(x), FIRST
-    for _ in range(LONGEST):
+    place = part.at(x)
+    for _ in range(longest):
         if place.total <= part.enough:
             break
         if part.limit.is_over():
             raise OutOfTime(place.x)
-        lower, damping, last = _step(part, place, damping)
+        lower, damping, last = _step(part, place, damping, corrections)
         place = lower if lower.total < place.total else place
         if last:
             break
     return place
 
 
-def _step(part: ProblemPart, place: Iterate, damping: float) -> tuple[Iterate, float, bool]:
+def _step(
+    part: ProblemPart, place: Iterate, damping: float, corrections: int
+) -> tuple[Iterate, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
     curved, slope = part.curvature(place), place.slope(place.error)
     for _ in range(40):
@@ -149,7 +143,7 @@ def _step(part: ProblemPart, place: Iterate, damping: float) -> tuple[Iterate, f
         step = -factor.solve(slope)
         promised = -float(slope @ step) + damping * float(step @ step)
         least = promised < FLAT * place.total and damping < 1e-13
-        lower = _corrected(part, place, step, factor)
+        lower = _corrected(part, place, step, factor, corrections)
         if lower.total < place.total or least:
             return lower, _eased(damping, place.total - lower.total, promised, place.total), least
         damping = max(4.0 * damping, 1e-12)
@@ -181,11 +175,13 @@ def _factored(matrix: csc_array):
     return factor if straight and (factor.U.diagonal() > 0.0).all() else None
 
 
-def _corrected(part: ProblemPart, place: Iterate, step: np.ndarray, factor) -> Iterate:
+def _corrected(
+    part: ProblemPart, place: Iterate, step: np.ndarray, factor, corrections: int
+) -> Iterate:
     """The place after a step, corrected for what the equations' curvature adds to it while that helps."""
     goal, length = place.error + place.ahead(step), float(np.linalg.norm(step))
     best = part.moved(place.x, step)
-    for _ in range(CORRECTIONS):
+    for _ in range(corrections):
         more = -factor.solve(place.slope(best.error - goal))
         if not np.linalg.norm(more) <= length:
             break

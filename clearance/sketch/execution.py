@@ -14,9 +14,9 @@ import numpy as np
 
 from clearance.sketch.beam import nearest_branch
 from clearance.sketch.contacts import Contacts
-from clearance.sketch.descent import solve_from
 from clearance.sketch.effort import OutOfTime
 from clearance.sketch.equations import Lengths, Ratio, are
+from clearance.sketch.folds import solve_from
 from clearance.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
