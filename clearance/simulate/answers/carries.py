@@ -67,7 +67,7 @@ def _left_behind(case: Case) -> Iterator[str]:
         if left:
             taken = [repr(one.name) for one in shapes if one.name in parts]
             yield (
-                f"of {whole!r}, {listed(taken, 4)} is carried and {listed(left, 4)} stays: "
+                f"object {whole!r} is carried in part: {listed(taken, 4)} moves, {listed(left, 4)} stays; "
                 f"part: {whole} carries all"
             )
 

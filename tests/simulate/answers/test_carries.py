@@ -28,7 +28,7 @@ PART = box("a/0", (0.1, 0.1, 0.1), at(1.1, 0, 0.5))
 def test_an_object_that_is_carried_in_part_is_warned_of(carried):
     others = [box("a/1", (0.1, 0.1, 0.1), at(1.1, 0, 0.6)), box("wall", (1, 1, 0.1), at(z=-1.0))]
     said = told((PART, *others), *(Carry(one, "left/tool", Window(1.0)) for one in carried))
-    whole = "of 'a', 'a/0' is carried and 'a/1' stays: part: a carries all [CL428]"
+    whole = "object 'a' is carried in part: 'a/0' moves, 'a/1' stays; part: a carries all [CL428]"
     assert said == ([whole] if carried == ("a/0",) else [])
 
 
