@@ -51,12 +51,13 @@ def require_finished(report: Path) -> None:
     from clearance.report.withdrawn import OLDER_SUMMARY
 
     folder = report if report.is_dir() else report.parent
-    left = [one for one in (place_of(folder), folder / OLDER_SUMMARY) if one.exists()]
-    if left and not (left[0].name == OLDER_SUMMARY and (folder / LAST).exists()):
+    rows, older = place_of(folder), folder / OLDER_SUMMARY
+    is_withdrawn = older.exists() and not (folder / LAST).exists()
+    if rows.exists() or is_withdrawn:
         raise Incomplete(
             "a run into this folder was interrupted or refused, or is not finished; its files are older",
             where=str(folder),
-            valid=f"the same check again, or remove {left[0].name!r}",
+            valid=f"the same check again, or remove {(rows if rows.exists() else older).name!r}",
         )
 
 
