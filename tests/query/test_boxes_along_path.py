@@ -31,6 +31,13 @@ def gaps_along_axes(bounds: np.ndarray, other: np.ndarray, m: np.ndarray) -> np.
     return (np.abs(away) - half - np.abs(m[:, :3, :3]) @ half_of_other).max(axis=1)
 
 
+def gaps_of_balls(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """(n,) [m] how far the balls round two boxes (2, 2, 3) are from each other, at poses (n, 2, 4, 4)."""
+    middles = [poses[:, i, :3, :3] @ bounds[i].mean(axis=0) + poses[:, i, :3, 3] for i in (0, 1)]
+    radii = np.linalg.norm(bounds[:, 1] - bounds[:, 0], axis=1) / 2
+    return np.linalg.norm(middles[0] - middles[1], axis=1) - radii.sum()
+
+
 PACES = st.sampled_from([0.0, 1e-4, 0.01, 0.1, 0.5, 2.0])
 
 
@@ -50,9 +57,13 @@ def test_where_boxes_are_omitted_they_are_beside_each_other_and_else_never(
     boxes = CarriedBoxes(bounds, links, standing)
     steps_together(boxes, np.array([[0, 1]]), np.ascontiguousarray(poses[:, : 2 - stands]), spans)
     seen = np.linalg.inv(poses[:, 0]) @ poses[:, 1]
-    apart = np.maximum(
-        gaps_along_axes(bounds[0], bounds[1], seen),
-        gaps_along_axes(bounds[1], bounds[0], np.linalg.inv(seen)),
+    apart = np.max(
+        [
+            gaps_along_axes(bounds[0], bounds[1], seen),
+            gaps_along_axes(bounds[1], bounds[0], np.linalg.inv(seen)),
+            gaps_of_balls(bounds, poses),
+        ],
+        axis=0,
     )
     first, end = spans[0]
     omitted = np.ones(N_STEPS, dtype=bool)

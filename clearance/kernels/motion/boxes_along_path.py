@@ -3,12 +3,25 @@
 Not for: bounds of the distance (`sweep`), and which body is inside another (`search.doubt`).
 """
 
+import math
 from typing import NamedTuple
+
+import numpy as np
 
 from clearance.compile.declared import Floats2, Floats3, Floats4, Integers, Integers2
 from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import size
-from clearance.kernels.arithmetic.vec3 import Vec3, add, move, relative, rigid, row, sub
+from clearance.kernels.arithmetic.vec3 import (
+    Vec3,
+    add,
+    dot,
+    gap_sq,
+    move,
+    relative,
+    rigid,
+    row,
+    sub,
+)
 from clearance.kernels.motion.kinematics import Links, place_each
 
 ROUNDING = 1e-4
@@ -35,37 +48,55 @@ def _pose(boxes, body, poses, step):
     return rigid(boxes.standing[body] if link < 0 else poses[step, link])
 
 
-@inline(force=True)
-def _half(bounds):
+class _Box(NamedTuple):
+    """A box in the frame of its body: its middle and half its edges."""
+
+    middle: Vec3
+    half: Vec3
+
+
+@inline
+def _box(bounds):
     d = sub(row(bounds, 1), row(bounds, 0))
-    return Vec3(0.5 * d.x, 0.5 * d.y, 0.5 * d.z)
+    half = Vec3(0.5 * d.x, 0.5 * d.y, 0.5 * d.z)
+    return _Box(add(row(bounds, 0), half), half)
+
+
+@inline
+def _place_balls(boxes, poses, step, middles, radii, rounding):
+    """Fills the ball round each box at a step, its radius with what rounding may be, and that alone."""
+    for body in range(len(radii)):
+        box, frame = _box(boxes.bounds[body]), _pose(boxes, body, poses, step)
+        middle = move(frame, box.middle)
+        middles[body, 0], middles[body, 1], middles[body, 2] = middle.x, middle.y, middle.z
+        rounding[body] = ROUNDING * (size(frame.t) + size(box.middle) + size(box.half))
+        radii[body] = math.sqrt(dot(box.half, box.half)) + rounding[body]
+
+
+@inline
+def _balls_overlap(middles, radii, a, b):
+    """False only if two balls have a gap: most pairs are far from each other."""
+    reach = radii[a] + radii[b]
+    return gap_sq(row(middles, a), row(middles, b)) <= reach * reach
 
 
 @inline(force=True)
-def _separation(m, middle, half, middle_of_other, half_of_other):
+def _separation(m, box, other):
     """[m] the greatest gap along the axes of a box to another one, `m` from the frame of the other."""
-    away = sub(move(m, middle_of_other), middle)
-    x = abs(m.xx) * half_of_other.x + abs(m.xy) * half_of_other.y + abs(m.xz) * half_of_other.z
-    y = abs(m.yx) * half_of_other.x + abs(m.yy) * half_of_other.y + abs(m.yz) * half_of_other.z
-    z = abs(m.zx) * half_of_other.x + abs(m.zy) * half_of_other.y + abs(m.zz) * half_of_other.z
+    away, half, of_other = sub(move(m, other.middle), box.middle), box.half, other.half
+    x = abs(m.xx) * of_other.x + abs(m.xy) * of_other.y + abs(m.xz) * of_other.z
+    y = abs(m.yx) * of_other.x + abs(m.yy) * of_other.y + abs(m.yz) * of_other.z
+    z = abs(m.zx) * of_other.x + abs(m.zy) * of_other.y + abs(m.zz) * of_other.z
     by_x, by_y, by_z = abs(away.x) - half.x - x, abs(away.y) - half.y - y, abs(away.z) - half.z - z
     return max(by_x, max(by_y, by_z))
 
 
 @inline
-def _may_overlap(bounds_a, bounds_b, frame_a, frame_b):
+def _boxes_overlap(box_a, box_b, frame_a, frame_b, rounding):
     """False only if two boxes have a gap along an axis of either, beyond rounding."""
-    half_a, half_b = _half(bounds_a), _half(bounds_b)
-    middle_a, middle_b = add(row(bounds_a, 0), half_a), add(row(bounds_b, 0), half_b)
-    rounding = ROUNDING * (
-        size(frame_a.t) + size(frame_b.t) + size(middle_a) + size(middle_b)
-        + size(half_a) + size(half_b)
-    )  # fmt: skip
-    if _separation(relative(frame_a, frame_b), middle_a, half_a, middle_b, half_b) > rounding:
+    if _separation(relative(frame_a, frame_b), box_a, box_b) > rounding:
         return False
-    return not (
-        _separation(relative(frame_b, frame_a), middle_b, half_b, middle_a, half_a) > rounding
-    )
+    return not (_separation(relative(frame_b, frame_a), box_b, box_a) > rounding)
 
 
 @kernel
@@ -77,12 +108,18 @@ def steps_together(boxes: CarriedBoxes, pairs: Integers2, poses: Floats4, spans:
         poses: (n, links, 4, 4) [m] of the links at each of n steps.
         spans: (p, 2), overwritten.
     """
-    for pair in range(len(pairs)):
-        a, b = pairs[pair, 0], pairs[pair, 1]
-        spans[pair, 0] = spans[pair, 1] = 0
-        for step in range(len(poses)):
+    n_bodies = len(boxes.links)
+    middles, radii, rounding = np.empty((n_bodies, 3)), np.empty(n_bodies), np.empty(n_bodies)
+    spans[:] = 0
+    for step in range(len(poses)):
+        _place_balls(boxes, poses, step, middles, radii, rounding)
+        for pair in range(len(pairs)):
+            a, b = pairs[pair, 0], pairs[pair, 1]
+            if not _balls_overlap(middles, radii, a, b):
+                continue
             frame_a, frame_b = _pose(boxes, a, poses, step), _pose(boxes, b, poses, step)
-            if _may_overlap(boxes.bounds[a], boxes.bounds[b], frame_a, frame_b):
+            box_a, box_b = _box(boxes.bounds[a]), _box(boxes.bounds[b])
+            if _boxes_overlap(box_a, box_b, frame_a, frame_b, rounding[a] + rounding[b]):
                 if spans[pair, 1] == 0:
                     spans[pair, 0] = step
                 spans[pair, 1] = step + 1
