@@ -1,8 +1,8 @@
 """The adapter of ezdxf: a DXF drawing's entities as one curve.
 
 LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space, in metres where the
-header names a unit ($INSUNITS), else as the numbers stand. Entities that meet end to end become one contour.
-Not for: blocks, layers, writing.
+header names a unit ($INSUNITS), else as the numbers stand. All lie in one plane z = const. Entities that meet end
+to end become one contour. Not for: blocks, layers, writing.
 """
 
 from __future__ import annotations
@@ -63,8 +63,35 @@ def _in_metres(drawing) -> Curve:
     if not parts:
         raise BadSyntax("a model space without entities", valid=f"at least one of {KINDS}")
     curve = Curve.contours(_chained(parts))
+    _require_one_height(drawing.modelspace(), MEETING * curve.size)
     metres = _METRES[unit]
     return curve if metres == 1.0 else curve.transformed(np.diag([metres, metres, 1.0]))
+
+
+def _require_one_height(entities, tolerance: float) -> None:
+    """Nothing, if all entities lie at one height z: the plane of a drawing is xy, and z is not read."""
+    first = None
+    for entity in entities:
+        for height in _heights(entity):
+            first = height if first is None else first
+            if not abs(height - first) <= tolerance:
+                kind, handle = entity.dxftype(), entity.dxf.handle
+                problem = f"z is {height:.6g} in {kind} (handle {handle}) and {first:.6g} elsewhere"
+                raise BadCurve(
+                    problem, valid="a drawing in one plane z = const, as its view along z"
+                )
+
+
+def _heights(entity) -> list[float]:
+    kind, dxf = entity.dxftype(), entity.dxf
+    if kind == "LWPOLYLINE":
+        return [dxf.elevation]
+    if kind == "POLYLINE":
+        return [dxf.elevation[2]]
+    if kind == "SPLINE":
+        return [point[2] for point in entity.control_points]
+    points = (dxf.start, dxf.end) if kind == "LINE" else (dxf.center,)
+    return [tuple(point)[2] for point in points]
 
 
 def _curve_of(entity) -> Curve:

@@ -9,6 +9,7 @@ import pytest
 from clearance.errors import BadSyntax, ClearanceError, MissingFile
 from clearance.planar.curve import Curve
 from clearance.planar.dxf import read_dxf
+from clearance.planar.entries import BadCurve
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import minimum_distance
 
@@ -119,3 +120,45 @@ def test_dxf_bulges_old_polylines_weights_and_refusals(tmp_path):
             read_dxf(str(tmp_path / "bad.dxf"))
         assert said in str(caught.value) and "bad.dxf" in str(caught.value)
         space.delete_entity(entity)
+
+
+@pytest.mark.parametrize(
+    ("draw", "said"),
+    [
+        (lambda space: space.add_line((0, 0, 0), (500, 0, 300)), "z is 300 in LINE"),
+        (lambda space: space.add_circle((0, 0, 5), 1), "z is 5 in CIRCLE"),
+        (lambda space: space.add_arc((0, 0, 5), 1, 0, 90), "z is 5 in ARC"),
+        (
+            lambda space: space.add_lwpolyline([(0, 0), (1, 0)], dxfattribs={"elevation": 5}),
+            "z is 5 in LWPOLYLINE",
+        ),
+        (
+            lambda space: space.add_polyline2d([(0, 0), (1, 0)], dxfattribs={"elevation": (0, 0, 5)}),
+            "z is 5 in POLYLINE",
+        ),
+        (
+            lambda space: space.add_open_spline([(0, 9, 0), (1, 11, 5), (2, 8, 0), (3, 9, 0)]),
+            "z is 5 in SPLINE",
+        ),
+    ],
+)  # fmt: skip
+def test_a_drawing_that_does_not_lie_in_one_plane_is_refused(tmp_path, draw, said):
+    """A side view in the plane y = 0 would lose its heights: two that differ there alone would be equal."""
+
+    def both(space):
+        space.add_line((0, 0, 0), (2, 1, 0))
+        draw(space)
+
+    with pytest.raises(BadCurve, match=said) as caught:
+        read_dxf(drawing(tmp_path, 4, both))
+    assert "elsewhere; a drawing in one plane z = const" in str(caught.value)
+
+
+def test_a_drawing_at_any_one_height_is_read(tmp_path):
+    def at_seven(space):
+        space.add_line((0, 0, 7), (2, 1, 7 + 1e-10))
+        space.add_circle((0, 0, 7), 1)
+
+    assert read_dxf(drawing(tmp_path, 6, at_seven)).box == pytest.approx(
+        np.array([[-1, -1], [2, 1]])
+    )
