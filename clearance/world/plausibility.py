@@ -7,7 +7,7 @@ Works on the case itself, so that one made in memory is checked like one from fi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -24,6 +24,7 @@ from clearance.world.plausible_motion import (
     CREEP_TURN,
     LEAST_SLIDE,
     LEAST_TURN,
+    greatest_speeds,
     notices_on_motion,
 )
 from clearance.world.plausible_recordings import notices_on_holes
@@ -209,18 +210,43 @@ SKEW = 1e-3
 its first message: that is a warning."""
 
 
+LONGER = 100.0
+"""A table in milliseconds takes at least so many times as long as all else that moves: both are of one work, and
+milliseconds read as seconds are 1000 times as long."""
+
+SLOW_SLIDE, SLOW_TURN = 5e-3, 1e-2
+"""[m/s], [rad/s] A thousandth of what conveyors, slides and joints do at most."""
+
+
 class _Table(NamedTuple):
-    """The owner of a table, and its start and end in the run [s]; the end is infinite if it repeats."""
+    """The owner of a table, and its start and end in the run [s]; the end is infinite if it repeats.
+
+    Attributes:
+        length: [s] of the run, once through. slide, turn: its greatest speeds [m/s], [rad/s].
+    """
 
     start: float
     end: float
     name: str
     timing: Timing
+    length: float
+    slide: float
+    turn: float
 
     @property
     def text(self) -> str:
         until = "on" if self.end == math.inf else f"to {self.end:.12g} s"
         return f"{self.name} moves from {self.start:.12g} {until}"
+
+    @property
+    def is_slow(self) -> bool:
+        """True for what would be as fast as things in cells are, if its times were in milliseconds."""
+        return self.slide <= SLOW_SLIDE and self.turn <= SLOW_TURN
+
+    @property
+    def creeps(self) -> bool:
+        """True for what is so slow that it is suspect by itself."""
+        return self.slide <= CREEP_SLIDE and self.turn <= CREEP_TURN
 
 
 def notices_on_clocks(case: Case) -> list[Notice]:
@@ -240,7 +266,24 @@ def notices_on_clocks(case: Case) -> list[Notice]:
                 "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
             )
             found.append(Notice(Severity.SUSPECT, "clocks", text))
-    return [*found, *_recordings_begin_unlike(case)]
+    return [*found, *_a_thousand_times_as_long(tables), *_recordings_begin_unlike(case)]
+
+
+def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
+    """Notices on slow tables that take many times as long as all that is not slow."""
+    usual = max(
+        (table for table in tables if not table.is_slow),
+        key=lambda table: table.length,
+        default=None,
+    )
+    for table in tables if usual is not None else ():
+        if table.is_slow and not table.creeps and table.length > LONGER * usual.length > 0.0:
+            text = (
+                f"CHECK UNITS: {table.name} takes {table.length:g} s, and moves no faster than "
+                f"{table.slide * 1000:.3g} mm/s and {table.turn:.3g} rad/s, while {usual.name} takes "
+                f"{usual.length:g} s; times are in seconds, is this milliseconds?"
+            )
+            yield Notice(Severity.SUSPECT, "units", text)
 
 
 def _times_lacking(case: Case) -> Iterator[Notice]:
@@ -325,17 +368,20 @@ def _tables(case: Case) -> Iterator[_Table]:
     for placed in case.robots:
         if placed.trajectory is not None and np.ptp(placed.trajectory.positions, axis=0).any():
             name = f"robot {placed.robot.name!r}"
-            yield _table(name, placed.trajectory.times, placed.timing)
+            speeds = greatest_speeds(placed)
+            yield _table(name, placed.trajectory.times, placed.timing, speeds)
     for obstacle in case.obstacles:
         if obstacle.moves is not None and _changes(obstacle.moves):
-            name = f"obstacle {obstacle.name!r}"
-            yield _table(name, obstacle.moves.times, obstacle.moves.timing)
+            name, moves = f"obstacle {obstacle.name!r}", obstacle.moves
+            speeds = [float((ways / _lengths(moves)).max()) for ways in _ways(moves)]
+            yield _table(name, moves.times, moves.timing, speeds)
 
 
 def _changes(table: PoseTable) -> bool:
     return any(np.ptp(one, axis=0).any() for one in (table.positions, table.quaternions))
 
 
-def _table(name: str, times: np.ndarray, timing: Timing) -> _Table:
+def _table(name: str, times: np.ndarray, timing: Timing, speeds: Sequence[float]) -> _Table:
     start, end = timing.run_times(times)[[0, -1]].tolist()
-    return _Table(start, math.inf if timing.after == "loop" else end, name, timing)
+    until = math.inf if timing.after == "loop" else end
+    return _Table(start, until, name, timing, end - start, *speeds)

@@ -200,5 +200,15 @@ def _travel_and_speed(asked: Trajectory, i_column: int) -> tuple[float, float]:
     return float(ways.sum()), float((ways / np.diff(asked.times)).max(initial=0.0))
 
 
+def greatest_speeds(placed: PlacedRobot) -> tuple[float, float]:
+    """[m/s], [rad/s] The greatest mean speeds in the run, between samples, of joints that slide and that turn."""
+    asked, joints = placed.given_trajectory, _moving(placed)
+    greatest = {True: 0.0, False: 0.0}
+    for i, name in enumerate(asked.joint_names):
+        turning, (_, speed) = turns(joints[name]), _travel_and_speed(asked, i)
+        greatest[turning] = max(greatest[turning], speed * placed.timing.rate)
+    return greatest[False], greatest[True]
+
+
 def _moving(placed: PlacedRobot) -> dict[str, Joint]:
     return {joint.name: joint for joint in placed.robot.moving_joints}

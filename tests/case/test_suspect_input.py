@@ -242,6 +242,23 @@ def test_a_robot_in_milliseconds_unless_its_rate_says_so(tmp_path):
     assert told(tmp_path, "path.csv", "{file: path.csv, rate: 1000}", trajectory=path) == []
 
 
+IN_MILLISECONDS = "time,shoulder\n0,0\n1000,0.5\n2000,9\n"
+"""A robot's path that is faster than creeping."""
+
+
+@pytest.mark.parametrize(
+    ("files", "says"),
+    [
+        ({"door": table(1.0, 1000.0)}, "obstacle 'door' takes 1000 s, and moves no faster than "),
+        ({"trajectory": IN_MILLISECONDS}, "robot 'left' takes 2000 s, and moves no faster than "),
+    ],
+)
+def test_a_slow_table_that_takes_a_hundred_times_as_long_as_all_else(tmp_path, files, says):
+    (text,) = [text for text in told(tmp_path, **files) if "takes" in text]
+    assert text.startswith(f"CHECK UNITS: {says}")
+    assert text.endswith("times are in seconds, is this milliseconds?")
+
+
 def test_joints_are_told_with_their_robot_even_where_it_stands(tmp_path):
     texts = told(
         tmp_path, "{shoulder: 0.2}", "{shoulder: 1.2}", trajectory="time,shoulder\n0,0\n2,1.1\n"
