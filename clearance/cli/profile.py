@@ -33,7 +33,8 @@ def compare(a: str, b: str, out: Path | None, limit: float | None, limit_mm: flo
 
     It is their Hausdorff distance, with a proven error.
 
-    Lengths are in mm if a file is a swept profile or --limit-mm is given, else in the unit of the files.
+    Lengths are in mm if a file says its unit, as a swept profile and most DXF do, or --limit-mm is given.
+    Else they are in the unit of the files, and so is --limit.
 
     A and B are each a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf). Exit code: 0,
     1 beyond the limit or not proven to be within it, 2 bad input.
@@ -55,7 +56,10 @@ def _compare(a: str, b: str, out: Path | None, limit: float | None, in_mm: bool)
     if out is not None:
         refuse_inputs([out, *(out / name for name in _OF_COMPARISON)], [a, b])
     limit = None if limit is None else checked_number(limit, "--limit", least=0.0)
-    found = compared(read_outline(a), read_outline(b), limit=limit)
+    outlines = read_outline(a), read_outline(b)
+    if limit is not None and not in_mm:
+        _require_no_unit(outlines)
+    found = compared(*outlines, limit=limit)
     for line in _comparison_lines(found, *_unit(found, in_mm)):
         click.echo(line)
     if out is not None:
@@ -63,9 +67,19 @@ def _compare(a: str, b: str, out: Path | None, limit: float | None, in_mm: bool)
     return found.within_limit
 
 
+def _require_no_unit(outlines) -> None:
+    """Nothing, if no file says its unit: then a limit without one is in theirs."""
+    from clearance.errors import BadInput
+
+    for drawn in outlines:
+        if drawn.in_metres:
+            problem = f"a limit without a unit, where {drawn.name} says its own"
+            raise BadInput(problem, where="--limit", valid="--limit-mm")
+
+
 def _unit(found, in_mm: bool) -> tuple[str, float]:
     """The unit in which lengths are printed, and how many of it the outlines' unit is."""
-    is_metres = in_mm or found.a.profile is not None or found.b.profile is not None
+    is_metres = in_mm or found.a.in_metres or found.b.in_metres
     return (" mm", 1000.0) if is_metres else (" (unit of the files)", 1.0)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from os import PathLike
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,7 +33,19 @@ _MOST_DEGREES = 36_000.0
 """An angle of an arc beyond a hundred turns has few digits, and is damage."""
 
 
+class Drawing(NamedTuple):
+    """A curve, and whether the drawing names a unit, so that it is in metres."""
+
+    curve: Curve
+    in_metres: bool
+
+
 def read_dxf(path: str | PathLike[str]) -> Curve:
+    """The curve of `read_drawing`."""
+    return read_drawing(path).curve
+
+
+def read_drawing(path: str | PathLike[str]) -> Drawing:
     """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
 
     Raises: MissingFile, BadSyntax (not DXF, an unknown unit, or none of its entities is a curve), BadCurve (an
@@ -55,7 +68,7 @@ def read_dxf(path: str | PathLike[str]) -> Curve:
             raise BadSyntax(f"not a DXF drawing ({error!s:.120})", valid="a DXF file") from None
 
 
-def _in_metres(drawing) -> Curve:
+def _in_metres(drawing) -> Drawing:
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _METRES:
         raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16")
@@ -65,7 +78,9 @@ def _in_metres(drawing) -> Curve:
     curve = Curve.contours(_chained(parts))
     _require_one_height(drawing.modelspace(), MEETING * curve.size)
     metres = _METRES[unit]
-    return curve if metres == 1.0 else curve.transformed(np.diag([metres, metres, 1.0]))
+    if metres != 1.0:
+        curve = curve.transformed(np.diag([metres, metres, 1.0]))
+    return Drawing(curve, unit != 0)
 
 
 def _require_one_height(entities, tolerance: float) -> None:

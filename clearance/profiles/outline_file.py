@@ -14,6 +14,7 @@ from clearance.kernels.curve.arc import RADIUS
 from clearance.plain_yaml import yaml_file
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import curve_of_document, read_curve
+from clearance.planar.dxf import read_drawing
 from clearance.profiles.profile import Profile
 from clearance.profiles.profile_read import is_profile, profile_of
 
@@ -33,11 +34,13 @@ class DrawnOutline:
         name: for messages and pictures.
         curve: all contours.
         profile: with makers and bounds, where it is a profile of ours.
+        in_metres: its file says its unit, so that the curve is in metres; else lengths are as they stand there.
     """
 
     name: str
     curve: Curve
     profile: Profile | None = None
+    in_metres: bool = False
 
     @cached_property
     def region(self) -> Region:
@@ -100,13 +103,16 @@ def read_outline(path: str | Path) -> DrawnOutline:
         MissingFile, BadSyntax and what the readers of each kind raise, with the file.
     """
     path = Path(path)
+    if path.suffix.lower() == ".dxf":
+        drawing = read_drawing(path)
+        return DrawnOutline(path.name, drawing.curve, in_metres=drawing.in_metres)
     if path.suffix.lower() not in (".yaml", ".yml"):
         return DrawnOutline(path.name, read_curve(str(path)))
     with at(str(path)):
         document = yaml_file(path, "a profile, sketch, curve file or DXF")
         if is_profile(document):
             found = profile_of(document)
-            return DrawnOutline(path.name, found.curve, found)
+            return DrawnOutline(path.name, found.curve, found, in_metres=True)
         if isinstance(document, dict) and "curves" not in document and "points" in document:
             from clearance.sketch import Sketch
             from clearance.sketch.sketch_file import sketch_of

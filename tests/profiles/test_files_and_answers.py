@@ -146,6 +146,52 @@ def test_a_comparison_says_its_decision_first_and_lengths_with_their_unit(tmp_pa
     )
 
 
+def squares(tmp_path, unit):
+    """Two squares of 1000 and 1003, in drawings of a unit."""
+    import ezdxf
+
+    paths = []
+    for name, width in (("a.dxf", 1000), ("b.dxf", 1003)):
+        made = ezdxf.new()
+        made.header["$INSUNITS"] = unit
+        corners = [(0, 0), (width, 0), (width, 1000), (0, 1000)]
+        made.modelspace().add_lwpolyline(corners, close=True)
+        made.saveas(tmp_path / name)
+        paths.append(str(tmp_path / name))
+    return paths
+
+
+def test_drawings_with_a_unit_are_compared_in_mm_and_take_no_limit_without_one(tmp_path):
+    """They are read in metres, in which a limit of 1 would be a thousand times the 1 mm that is meant."""
+    paths = squares(tmp_path, unit=4)
+    out = CliRunner().invoke(command, ["profile", "compare", *paths, "--limit-mm", "1"])
+    assert out.exit_code == 1 and out.output.startswith("beyond 1 mm: the outlines differ by 3 mm")
+    out = CliRunner().invoke(command, ["profile", "compare", *paths])
+    assert out.exit_code == 0 and out.output.startswith(
+        "the outlines differ by 3 mm, error at most"
+    )
+    out = CliRunner().invoke(command, ["profile", "compare", *paths, "--limit", "1"])
+    said = "--limit: a limit without a unit, where a.dxf says its own; --limit-mm"
+    assert isinstance(out.exception, BadInput) and str(out.exception) == said
+
+
+def test_drawings_without_a_unit_are_compared_in_their_own(tmp_path):
+    out = CliRunner().invoke(
+        command, ["profile", "compare", *squares(tmp_path, unit=0), "--limit", "1"]
+    )
+    assert out.exit_code == 1
+    assert out.output.startswith("beyond 1 (unit of the files): the outlines differ by 3 (unit")
+
+
+def test_a_swept_profile_takes_no_limit_without_a_unit(profile, tmp_path):
+    """Its lengths are printed in mm, so that a limit of 1 would read as 1 mm and be 1 m."""
+    path = tmp_path / "p.yaml"
+    write_profile(profile, path)
+    out = CliRunner().invoke(command, ["profile", "compare", str(path), str(path), "--limit", "1"])
+    said = "--limit: a limit without a unit, where p.yaml says its own; --limit-mm"
+    assert isinstance(out.exception, BadInput) and str(out.exception) == said
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
