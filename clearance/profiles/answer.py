@@ -18,20 +18,23 @@ from clearance.planar.hausdorff import hausdorff
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
+from clearance.profiles.plausible_zones import notices_on_zone
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import contains
 from clearance.profiles.sweep import swept_profile
 from clearance.profiles.swept_bodies import TimedCase
 from clearance.record.record import ProfileAnswer
 from clearance.world.case import Case, ReservedSpace
+from clearance.world.notice import Notice
 from clearance.world.timeline import Timeline
 
 
 class AnsweredProfile(NamedTuple):
-    """The answer of a profile, and what draws it as SVG."""
+    """The answer of a profile, what draws it as SVG, and what is odd about its sketch."""
 
     answer: ProfileAnswer
     picture: Callable[[], str]
+    notices: tuple[Notice, ...]
 
 
 def answer_profiles(case: Case, timeline: Timeline) -> tuple[AnsweredProfile, ...]:
@@ -49,11 +52,11 @@ def answer_profiles(case: Case, timeline: Timeline) -> tuple[AnsweredProfile, ..
                 links=space.links or None,
                 section=space.section,
             )
-            found.append(_answer(space, swept, timeline.path_error))
+            found.append(_answer(case, space, swept, timeline.path_error))
     return tuple(found)
 
 
-def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> AnsweredProfile:
+def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float) -> AnsweredProfile:
     """The answer; a gap is less by what paths may be off [m]."""
     curve = space.sketch.curves()
     require_closed(curve, "sketch")
@@ -87,7 +90,9 @@ def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> Answered
         step=step,
     )
     picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
-    return AnsweredProfile(answer, picture)
+    return AnsweredProfile(
+        answer, picture, tuple(notices_on_zone(case, space, curve, swept.curve, answer.gap))
+    )
 
 
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):

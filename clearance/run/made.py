@@ -27,7 +27,7 @@ from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.measure.sections import SectionAnswer
 from clearance.simulate.replay.bodies import notes_on_drawing
 from clearance.world.case import Case
-from clearance.world.notice import WRAP, Notice
+from clearance.world.notice import WRAP, Notice, worst_first
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_wrap import shortest_reading
 
@@ -104,12 +104,16 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     budget = _budget(plan, found, resources)
     samples = _samples(plan, run, budget, resources)
     peer = _peer(question.case, found, resources) if question.cross_check else None
+    profiles = _profiles(plan)
+    measured = notices_of(
+        question, plan.sections, plan.timeline.phases, run.answer.certificate, found
+    )
     return Answers(
         run,
         samples,
         _contacts(plan, found, resources),
-        notices_of(question, plan.sections, plan.timeline.phases, run.answer.certificate, found),
-        _profiles(plan),
+        worst_first([*measured, *(notice for one in profiles for notice in one.notices)]),
+        profiles,
         peer,
         budget,
     )

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.world.case import Case, Limits
+from clearance.world.case import Case
 from clearance.world.extents import metres
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN, notices_on_speed
@@ -50,7 +50,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
         BadInput: `limits.joints` is neither "warn" nor "fail".
     """
     found = [*case.notices, *_notices_of_robots(case)]
-    found += _notices_on_limits(case.limits)
+    found += _notices_on_limits(case)
     found += _notices_on_padding(case)
     found += notices_on_sizes(case)
     found += notices_on_scans(case)
@@ -89,11 +89,13 @@ def _notices_of_robots(case: Case) -> list[Notice]:
     ]
 
 
-def _notices_on_limits(limits: Limits) -> list[Notice]:
+def _notices_on_limits(case: Case) -> list[Notice]:
+    limits = case.limits
     given = {"limits.fail": limits.fail, "limits.warn": limits.warn}
     for i, rule in enumerate(limits.rules):
         levels = {"fail": rule.fail, "warn": rule.warn}
         given |= {f"limits.rules[{i}].{key}": level for key, level in levels.items() if level}
+    given |= {f"profiles[{i}].limit": space.limit for i, space in enumerate(case.profiles)}
     large = [f"{key} is {value:g} m" for key, value in given.items() if value > LARGE_LIMIT]
     return _in_millimetres(large, "limits are")
 
