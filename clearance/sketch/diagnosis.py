@@ -17,6 +17,7 @@ import numpy as np
 from clearance.sketch.branches import exhausted
 from clearance.sketch.effort import OutOfTime
 from clearance.sketch.equations import Linear, PointPoint, are, places
+from clearance.sketch.execution import REVERSED
 from clearance.sketch.graph.graph import CONTRADICTED, MERGED
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.repairs import Repair, repairs_of
@@ -63,6 +64,8 @@ def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis
     trial.limit = problem.limit.again()
     if outcome.stopped:
         return Diagnosis(trial, [], "", not_holding(problem, outcome.best))
+    if outcome.broken == REVERSED:
+        return Diagnosis(trial, [], "", sketch._lists.reversed_angles(before, outcome.x))
     try:
         with trial.limit:
             return _diagnosed(trial, problem, outcome)

@@ -36,6 +36,9 @@ root, 1e-8."""
 WRONG_SIDE = -2
 """In place of the broken equation's row: all equations hold, a `same_side` does not."""
 
+REVERSED = -3
+"""The same: the points of a line with an angle are in the opposite order along it."""
+
 
 class ExecutionResult:
     """The outcome of a run: numbers, the steps' fates, the worst row that does not hold (-1: all do), and whether

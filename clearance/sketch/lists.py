@@ -11,7 +11,8 @@ from collections.abc import Set
 import numpy as np
 
 from clearance.sketch.constraints import Constraint
-from clearance.sketch.rows import Row
+from clearance.sketch.entities import Line
+from clearance.sketch.rows import Row, runs_along
 
 DRAWN, TOGETHER, ALONE, AGAIN = 0, 1, 2, 3
 """Ranks of rows: how an entity is drawn; of a constraint with several rows; with one; what often follows from
@@ -85,5 +86,22 @@ class FlatLists:
                 c.entities
                 for c in self.constraints
                 if c.kind == "same_side" and not c.driven and (chosen is None or c.index in chosen)
+            )
+        ]
+
+    def angles(self) -> list[Constraint]:
+        """The constraints that give an angle."""
+        return [c for c in self.constraints if c.kind == "angle" and not c.driven]
+
+    def reversed_angles(self, before: np.ndarray, after: np.ndarray) -> list[int]:
+        """The angles (by index) of a line whose points are in the opposite order along it, (n,) against (n,)."""
+        x, y = before.tolist(), after.tolist()
+        return [
+            angle.index
+            for angle in self.angles()
+            if any(
+                runs_along(x, line) != runs_along(y, line)
+                for line in angle.entities
+                if isinstance(line, Line)
             )
         ]

@@ -82,9 +82,19 @@ def beside(x: list[float], line: Line, other: Line) -> float:
     return x[other.variable + 1] - same * x[line.variable + 1]
 
 
+def runs_along(x: list[float], line: Line) -> bool:
+    """Whether a line's second point lies ahead of its first; true of a line without points."""
+    if line.ends is None:
+        return True
+    (px, py), (qx, qy) = map(pair, line.ends)
+    theta = x[line.variable]
+    return math.cos(theta) * (x[qx] - x[px]) + math.sin(theta) * (x[qy] - x[py]) >= 0.0
+
+
 def turned(x: list[float], line: Line, other: Line) -> float:
-    """[rad] the turn from one line to the other, up to half a turn either way."""
-    return math.remainder(turns(x, line, other), 2.0 * math.pi)
+    """[rad] the turn from the direction of one line to the other's, up to half a turn either way."""
+    reversals = sum(not runs_along(x, one) for one in (line, other))
+    return math.remainder(turns(x, line, other) + reversals * math.pi, 2.0 * math.pi)
 
 
 def sign(value: float) -> float:
@@ -177,9 +187,9 @@ def circles_touch(x, c, d, inside=None):
 
 
 def angle(x, a, b):
-    turn = turns(x, a, b)
-    whole = 2.0 * math.pi * round(turn / (2.0 * math.pi))
-    return [equal(b.variable, a.variable, scale=sign(turn - whole), offset=whole)]
+    turn = turned(x, a, b)
+    rest = half_turns(turns(x, a, b) - turn)
+    return [equal(b.variable, a.variable, scale=sign(turn), offset=rest)]
 
 
 def parallel(x, a, b):

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from clearance.sketch.branches import run_with_sides
+from clearance.sketch.constraints import measured
 from clearance.sketch.effort import OutOfTime, TimeLimit
-from clearance.sketch.execution import ExecutionResult, stopped
+from clearance.sketch.execution import REVERSED, ExecutionResult, stopped
 from clearance.sketch.faults import DegenerateSketch
 from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import RESIDUAL, Problem, problem_of, tables_of
 from clearance.sketch.start import sides_hold
+
+SMALL_TURN = 1.0
+"""[rad] Below a right angle: a line that turns by so much keeps the order of its points."""
 
 DRAGGED = 1e6
 """[-] Weight of a dragged point against 1 for all others."""
@@ -24,13 +29,14 @@ class Solver:
 
     def __init__(self, sketch) -> None:
         self.sketch = sketch
+        self._lists = sketch._lists
         self.tables = tables_of(sketch)
         self.sides = sketch.sides()
         self.problem = problem_of(self.tables, np.array(sketch._lists.numbers))
 
     def knows_all(self) -> bool:
         """Whether no entity or constraint has come in since."""
-        lists, tables = self.sketch._lists, self.tables
+        lists, tables = self._lists, self.tables
         return (len(lists.numbers), len(lists.constraints)) == (
             tables.role.size,
             tables.numbers.size,
@@ -38,7 +44,7 @@ class Solver:
 
     def current(self) -> Problem:
         """The problem with the dimensions as they are now; what was found before keeps the old ones."""
-        lists = self.sketch._lists
+        lists = self._lists
         dimensions = lists.dimensions()
         if not np.array_equal(dimensions, self.tables.numbers):
             self.tables = replace(self.tables, numbers=dimensions)
@@ -49,16 +55,41 @@ class Solver:
         """See `Sketch.solve`."""
         problem = self.current()
         problem.limit = limit
-        before = np.array(self.sketch._lists.numbers)
+        before = np.array(self._lists.numbers)
         return self._finish(problem, before, self._run(problem, before))
 
     def _run(self, problem: Problem, before: np.ndarray) -> ExecutionResult:
         """The outcome from the numbers before; these again where the time was not enough."""
         try:
             with problem.limit:
-                return run_with_sides(problem, before, self.sides)
+                outcome = run_with_sides(problem, before, self.sides)
+                if outcome.broken != -1 or not self._lists.reversed_angles(before, outcome.x):
+                    return outcome
+                return self._by_small_turns(problem, before)
         except OutOfTime as stop:
             return stopped(problem, before, stop.x)
+
+    def _by_small_turns(self, problem: Problem, before: np.ndarray) -> ExecutionResult:
+        """The outcome with every angle turned a little at a time: by a far turn, a point may pass the other end of
+        its line."""
+        lists, goal = self._lists, self.tables.numbers
+        drawn = goal.copy()
+        for constraint in lists.angles():
+            drawn[constraint.index] = measured(constraint, before.tolist())
+        n_turns = math.ceil(np.abs(goal - drawn).max() / SMALL_TURN)
+        x = before
+        for k in range(1, n_turns):
+            numbers = drawn + (goal - drawn) * (k / n_turns)
+            turn = problem_of(replace(self.tables, numbers=numbers), x, problem)
+            turn.limit = problem.limit
+            outcome = run_with_sides(turn, x, self.sides)
+            if outcome.broken != -1:
+                break
+            x = outcome.x
+        outcome = run_with_sides(problem, x, self.sides)
+        if outcome.broken == -1 and lists.reversed_angles(before, outcome.x):
+            outcome.broken = REVERSED
+        return outcome
 
     def drag(
         self, point, position: tuple[float, float], limit: TimeLimit
@@ -66,7 +97,7 @@ class Solver:
         """See `Sketch.drag`."""
         problem = self.current()
         problem.limit = limit
-        before = np.array(self.sketch._lists.numbers)
+        before = np.array(self._lists.numbers)
         outcome = self._run(problem, before)
         if outcome.broken == -1:
             try:
@@ -92,7 +123,7 @@ class Solver:
     ) -> tuple[Problem, np.ndarray, ExecutionResult]:
         if outcome.broken == -1:
             _check_degenerate(self.sketch, problem, outcome.x)
-            self.sketch._lists.numbers[:] = outcome.x.tolist()
+            self._lists.numbers[:] = outcome.x.tolist()
         return problem, before, outcome
 
 

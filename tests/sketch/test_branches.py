@@ -142,3 +142,38 @@ def test_a_strip_with_two_dimensions_too_many_and_one_point_drawn_across_is_solv
     edges = {(0, 1), (0, 6), (1, 6), *((i - t, i) for i in range(2, 7) for t in (1, 2))}
     result = distances(truth, drawn, sorted(edges))[0].solve()
     assert result.solved and result.residual <= 1e-11
+
+
+def between_directions(start, corner, end):
+    """[rad] the angle between the directions from start to corner and from end to start."""
+    u, v = corner.position - start.position, start.position - end.position
+    return math.acos(float(u @ v) / (np.linalg.norm(u) * np.linalg.norm(v)))
+
+
+def drawn_with_an_angle(drawn, wanted):
+    """A fixed segment ab and a segment ca, drawn at an angle from it, where another is wanted."""
+    s = Sketch()
+    a, b, c = s.point(0, 0), s.point(1, 0), s.point(-1.3 * math.cos(drawn), 1.3 * math.sin(drawn))
+    ab, ca = s.segment(a, b), s.segment(c, a)
+    s.fix(a), s.fix(b)
+    s.angle(ab, ca, wanted, name="A"), s.angle(ab, ca, driven=True, name="measured")
+    return s, (a, b, c)
+
+
+@pytest.mark.parametrize("drawn", [0.1, 0.8, 2.356, 3.0])
+@pytest.mark.parametrize("wanted", [0.05, 0.5, 1.5, 2.6, 3.09])
+def test_an_angle_is_between_directions_however_far_a_line_turns(drawn, wanted):
+    s, (a, b, c) = drawn_with_an_angle(drawn, wanted)
+    assert s.solve().solved
+    assert between_directions(a, b, c) == pytest.approx(wanted, abs=1e-9)
+    assert s.value("measured") == pytest.approx(wanted, abs=1e-9)
+    assert c.position[1] > 0.0
+
+
+def test_an_angle_that_only_a_reversed_segment_has_is_not_solved():
+    s, (_, b, c) = drawn_with_an_angle(2.356, 0.5)
+    s.vertical(b, c)
+    c_as_drawn = c.position.copy()
+    result = s.solve()
+    assert result.status == "unsolved" and result.searched == ["A"] and "A" in result.reason
+    assert np.array_equal(c.position, c_as_drawn)
