@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
 REASONS = ("Adjacent", "Default", "Always", "Never", "User")
-"""Any other text stands for `User`, as in MoveIt."""
+"""A text that begins with one of these, in any letters, stands for it; any other for `User`, as in MoveIt."""
 
 _ENDS = {
     "disable_default_collisions": ("link",),
@@ -108,7 +108,10 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
         tuple(row.links[0] for row in said if row.tag == "disable_default_collisions"),
         tuple(_pair(row) for row in said if row.tag == "enable_collisions"),
         tuple((*_pair(row), row.reason) for row in said if row.tag == "disable_collisions"),
-        tuple(_notes(shown, len(rows) - len(known), unknown, len(known) - len(said))),
+        (
+            *_notes(shown, len(rows) - len(known), unknown, len(known) - len(said)),
+            *_notes_on_reasons(shown, said),
+        ),
     )
 
 
@@ -131,8 +134,10 @@ class _Row:
     def __init__(self, element: Element) -> None:
         self.tag = str(element.tag)
         self.links = [_named(element, attribute) for attribute in _ENDS[self.tag]]
-        given = element.get("reason") or ""
-        self.reason = given if given in REASONS else "User"
+        self.given = (element.get("reason") or "").strip()
+        meant = [one for one in REASONS if self.given.casefold().startswith(one.casefold())]
+        self.is_known = bool(meant) or not self.given
+        self.reason = meant[0] if meant else "User"
 
     @property
     def is_of_one(self) -> bool:
@@ -173,6 +178,15 @@ def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) 
         yield (
             f"{shown}: {n_left_out} rows name links that the robot does not have and are left out: {listed}"
         )
+
+
+def _notes_on_reasons(shown: str, rows: Sequence[_Row]) -> Iterator[str]:
+    """A note on the reasons of pairs that MoveIt does not have."""
+    unknown = [repr(row.given) for row in rows if not row.is_known]
+    if unknown:
+        n = "1 reason is" if len(unknown) == 1 else f"{len(unknown)} reasons are"
+        count = "counts" if len(unknown) == 1 else "count"
+        yield f"{shown}: {n} none of MoveIt's and {count} as User: {listed([*dict.fromkeys(unknown)], 6)}"
 
 
 class GroupState(NamedTuple):

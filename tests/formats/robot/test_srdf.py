@@ -54,6 +54,9 @@ OFF = '<disable_default_collisions link="a"/>'
         ([OFF, enable("a", "b"), disable("a", "b", "User")], "User"),
         ([disable("a", "b", "Never"), disable("b", "a", "Default")], "Default"),
         ([disable("a", "b", "because")], "User"),
+        ([disable("a", "b", "never")], "Never"),
+        ([disable("a", "b", " NEVER in collision")], "Never"),
+        ([disable("a", "b", "adjacent ")], "Adjacent"),
         (['<disable_collisions link1="a" link2="b"/>'], "User"),
         ([disable("b", "c")], None),
     ],
@@ -68,6 +71,11 @@ def test_rows_of_unknown_links_are_left_out_and_named(read):
     assert matrix.reason("a", "b") == "Never" and matrix.off_by_default == ()
     (note,) = matrix.notes
     assert "arm.srdf: 2 rows" in note and "gripper, tool" in note
+
+
+def test_reasons_that_are_no_known_word_are_named(read):
+    (note,) = read(disable("a", "b", "because"), disable("b", "c", "User")).notes
+    assert note == "arm.srdf: 1 reason is none of MoveIt's and counts as User: 'because'"
 
 
 @pytest.mark.parametrize(
