@@ -97,7 +97,7 @@ def make(
 ) -> int:
     """Writes an SRDF for ROBOT.urdf.
 
-    Neighbours, and pairs that are proven never to meet, are excused.
+    Excused are pairs that are proven never to meet, and neighbours that lie together at home.
 
     Comments list the pairs that can meet and those that are undecided. Exit code: 0, or 2 for bad input.
     """

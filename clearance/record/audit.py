@@ -62,7 +62,7 @@ class ProposedPair:
     """A pair of links, and the reason to excuse it, or None where it has to be measured.
 
     Attributes:
-        finding: whether it can meet; None of neighbours, which are not asked.
+        finding: whether it can meet; None of neighbours that are excused.
     """
 
     pair: SelfPair

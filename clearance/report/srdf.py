@@ -71,8 +71,8 @@ def _finding_text(found: PairFinding, kinds: Mapping[str, str]) -> str:
 def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair]) -> str:
     """An SRDF with a row for each pair that can be excused, and a comment on each that cannot and why.
 
-    Rows of reason `Never` are proven, within the joint limits of the URDF; those of `Adjacent` are neighbours,
-    which are not looked at.
+    Rows of reason `Never` are proven, within the joint limits of the URDF; those of `Adjacent` are neighbours
+    that are together at home, or proven as well.
     """
     kinds = {joint.name: joint.kind for joint in robot.joints}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(robot.name)}>"]
@@ -95,5 +95,5 @@ def proposal_headline(pairs: Sequence[ProposedPair]) -> str:
     n_adjacent = sum(each.reason == ADJACENT for each in pairs)
     statuses = [each.finding.status for each in pairs if each.reason is None and each.finding]
     n_meet, n_open = statuses.count(PairStatus.MEETS), statuses.count(PairStatus.UNDECIDED)
-    proven = f"{n_never} proven never to meet, {n_adjacent} adjacent (not checked)"
+    proven = f"{n_never} proven never to meet, {n_adjacent} adjacent"
     return f"{count(len(pairs), 'pair')}: {proven}; to be measured: {n_meet} can meet, {n_open} undecided"

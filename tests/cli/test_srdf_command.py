@@ -83,8 +83,7 @@ def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsy
     assert run(["srdf", "make", urdf, "--out", str(out)]) == 0
     told = capsys.readouterr()
     assert told.err.strip() == (
-        "3 pairs: 1 proven never to meet, 2 adjacent (not checked); "
-        "to be measured: 0 can meet, 0 undecided"
+        "3 pairs: 1 proven never to meet, 2 adjacent; to be measured: 0 can meet, 0 undecided"
     )
     matrix = load_srdf(out, load_robot(urdf))
     assert matrix.reason("base", "upper") == "Never"
@@ -99,6 +98,21 @@ def test_a_proposal_leaves_what_can_meet_to_be_measured(robot, tmp_path, capsys)
     assert "<!-- measured: base - upper: can meet at shoulder " in told
     (tmp_path / "made.srdf").write_text(told)
     assert load_srdf(tmp_path / "made.srdf", load_robot(urdf)).reason("base", "upper") is None
+
+
+def test_a_proposal_excuses_no_neighbours_that_are_apart_at_home_and_can_meet(
+    robot, tmp_path, capsys
+):
+    """The arm's upper link begins 50 mm beyond its joint: folded back, it lies in the lower one."""
+    urdf, _ = robot(upper=0.25)
+    Path(urdf).write_text(Path(urdf).read_text().replace('"-2" upper="2"', '"-3" upper="3"'))
+    assert run(["srdf", "make", urdf]) == 0
+    told = capsys.readouterr().out
+    assert "<!-- measured: lower - upper: can meet at elbow " in told
+    (tmp_path / "made.srdf").write_text(told)
+    matrix = load_srdf(tmp_path / "made.srdf", load_robot(urdf))
+    assert matrix.reason("lower", "upper") is None
+    assert matrix.reason("base", "lower") == "Adjacent"
 
 
 @pytest.mark.slow

@@ -1,9 +1,10 @@
-"""Links that one joint joins and that meet, apart at home or at first: such are excused, since most touch always.
+"""Links that one joint joins, which are excused since most touch always: those that meet or come below their fail
+limit, and are farther apart at home or at first.
 
 How two such links lie depends on the position of their joint alone. From a position at which they are separate the
 joint goes on by their distance over the farthest point's arm, as often as they are farther apart than `GAP`. So no
 position passed meets, and the way between samples counts too. A joint of several degrees of freedom is checked at
-the steps only. Not for: pairs that are measured, and pairs that an SRDF excuses.
+the steps only. Not for: pairs that are measured, and pairs that an SRDF excuses by another reason than `Adjacent`.
 
 Source of the advancement: Mirtich 1996.
 """
@@ -51,6 +52,7 @@ class Neighbours:
 
     Args:
         a, b: the one above and the one below. names: of both, as warnings have them.
+        fail: [m] below which they fail their limit, were they measured. paddings: [m] of both.
 
     Attributes:
         joints: the names of what moves one against the other: one, or the parts of a joint of several degrees of
@@ -58,8 +60,17 @@ class Neighbours:
         home: (k,) [rad or m] where the robot's own file has these, else 0, within their limits.
     """
 
-    def __init__(self, robot: Robot, a: Body, b: Body, names: str) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        a: Body,
+        b: Body,
+        names: str = "",
+        fail: float = 0.0,
+        paddings: float = 0.0,
+    ) -> None:
         self._names = names
+        self.fail, self.paddings = fail, paddings
         self._chain = chain_between(robot, a.name, b.name)
         self._query = Query(a.shape, b.shape)
         self.joints = tuple(joint.name for joint in self._chain.masters)
@@ -108,14 +119,15 @@ class Neighbours:
         found = zip(self.joints, positions, units, strict=True)
         return ", ".join(f"{name} = {value:.4g} {unit}" for name, value, unit in found)
 
-    def free_until(self, start: float, end: float) -> float:
-        """The position up to which the links of one joint stay apart, on its way from start to end.
+    def free_until(self, start: float, end: float, within: float = 0.0) -> float:
+        """The position up to which the links of one joint stay farther apart than `within` [m], from start to end.
 
-        Exactness: no position before it meets. It is `end`, or the links are no farther apart there than `GAP`.
+        Exactness: no position before it comes within. It is `end`, or the links are within, or farther apart by
+        no more than `GAP`.
         """
         at, way, arm = start, math.copysign(1.0, end - start), self._arm()
         while (end - at) * way > 0.0:
-            gap = float(self.gaps(np.array([[at]]))[0])
+            gap = float(self.gaps(np.array([[at]]))[0]) - within
             if gap <= GAP:
                 return at
             at += way * min((gap - 0.5 * GAP) / arm, 2.0 * REACH)
@@ -148,43 +160,61 @@ def excused_neighbours(case: Case, i_robot: int) -> Iterator[Neighbours]:
     placed = case.robots[i_robot]
     asked = placed.self_clearance
     number = {body.name: BodyIndex(i_robot, k) for k, body in enumerate(placed.robot.bodies)}
-    for one in self_pairs(placed.robot) if asked and asked.matrix is None else ():
+    matrix = asked.matrix if asked else None
+    for one in self_pairs(placed.robot) if asked else ():
+        links = one.link_a, one.link_b
         pair = number[one.link_a], number[one.link_b]
-        if one.excused not in (ADJACENT, PARENT) or {one.link_a, one.link_b} & {
-            *placed.exclude_links
-        }:
+        if one.excused not in (ADJACENT, PARENT) or {*links} & {*placed.exclude_links}:
+            continue
+        if matrix is not None and matrix.reason(*links) != ADJACENT:
             continue
         names = [names_of(case, body) for body in pair]
         if not any(row.matches(*names) for row in case.allow if not row.when):
             a, b = (body.body_in(case) for body in pair)
-            yield Neighbours(placed.robot, a, b, " - ".join(body.name_in(case) for body in pair))
+            shown = " - ".join(body.name_in(case) for body in pair)
+            paddings = sum(body.padding_in(case) for body in pair) + case.path_error
+            yield Neighbours(placed.robot, a, b, shown, max(_fails(case, names)), paddings)
+
+
+def _fails(case: Case, names: Sequence[tuple[str, ...]]) -> Iterator[float]:
+    """[m] the fail limits that a pair has at some time."""
+    for i, rule in reversed([*enumerate(case.limits.rules, start=1)]):
+        if rule.matches(*names):
+            yield case.limits.of_rule(i).fail
+            if not rule.when:
+                return
+    yield case.limits.fail
 
 
 def neighbours_that_meet(phases: Sequence[Phase]) -> Iterator[Notice]:
-    """A warning on each pair of neighbours that are apart at home or at the first step, and meet in the run."""
+    """A warning on each pair of neighbours that meet in the run, or come below their fail limit, and are apart, or
+    above it, at home or at the first step."""
     case = phases[0].case
     for i in range(len(case.robots)):
         motions = [phase.motions[i] for phase in phases if i not in phase.absent_robots]
         for pair in excused_neighbours(case, i) if motions else ():
-            text = _meeting(pair, motions)
+            text = _meeting(pair, motions, 0.0, "touch")
+            if not text and pair.fail > 0.0:
+                come = f"come below their fail limit of {pair.fail * 1e3:g} mm"
+                text = _meeting(pair, motions, pair.fail + pair.paddings, come)
             if text:
                 yield pair.notice(text)
 
 
-def _meeting(pair: Neighbours, motions: Sequence[Motion]) -> str:
-    """Where two neighbours are apart and where they meet, in words; empty if they are not, or do not."""
-    first = _positions(pair, motions[0])[0]
+def _meeting(pair: Neighbours, motions: Sequence[Motion], within: float, come: str) -> str:
+    """Where two neighbours are apart and come within [m], in words; empty if they are not, or do not."""
+    first, apart_from = _positions(pair, motions[0])[0], within + APART
     at_first = float(pair.gaps(first[None])[0])
-    if at_first <= APART and not pair.is_apart_at_home:
+    if max(at_first, pair.gap_at_home) <= apart_from:
         return ""
-    apart = f"{metres(at_first)} m apart at first" if at_first > APART else pair.at_home
-    if at_first <= GAP:
-        return f"{apart}, touch at the first step already, at {pair.in_words(first)}"
-    found = _first_contact(pair, motions, first)
+    apart = f"{metres(at_first)} m apart at first" if at_first > apart_from else pair.at_home
+    if at_first <= within + GAP:
+        return f"{apart}, {come} at the first step already, at {pair.in_words(first)}"
+    found = _first_within(pair, motions, first, within)
     if found is None:
         return ""
     position, time, how = found
-    return f"{apart}, touch{how} at {pair.in_words(position)}, at {time:.3f} s"
+    return f"{apart}, {come}{how} at {pair.in_words(position)}, at {time:.3f} s"
 
 
 def _positions(pair: Neighbours, motion: Motion) -> np.ndarray:
@@ -192,14 +222,14 @@ def _positions(pair: Neighbours, motion: Motion) -> np.ndarray:
     return motion.positions[:, [motion.joint_names.index(name) for name in pair.joints]]
 
 
-def _first_contact(
-    pair: Neighbours, motions: Sequence[Motion], first: np.ndarray
+def _first_within(
+    pair: Neighbours, motions: Sequence[Motion], first: np.ndarray, within: float
 ) -> tuple[np.ndarray, float, str] | None:
-    """Where, when [s] and how well known two neighbours that are apart at first meet."""
+    """Where, when [s] and how well known two neighbours that are farther apart at first come within [m]."""
     if len(pair.joints) > 1:
         for motion in motions:
             positions = _positions(pair, motion)
-            touching = np.flatnonzero(pair.gaps(positions) <= GAP)
+            touching = np.flatnonzero(pair.gaps(positions) <= within + GAP)
             if len(touching):
                 return positions[touching[0]], float(motion.times[touching[0]]), " at a step,"
         return None
@@ -207,11 +237,11 @@ def _first_contact(
     ends = [_ends_between(motion, i_joint) for motion in motions]
     low, high = min(one.min() for one, _ in ends), max(one.max() for _, one in ends)
     start = float(first[0])
-    free = pair.free_until(start, float(low)), pair.free_until(start, float(high))
+    free = tuple(pair.free_until(start, float(end), within) for end in (low, high))
     for motion, (least, greatest) in zip(motions, ends, strict=True):
         leaves = np.flatnonzero((least < free[0]) | (greatest > free[1]))
         if len(leaves):
-            time, position = _leaving(motion, i_joint, int(leaves[0]), free)
+            time, position = _leaving(motion, i_joint, int(leaves[0]), (free[0], free[1]))
             return np.array([position]), time, f" (to {GAP * 1e3:g} mm)"
     return None
 

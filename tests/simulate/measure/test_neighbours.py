@@ -89,6 +89,37 @@ def test_the_first_moment_between_samples_at_which_neighbours_meet_is_told(
         assert float(found[2]) == pytest.approx(time, abs=3e-3)
 
 
+def test_neighbours_that_come_below_their_fail_limit_are_told_of_as_those_that_meet():
+    """On the way to 2 rad they come from 100 mm to some millimetres of each other."""
+    case = folding([0.0, 2.0])
+    (arm, hand), wrist = case.robots[0].robot.bodies[1:], case.robots[0].robot.joints[1]
+
+    def gap(turn):
+        turned = wrist.parent_from_joint @ turn_about_z(turn)
+        return cl.distance(arm.shape, hand.shape, pose_b=turned).distance
+
+    for limits, level in (
+        (cl.Limits(fail=0.04), 0.04),
+        (cl.Limits(fail=0.001, rules=(cl.Rule(("arm", "hand"), fail=0.04),)), 0.04),
+        (cl.Limits(fail=0.04, rules=(cl.Rule(("arm", "hand"), fail=0.001),)), None),
+        (cl.Limits(fail=0.001), None),
+        (cl.Limits(fail=0.2), None),  # below it at home and at first: nothing is new
+    ):
+        told = told_of(replace(case, limits=limits))
+        assert len(told) == (level is not None)
+        for one in told:
+            assert "0.1 m apart at first, come below their fail limit of 40 mm" in one
+            turn, time = map(float, re.search(r"wrist = (\S+) rad, at (\S+) s", one).groups())
+            assert gap(turn) == pytest.approx(level, abs=1e-3)
+            assert time == pytest.approx(turn, abs=3e-3)
+
+
+def turn_about_z(turn):
+    pose = np.eye(4)
+    pose[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    return pose
+
+
 def test_neighbours_that_begin_folded_are_told_of_where_they_are_apart_at_home():
     (told,) = told_of(folding([2.9, 3.3]))
     assert (
@@ -101,8 +132,13 @@ def test_what_a_file_excuses_or_a_row_allows_is_told_of_no_more():
     folded = folding([0.0, 2.9])
     row = Allowance(("hand", "arm"))
     assert told_of(replace(folded, allow=(row,))) == []
-    matrix = CollisionMatrix(disabled=(("arm", "hand", "Adjacent"),))
-    assert told_of(folding([0.0, 2.9], matrix=matrix)) == []
+    for reason, n_told in (
+        ("Adjacent", 1),
+        ("User", 0),
+        ("Default", 0),
+    ):  # Adjacent is nobody's word
+        matrix = CollisionMatrix(disabled=(("arm", "hand", reason),))
+        assert len(told_of(folding([0.0, 2.9], matrix=matrix))) == n_told
     for reason, n_told in ((PARENT, 1), ("excluded", 0)):
         (placed,) = folded.robots
         own = CollisionMatrix(disabled=(("arm", "hand", reason),))

@@ -20,6 +20,7 @@ from clearance.simulate.answers.audit.joint_box import (
     JointBox,
     PositionBoxes,
 )
+from clearance.simulate.measure.neighbours import Neighbours
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.robot import JointKind, Robot
@@ -220,7 +221,10 @@ def audit(
 
 
 def propose(robot: Robot, progress: Progress | None = None) -> list[ProposedPair]:
-    """What can be excused of every pair that moves: neighbours, and what is proven never to meet."""
+    """What can be excused of every pair that moves: neighbours that are joined, and what is proven never to meet.
+
+    Neighbours that are apart at home, and are not proven to stay so, are to be measured.
+    """
     pairs = [pair for pair in self_pairs(robot) if pair.excused != RIGID]
     found = []
     for i, pair in enumerate(pairs, start=1):
@@ -230,8 +234,15 @@ def propose(robot: Robot, progress: Progress | None = None) -> list[ProposedPair
     return found
 
 
+def _is_apart_at_home(robot: Robot, pair: SelfPair) -> bool:
+    bodies = {body.name: body for body in robot.bodies}
+    return Neighbours(robot, bodies[pair.link_a], bodies[pair.link_b]).is_apart_at_home
+
+
 def _proposed(robot: Robot, pair: SelfPair) -> ProposedPair:
-    if pair.excused == ADJACENT:
+    if pair.excused == ADJACENT and not _is_apart_at_home(robot, pair):
         return ProposedPair(pair, ADJACENT, None)
     finding = audit_pair(robot, pair.link_a, pair.link_b)
+    if pair.excused == ADJACENT and finding.status is PairStatus.APART:
+        return ProposedPair(pair, ADJACENT, None)
     return ProposedPair(pair, NEVER if finding.status is PairStatus.APART else None, finding)
