@@ -18,8 +18,10 @@ from clearance.simulate.measure.sections import SectionAnswer, SectionPlan
 from clearance.world.case import Case
 from clearance.world.extents import metres, reach_of
 from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.pairs import names_of
 from clearance.world.phase import Phase
 from clearance.world.plausible_sizes import FAR_OFF, far_off_notice
+from clearance.world.rules import Rule
 
 _BY_PAPER = Notice(
     Severity.WARNING,
@@ -60,11 +62,24 @@ def _idle_rules(case: Case, plan: SectionPlan) -> Iterator[Notice]:
     names = case.limits.rule_names
     for i, rule in enumerate(case.limits.rules, start=1):
         if i not in plan.rules:
-            text = (
-                f"rule {names[i]!r} ({' - '.join(rule.between)}) applies to no measured pair: "
-                "later rules or `allow` take all of its pairs"
-            )
-            yield Notice(Severity.WARNING, "rules", text)
+            text = f"rule {names[i]!r} ({' - '.join(rule.between)}) applies to no measured pair: "
+            yield Notice(Severity.WARNING, "rules", text + "; ".join(_why_idle(case, plan, rule)))
+
+
+def _why_idle(case: Case, plan: SectionPlan, rule: Rule) -> Iterator[str]:
+    """Who has the pairs that a rule matches: nobody, for one reason each, or rules that come later."""
+    by_reason: dict[str, list[str]] = {}
+    for one in plan.unmeasured:
+        if rule.matches((one.link,), (one.obstacle,)):
+            by_reason.setdefault(one.reason, []).append(f"{one.link} - {one.obstacle}")
+    for reason, pairs in by_reason.items():
+        yield f"{listed(pairs)} {'is' if len(pairs) == 1 else 'are'} not measured ({reason})"
+    if any(rule.matches(*(names_of(case, body) for body in pair)) for pair in plan.pairs):
+        yield (
+            "its other pairs are judged by later rules, or outside its time"
+            if by_reason
+            else ("its pairs are judged by later rules, or outside its time")
+        )
 
 
 def _waivers_of_all(case: Case) -> Iterator[Notice]:
