@@ -41,7 +41,7 @@ def answer_profiles(case: Case, timeline: Timeline) -> tuple[AnsweredProfile, ..
     """One answer for each of the case's profiles, in their order.
 
     Raises:
-        BadInput: not a plane, an open contour; with the profile's name.
+        BadInput: not a plane, an open contour, contours that overlap; with the profile's name.
     """
     found = []
     for i, space in enumerate(case.profiles):
@@ -66,6 +66,7 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
         gap, ends = whole.distance, np.stack([whole.point_b, whole.point_a])
         passed, contained = gap + whole.error_bound + path_error <= space.limit, False
     else:
+        sketch.require_apart("sketch")
         around = space.mode == "outside"
         gap, least = proven_gap(sketch, outline, around=around)
         gap -= path_error

@@ -111,7 +111,8 @@ def fit(
     Exactness: `distance` and `clearance` are certified; that no better sketch exists is not.
     Raises:
         BadInput: an unknown mode or dimension. NoFreeDimension. BadShape: a contradictory sketch, an open contour,
-        freedoms without a dimension. NoFit: nothing found that contains the outline, or stays clear of it.
+        contours that overlap, freedoms without a dimension. NoFit: nothing found that contains the outline, or
+        stays clear of it.
     """
     if mode not in MODES:
         raise BadInput(f"unknown mode {mode!r}", where="mode", valid=f"one of {', '.join(MODES)}")
@@ -178,6 +179,8 @@ def _answer(
     tried: int,
 ) -> Fit:
     here, target = best.placed, search.target
+    if target.mode != "nearest":
+        here.require_apart("the fitted sketch")
     n = len(shape.free)
     place = here.numbers[n:]
     distance = hausdorff(here.curve, target.outline.curve)

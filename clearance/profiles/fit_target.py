@@ -86,6 +86,10 @@ class FitTarget:
     ) -> None:
         self.outline, self.mode, self.margin = outline, mode, margin
         self.closed = ClosedContours.of_curve(outline.curve)
+        if mode != "nearest":
+            drawn.require_apart("sketch")
+            if outline.profile is None:
+                self.closed.require_apart(outline.name)
         self.pieces = self.closed.pieces
         self.sides = sides_of(self.pieces, self.closed.region)
         per_piece = int(np.clip(1500 // len(self.pieces.bulge), 2, 64))

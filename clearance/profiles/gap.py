@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from clearance.errors import BadShape
 from clearance.planar.curve import Curve
 from clearance.planar.minimum import Minimum, minimum_distance
 from clearance.profiles.contour import Contour, joined
 from clearance.profiles.pieces import FINE, ContourPieces, contours_of
-from clearance.profiles.region import Region, contains, region_of
+from clearance.profiles.region import Region, contains, overlap_of, region_of
 
 CHORD = 1e-7
 """[-] How far chords may stray from arcs where sides are decided, relative to the size."""
@@ -46,7 +47,29 @@ class ClosedContours:
     @cached_property
     def region(self) -> Region:
         """The enclosed region, by parity, arcs as chords within CHORD; for sides, not for bounds."""
-        return region_of([c.flattened(CHORD * self.curve.size) for c in self.contours])
+        return region_of(self._rings)
+
+    @cached_property
+    def _rings(self) -> list[np.ndarray]:
+        return [contour.flattened(CHORD * self.curve.size) for contour in self.contours]
+
+    def require_apart(self, name: str) -> None:
+        """Nothing, if each contour lies outside each other one, or within it as a hole or in a hole.
+
+        Raises:
+            BadShape: two that overlap, or one that laps over itself: parity would count the overlap as outside.
+        """
+        found = overlap_of(self._rings, 2.0 * CHORD * self.curve.size)
+        if found is not None:
+            x, y = found.point
+            fault = f"contours {found.first + 1} and {found.second + 1} overlap"
+            if found.first == found.second:
+                fault = f"contour {found.first + 1} laps over itself"
+            raise BadShape(
+                f"{fault}, as at ({x:.4g}, {y:.4g}), which leaves open what is inside",
+                where=name,
+                valid="contours beside one another, or one within another as a hole",
+            )
 
     @property
     def starts(self) -> np.ndarray:

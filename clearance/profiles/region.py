@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -120,6 +120,43 @@ def region_of(rings: Sequence[np.ndarray]) -> Region:
         polygon = shapely.make_valid(shapely.Polygon(ring))
         found = shapely.symmetric_difference(found, polygon)
     return _areas(found)
+
+
+class Overlap(NamedTuple):
+    """Two rings of which neither holds the other; or one twice, which laps over itself. `point` lies in both."""
+
+    first: int
+    second: int
+    point: tuple[float, float]
+
+
+def overlap_of(rings: Sequence[np.ndarray], width: float) -> Overlap | None:
+    """The first overlap of closed rings, where parity would leave out what two of them enclose; or None.
+
+    Args:
+        width: [m] overlaps no wider along the whole of a ring count as touching.
+    """
+    drawn = [shapely.Polygon(ring) for ring in rings]
+    for i, one in enumerate(drawn):
+        if not one.is_valid:
+            wound = shapely.make_valid(one, method="structure", keep_collapsed=False)
+            left_out = shapely.symmetric_difference(shapely.make_valid(one), wound)
+            if left_out.area > width * one.length:
+                return Overlap(i, i, _inner_point(left_out))
+    filled = np.array([shapely.make_valid(one) for one in drawn])
+    for i, k in shapely.STRtree(filled).query(filled, predicate="intersects").T.tolist():
+        one, two = filled[i], filled[k]
+        shared = shapely.intersection(one, two)
+        slack = width * min(one.length, two.length)
+        is_nested = min(one.area, two.area) - shared.area <= slack < abs(one.area - two.area)
+        if i < k and shared.area > slack and not is_nested:
+            return Overlap(i, k, _inner_point(shared))
+    return None
+
+
+def _inner_point(region: Region) -> tuple[float, float]:
+    x, y = region.representative_point().coords[0]
+    return x, y
 
 
 def area(region: Region) -> float:

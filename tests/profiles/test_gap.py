@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from clearance.errors import BadShape
 from clearance.planar.curve import Curve
 from clearance.profiles.contour import Contour
 from clearance.profiles.fit_rows import gaps_of_shape, sides_of
@@ -43,6 +44,43 @@ def test_a_gap_is_never_overstated(circles, around, gap):
 def test_where_one_contour_is_on_the_wrong_side_there_is_no_gap(around):
     found, _ = proven_gap(RING, contours((0.0, 0.5), (3.0, 0.5)), around=around)
     assert found == -1.0
+
+
+@pytest.mark.parametrize(
+    "circles",
+    [
+        [(0.0, 1.0), (1.5, 1.0)],
+        [(0.0, 1.0), (0.0, 1.0)],
+        [(9.0, 1.0), (0.0, 1.0), (0.1, 0.95)],
+    ],
+)
+def test_contours_that_overlap_are_refused_for_parity_would_leave_out_what_both_enclose(circles):
+    with pytest.raises(
+        BadShape, match=r"zone: contours \d and \d overlap, as at .*; contours beside"
+    ):
+        contours(*circles).require_apart("zone")
+
+
+@pytest.mark.parametrize(
+    "circles",
+    [
+        [(0.0, 1.0), (2.5, 1.0)],
+        [(0.0, 1.0), (2.0, 1.0)],
+        [(0.0, 1.0), (0.0, 0.5), (0.0, 0.25)],
+        [(0.0, 1.0), (0.5, 0.5)],
+    ],
+)
+def test_contours_beside_one_another_or_nested_are_not(circles):
+    contours(*circles).require_apart("zone")
+
+
+def test_a_contour_that_laps_over_itself_is_refused_and_one_that_crosses_itself_is_not():
+    turn = 4.0 * np.pi / 5.0 * np.arange(5)
+    star = Curve.polyline(np.stack([np.cos(turn), np.sin(turn)], axis=1), closed=True)
+    with pytest.raises(BadShape, match="zone: contour 1 laps over itself, as at"):
+        ClosedContours.of_curve(star).require_apart("zone")
+    eight = Curve.polyline([[0, 0], [1, 1], [1, 0], [0, 1]], closed=True)
+    ClosedContours.of_curve(eight).require_apart("zone")
 
 
 def ring(seed, n):
