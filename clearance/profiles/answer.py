@@ -6,7 +6,7 @@ beyond a sketch by less than the profile's bound is still called a violation. No
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ import numpy as np
 from clearance.errors import at
 from clearance.planar.deviation import deviation
 from clearance.planar.hausdorff import hausdorff
+from clearance.profiles.cross_section import NOT_CLOSED
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
@@ -25,7 +26,7 @@ from clearance.profiles.sweep import swept_profile
 from clearance.profiles.swept_bodies import TimedCase
 from clearance.record.record import ProfileAnswer
 from clearance.world.case import Case, ReservedSpace
-from clearance.world.notice import Notice
+from clearance.world.notice import Notice, Severity
 from clearance.world.timeline import Timeline
 
 
@@ -91,9 +92,15 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
         step=step,
     )
     picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
-    return AnsweredProfile(
-        answer, picture, tuple(notices_on_zone(case, space, curve, swept.curve, answer.gap))
-    )
+    odd = notices_on_zone(case, space, curve, swept.curve, answer.gap)
+    return AnsweredProfile(answer, picture, (*odd, *_open_cuts(space, swept)))
+
+
+def _open_cuts(space: ReservedSpace, swept: Profile) -> Iterator[Notice]:
+    for note in swept.notes:
+        if note.endswith(NOT_CLOSED):
+            text = f"profile {space.name!r}: {note}, without what it encloses"
+            yield Notice(Severity.WARNING, "profiles", text)
 
 
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):

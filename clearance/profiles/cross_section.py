@@ -17,6 +17,9 @@ from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
 from clearance.profiles.silhouette import CHUNK, Hulls, PlaneView
 
+NOT_CLOSED = "is not closed: its cut is that of its surface"
+"""The end of a note: what an open body encloses is not in its section."""
+
 
 class CrossSection(PlaneView):
     """The cross-section of one body, at its knots."""
@@ -52,7 +55,7 @@ class CrossSection(PlaneView):
             start, end = self.placed(knots.poses[[i, j]], vertices)
             rows = cut_hulls(raster, sums, start, end, triangles, reach, width, slack)
             if len(rows) and not self._closed.all():
-                self.notes = (f"{self._label} is not closed: its cut is that of its surface",)
+                self.notes = (f"{self._label} {NOT_CLOSED}",)
             yield Hulls.of(rows, knots.instant[i:])
 
     def _filled(self) -> Hulls:

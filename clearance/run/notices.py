@@ -42,6 +42,7 @@ def notices_of(
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_idle_rules(question.case, plan)]
     empty += _waivers_of_all(question.case)
+    empty += _profiles_without(question.case)
     empty += _far_off(question.case, found)
     empty += notices_on_carries(phases) if question.case.carries else ()
     empty += neighbours_that_meet(phases)
@@ -89,6 +90,21 @@ def _waivers_of_all(case: Case) -> Iterator[Notice]:
             level = f"down to {waiver.at_least * 1000:g} mm"
             text = f"{waiver} is for every pair: it waives later faults too, {level}"
             yield Notice(Severity.WARNING, "waivers", text)
+
+
+def _profiles_without(case: Case) -> Iterator[Notice]:
+    """A warning on what profiles do not count of how far links may be from where they are said to be."""
+    if not case.profiles:
+        return
+    padded = any(padding > 0.0 for placed in case.robots for padding in placed.padding.values())
+    given = {"tolerances": case.tolerance is not None, "paddings": padded}
+    left_out = " and ".join(name for name, is_given in given.items() if is_given)
+    if left_out:
+        names = listed([repr(space.name) for space in case.profiles])
+        text = f"profiles are judged without the {left_out} of the case: {names}"
+        yield Notice(
+            Severity.WARNING, "profiles", f"{text}; give them a limit of what these may add"
+        )
 
 
 def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:

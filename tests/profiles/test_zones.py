@@ -8,9 +8,11 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadShape
+from clearance.geometry.polyhedron import Polyhedron
 from clearance.planar.curve import Curve
 from clearance.sketch import Sketch
 from clearance.world.body import Body, Obstacle
+from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import ReservedSpace
 from tests.profiles.moving import slab, turning
 
@@ -28,13 +30,23 @@ def squares(*spans: tuple[float, float]) -> Sketch:
     return sketch
 
 
-def checked(mode: str, *spans: tuple[float, float], limit: float = 0.0):
+ARM = slab([0.0, -0.05, 0.0], [0.5, 0.05, 0.1])
+
+
+def checked(mode: str, *spans: tuple[float, float], arm=ARM, padding=0.0, tolerance=None, **given):
     """An arm of 0.5 m that turns by 1 rad, and squares that it keeps to, or out of."""
-    case = turning(slab([0.0, -0.05, 0.0], [0.5, 0.05, 0.1]), [0.0, 0.5, 1.0])
-    space = ReservedSpace("zone", squares(*spans), mode=mode, limit=limit)
-    return cl.check(replace(case, obstacles=(POST,), profiles=(space,)))
+    case = turning(arm, [0.0, 0.5, 1.0])
+    space = ReservedSpace("zone", squares(*spans), mode=mode, **given)
+    robots = tuple(replace(one, padding={"l1": padding}) for one in case.robots)
+    changes = {"robots": robots, "obstacles": (POST,), "tolerance": tolerance}
+    return cl.check(replace(case, profiles=(space,), **changes))
 
 
+def warnings(found) -> list[str]:
+    return [one.text for one in found.record.notices if one.kind == "profiles"]
+
+
+MOVED = Budget(robots={"robot": RobotTolerance(base=PlacementTolerance(xyz=0.05))})
 OVERLAPPING = (-0.7, 0.8), (-0.8, 0.7)
 
 
@@ -63,3 +75,35 @@ def test_a_fit_beside_outlines_that_overlap_is_refused():
     for mode in ("inside", "outside"):
         with pytest.raises(BadShape, match="outline: contours 1 and 2 overlap"):
             cl.fit(sketch, two, mode)
+
+
+@pytest.mark.parametrize(
+    ("padding", "tolerance", "without"),
+    [
+        (0.0, MOVED, "tolerances"),
+        (0.01, None, "paddings"),
+        (0.01, MOVED, "tolerances and paddings"),
+    ],
+)
+def test_what_profiles_do_not_count_stands_in_the_headline(padding, tolerance, without):
+    """The base may be 50 mm off, and the arm stays 10 mm within the zone."""
+    found = checked("outside", (-0.55, 0.55), padding=padding, tolerance=tolerance)
+    assert found.record.profiles[0].passed
+    said = f"profiles are judged without the {without} of the case: 'zone'; give them a limit"
+    assert len(warnings(found)) == 1 and warnings(found)[0].startswith(said)
+    assert said in found.verdict.text()
+
+
+def test_nothing_is_said_where_nothing_is_left_out():
+    assert warnings(checked("outside", (-0.55, 0.55))) == []
+
+
+def test_the_cut_of_an_open_arm_stands_in_the_headline():
+    """A pin in the middle of the arm is clear of the arm's surface, and would not be of the arm."""
+    faces = [face for face in ARM.triangles() if ARM.vertices[face, 0].min() < 0.5]
+    found = checked("inside", (0.005, 0.012), arm=Polyhedron(ARM.vertices, faces), section=0.05)
+    assert found.record.profiles[0].passed
+    said = (
+        "profile 'zone': l1 is not closed: its cut is that of its surface, without what it encloses"
+    )
+    assert warnings(found) == [said] and said in found.verdict.text()
