@@ -18,7 +18,8 @@ from clearance.world.mimics import followers
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.plausibility import notices_of, notices_on_tables
+from clearance.world.plausibility import notices_of
+from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.timing import Timing, Window

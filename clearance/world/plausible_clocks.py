@@ -1,0 +1,181 @@
+"""Times of actors that may come from two clocks, or from one in another unit, or that lack something."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.world.case import Case
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.placed_robot import PlacedRobot
+from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, greatest_speeds
+from clearance.world.plausible_tables import changes, greatest_speeds_in
+from clearance.world.timing import Timing
+from clearance.world.trajectory import FURTHER_PASSES, Trajectory
+
+SKEW = 1e-3
+"""[s] Recordings that begin within it begin together. Beyond it, and within an interval of theirs, each began with
+its first message: that is a warning."""
+
+
+LONGER = 100.0
+"""A table in milliseconds takes at least so many times as long as all else that moves: both are of one work, and
+milliseconds read as seconds are 1000 times as long."""
+
+SLOW_SLIDE, SLOW_TURN = 5e-3, 1e-2
+"""[m/s], [rad/s] A thousandth of what conveyors, slides and joints do at most."""
+
+
+class _Table(NamedTuple):
+    """The owner of a table, and its start and end in the run [s]; the end is infinite if it repeats.
+
+    Attributes:
+        length: [s] of the run, once through. slide, turn: its greatest speeds [m/s], [rad/s].
+    """
+
+    start: float
+    end: float
+    name: str
+    timing: Timing
+    length: float
+    slide: float
+    turn: float
+
+    @property
+    def text(self) -> str:
+        until = "on" if self.end == math.inf else f"to {self.end:.12g} s"
+        return f"{self.name} moves from {self.start:.12g} {until}"
+
+    @property
+    def is_slow(self) -> bool:
+        """True for what would be as fast as things in cells are, if its times were in milliseconds."""
+        return self.slide <= SLOW_SLIDE and self.turn <= SLOW_TURN
+
+    @property
+    def creeps(self) -> bool:
+        """True for what is so slow that it is suspect by itself."""
+        return self.slide <= CREEP_SLIDE and self.turn <= CREEP_TURN
+
+
+def notices_on_clocks(case: Case) -> list[Notice]:
+    """Notices on tables that end before others begin, and on recordings that are shifted against their stamps.
+
+    There is none where the case says `start` or `after`.
+    """
+    if case.clock.slack == math.inf:
+        return []
+    tables, found = sorted(_tables(case)), list(_times_lacking(case))
+    for i, later in enumerate(tables[1:], 1):
+        earlier = max(tables[:i], key=lambda table: table.end)
+        meant = earlier.timing.says_after or later.timing.says_start
+        if earlier.end < later.start and not meant:
+            text = (
+                f"CHECK CLOCKS: {earlier.text}, {later.text}: they never move together; do their times "
+                "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
+            )
+            found.append(Notice(Severity.SUSPECT, "clocks", text))
+    return [*found, *_a_thousand_times_as_long(tables), *_recordings_begin_unlike(case)]
+
+
+def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
+    """Notices on slow tables that take many times as long as all that is not slow."""
+    usual = max(
+        (table for table in tables if not table.is_slow),
+        key=lambda table: table.length,
+        default=None,
+    )
+    for table in tables if usual is not None else ():
+        if table.is_slow and not table.creeps and table.length > LONGER * usual.length > 0.0:
+            text = (
+                f"CHECK UNITS: {table.name} takes {table.length:g} s, and moves no faster than "
+                f"{table.slide * 1000:.3g} mm/s and {table.turn:.3g} rad/s, while {usual.name} takes "
+                f"{usual.length:g} s; times are in seconds, is this milliseconds?"
+            )
+            yield Notice(Severity.SUSPECT, "units", text)
+
+
+def _times_lacking(case: Case) -> Iterator[Notice]:
+    """Notices on programs whose times lack something, or rest on what nobody says, beside others that move."""
+    moving = [table.name for table in _tables(case)]
+    for placed in case.robots:
+        asked = placed.trajectory
+        if asked is None or not (asked.left_out or asked.is_rough):
+            continue
+        own = [f"robot {name!r}" for name in (placed.robot.name, *asked.drives)]
+        others = listed([name for name in moving if name not in own])
+        if others and asked.left_out:
+            text = (
+                f"the times of {own[0]} leave out {listed(asked.left_out)}, and {others} moves too"
+            )
+            yield _lacking(text, asked, case.clock.slack)
+        elif others and case.clock.slack == 0.0:
+            text = f"the times of {own[0]} rest on accelerations that no file says, and {others} moves too"
+            covers = "clock: {slack: seconds} covers what they may be off"
+            yield Notice(Severity.WARNING, "clocks", f"{text}; {covers}")
+
+
+def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
+    """The notice on what a program's times lack: suspect; with slack a warning of what that has to cover."""
+    if any(one.startswith(FURTHER_PASSES) for one in asked.left_out):
+        says = "clock: unsynchronised measures them at all times of the others"
+        return Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
+    if slack > 0.0:
+        covers = f"all of it has to be within the slack of {slack:g} s"
+        return Notice(Severity.WARNING, "clocks", f"{text}: {covers}")
+    says = "clock: {slack: seconds} says by how much their times may be off"
+    if asked.rides:
+        says = (
+            f"its tool goes with {listed([*asked.rides])}, so the program has to state these times"
+        )
+    return Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
+
+
+def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
+    """Notices on recordings that begin together in the case, but not by their stamps."""
+    recorded = [one for one in case.robots if one.trajectory and one.trajectory.began is not None]
+    recorded.sort(key=_clock_at_start)
+    for later in recorded[1:]:
+        delay = _clock_at_start(later) - _clock_at_start(recorded[0])
+        if delay > SKEW and not later.timing.says_start:
+            start = f"{delay / later.timing.rate:.6g}"
+            text = (
+                f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} begins {start} s after "
+                f"that of {recorded[0].robot.name!r}, but it is taken from 0 s; beside its file, "
+                f"`start: {start}` keeps the delay and `start: 0` drops it"
+            )
+            by_chance = delay <= max(_usual_interval(later), _usual_interval(recorded[0]))
+            yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
+
+
+def _usual_interval(placed: PlacedRobot) -> float:
+    """[s] between two samples of a recording, by its clock."""
+    intervals = np.diff(placed.given_trajectory.times)
+    return float(np.median(intervals)) if len(intervals) else 0.0
+
+
+def _clock_at_start(placed: PlacedRobot) -> float:
+    """[s] What the clock of a recording showed at the run's time 0."""
+    began = placed.given_trajectory.began
+    assert began is not None
+    return began - placed.timing.start * placed.timing.rate
+
+
+def _tables(case: Case) -> Iterator[_Table]:
+    for placed in case.robots:
+        if placed.trajectory is not None and np.ptp(placed.trajectory.positions, axis=0).any():
+            name = f"robot {placed.robot.name!r}"
+            speeds = greatest_speeds(placed)
+            yield _table(name, placed.trajectory.times, placed.timing, speeds)
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None and changes(obstacle.moves):
+            name, moves = f"obstacle {obstacle.name!r}", obstacle.moves
+            yield _table(name, moves.times, moves.timing, greatest_speeds_in(moves))
+
+
+def _table(name: str, times: np.ndarray, timing: Timing, speeds: Sequence[float]) -> _Table:
+    start, end = timing.run_times(times)[[0, -1]].tolist()
+    until = math.inf if timing.after == "loop" else end
+    return _Table(start, until, name, timing, end - start, *speeds)

@@ -1,0 +1,108 @@
+"""Tables of poses that look like another unit, or leave a turn open."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.world.case import Case
+from clearance.world.extents import metres
+from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN
+from clearance.world.notice import WRAP, Notice, Severity
+from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
+from clearance.world.pose_table import PoseTable
+
+LARGE_TRAVEL = 100.0
+"""[m] Nothing in a cell goes so far; in millimetres it is usual."""
+
+FAST_SLIDE, FAST_TURN = 20.0, 100.0
+"""[m/s], [rad/s] Nothing in a cell is so fast: delta robots reach 10 m/s. A table that jumps is."""
+
+
+HALF_TURN = 2e-3
+"""[rad] A turn that is as near to half a turn is one: quaternions of three digits are off by so much."""
+
+
+def notices_on_tables(case: Case) -> list[Notice]:
+    """Tables of obstacles that look like another unit, or leave a turn open."""
+    texts, halves = [], []
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None:
+            texts += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
+            halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
+    notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
+    return [*notices, *(Notice(Severity.SUSPECT, WRAP, text) for text in halves)]
+
+
+def _half_turns(what: str, table: PoseTable) -> list[str]:
+    """Notice of half a turn of a body in a step, which is as far either way round."""
+    cosines = np.abs((table.quaternions[1:] * table.quaternions[:-1]).sum(axis=1))
+    steps = np.flatnonzero(2.0 * cosines < HALF_TURN)
+    if not len(steps):
+        return []
+    start, end = table.times[steps[0] : steps[0] + 2].tolist()
+    return [
+        f"{what} turns by half a turn in one step, from {start:g} to {end:g} s, and its table does not say which "
+        "way round; give a row between"
+    ]
+
+
+def _odd(what: str, table: PoseTable) -> list[str]:
+    travel = float(np.linalg.norm(np.ptp(table.positions, axis=0)))
+    if travel > LARGE_TRAVEL:
+        return [f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?"]
+    if len(table) < 2:
+        return []
+    if _creeps(table):
+        length = float(table.times[-1] - table.times[0]) / table.timing.rate
+        return [
+            f"{what} moves no faster than {CREEP_SLIDE * 1000:g} mm/s and {CREEP_TURN:g} rad/s in {length:g} s; "
+            "times are in seconds, is this milliseconds?"
+        ]
+    return _jump(what, table)
+
+
+def _jump(what: str, table: PoseTable) -> list[str]:
+    """The fastest step of a table, if nothing is so fast. A short way is no jump: stamps can lie close."""
+    for ways, least, fast, unit in zip(
+        _ways(table), (STEP_SLIDE, STEP_TURN), (FAST_SLIDE, FAST_TURN), ("m", "rad"), strict=True
+    ):
+        speeds = np.where(ways > least, ways, 0.0) / _lengths(table)
+        step = int(speeds.argmax())
+        if speeds[step] > fast:
+            start, end = table.times[step : step + 2].tolist()
+            return [
+                f"{what} goes {ways[step]:.3g} {unit} from {start:g} to {end:g} s of its table, at "
+                f"{metres(speeds[step])} {unit}/s: does it jump, or are its lengths or times in another unit?"
+            ]
+    return []
+
+
+def _ways(table: PoseTable) -> tuple[np.ndarray, np.ndarray]:
+    """(n - 1,) [m] and [rad] How far a table goes and turns from sample to sample."""
+    ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
+    chords = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
+    return ways, 4.0 * np.arcsin(np.minimum(1.0, chords / 2.0))
+
+
+def _lengths(table: PoseTable) -> np.ndarray:
+    """(n - 1,) [s] of the run from sample to sample."""
+    return np.diff(table.times) / table.timing.rate
+
+
+def _creeps(table: PoseTable) -> bool:
+    """True for a motion that gets somewhere, but never faster than creeping."""
+    ways, turns = _ways(table)
+    lengths = _lengths(table)
+    slow = (ways / lengths).max() <= CREEP_SLIDE and (turns / lengths).max() <= CREEP_TURN
+    return bool(slow and (ways.sum() > LEAST_SLIDE or turns.sum() > LEAST_TURN))
+
+
+def greatest_speeds_in(table: PoseTable) -> tuple[float, float]:
+    """[m/s], [rad/s] The greatest mean speeds in the run, between samples."""
+    slide, turn = (float((ways / _lengths(table)).max()) for ways in _ways(table))
+    return slide, turn
+
+
+def changes(table: PoseTable) -> bool:
+    """True for a table that moves or turns what it is of."""
+    return any(np.ptp(one, axis=0).any() for one in (table.positions, table.quaternions))
