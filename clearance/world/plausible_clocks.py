@@ -10,7 +10,6 @@ import numpy as np
 
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, greatest_speeds
 from clearance.world.plausible_tables import changes, greatest_speeds_in
 from clearance.world.timing import Timing
@@ -133,34 +132,57 @@ def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
     return Notice(Severity.SUSPECT, "clocks", f"CHECK CLOCKS: {text}; {says}")
 
 
+class _Recording(NamedTuple):
+    """Messages that something follows.
+
+    Attributes:
+        at_start: [s] what their clock showed at the run's time 0. kind: whose they are, and name.
+        usual: [s] between two samples, by their clock.
+    """
+
+    at_start: float
+    kind: str
+    name: str
+    usual: float
+    timing: Timing
+
+    @staticmethod
+    def of(kind: str, name: str, began: float, times: np.ndarray, timing: Timing) -> _Recording:
+        """That of samples, from what their clock showed at their time 0 [s]."""
+        usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+        return _Recording(began - timing.start * timing.rate, kind, name, usual, timing)
+
+
 def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
     """Notices on recordings that begin together in the case, but not by their stamps."""
-    recorded = [one for one in case.robots if one.trajectory and one.trajectory.began is not None]
-    recorded.sort(key=_clock_at_start)
+    recorded = sorted(_recordings(case), key=lambda one: one.at_start)
     for later in recorded[1:]:
-        delay = _clock_at_start(later) - _clock_at_start(recorded[0])
+        first = recorded[0]
+        delay = later.at_start - first.at_start
         if delay > SKEW and not later.timing.says_start:
             start = f"{delay / later.timing.rate:.6g}"
+            whose = first.kind if first.kind != later.kind else ""
             text = (
-                f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} begins {start} s after "
-                f"that of {recorded[0].robot.name!r}, but it is taken from 0 s; beside its file, "
+                f"CHECK CLOCKS: by its stamps the recording of {later.kind}{later.name!r} begins {start} s after "
+                f"that of {whose}{first.name!r}, but it is taken from 0 s; beside its file, "
                 f"`start: {start}` keeps the delay and `start: 0` drops it"
             )
-            by_chance = delay <= max(_usual_interval(later), _usual_interval(recorded[0]))
+            by_chance = delay <= max(later.usual, first.usual)
             yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
 
 
-def _usual_interval(placed: PlacedRobot) -> float:
-    """[s] between two samples of a recording, by its clock."""
-    intervals = np.diff(placed.given_trajectory.times)
-    return float(np.median(intervals)) if len(intervals) else 0.0
-
-
-def _clock_at_start(placed: PlacedRobot) -> float:
-    """[s] What the clock of a recording showed at the run's time 0."""
-    began = placed.given_trajectory.began
-    assert began is not None
-    return began - placed.timing.start * placed.timing.rate
+def _recordings(case: Case) -> Iterator[_Recording]:
+    """Of the robots, and of the obstacles that move."""
+    for placed in case.robots:
+        asked = placed.trajectory and placed.given_trajectory
+        if asked is not None and asked.began is not None:
+            yield _Recording.of(
+                "robot ", placed.robot.name, asked.began, asked.times, placed.timing
+            )
+    for obstacle in case.obstacles:
+        moves = obstacle.moves
+        if moves is not None and moves.began is not None and changes(moves):
+            yield _Recording.of("obstacle ", obstacle.name, moves.began, moves.times, moves.timing)
 
 
 def _tables(case: Case) -> Iterator[_Table]:

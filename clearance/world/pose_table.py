@@ -22,6 +22,7 @@ class PoseTable:
             it stands on.
         quaternions: (n, 4) xyzw of length one; signs are chosen so that neighbours are nearest.
         timing: when the table is followed. frame: the frame of the poses, where their file names one.
+        began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
 
     Raises:
         BadShape, NotFinite: not one finite number each. BadTime: times that do not increase, or one sample where
@@ -35,6 +36,7 @@ class PoseTable:
     quaternions: np.ndarray
     timing: Timing = AS_GIVEN
     frame: str = ""
+    began: float | None = None
 
     def __post_init__(self) -> None:
         for name, width in (("times", 0), ("positions", 3), ("quaternions", 4)):

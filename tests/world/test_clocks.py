@@ -179,6 +179,29 @@ def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
     assert not reported(two_recordings(tmp_path, 5e-4))
 
 
+@pytest.mark.parametrize(
+    ("late", "says"),
+    [
+        (
+            3.25,
+            "obstacle 'door' begins 3.25 s after that of robot 'left', but it is taken from 0 s",
+        ),
+        (
+            -3.25,
+            "robot 'left' begins 3.25 s after that of obstacle 'door', but it is taken from 0 s",
+        ),
+        (0.0, None),
+    ],
+)
+def test_recorded_poses_are_held_against_the_stamps_of_robots(tmp_path, late, says):
+    case = two_recordings(tmp_path, 0.0)
+    door, *others = case.obstacles
+    door = replace(door, moves=replace(door.moves, began=EPOCH + late))
+    found = reported(replace(case, robots=case.robots[:1], obstacles=(door, *others)))
+    assert len(found) == (says is not None)
+    assert all(says in text for text in found)
+
+
 def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_path):
     """Two drivers of one rate never send their first messages at one moment. These send two a second."""
     case = two_recordings(tmp_path, 0.25)

@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.errors import at
 from clearance.formats.known_formats import Kind, format_of, function_at
+from clearance.formats.message.times import NANO
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import note_on_rounded
 from clearance.geometry.quaternions import of_unit_length
@@ -53,7 +54,10 @@ class PoseSamples:
         Raises:
             BadTime, BadPose, NotFinite: samples that nothing can follow.
         """
-        return PoseTable(self.times, self.positions, self.quaternions, frame=self.frame)
+        began = self.stamp / NANO if self.stamp else None
+        return PoseTable(
+            self.times, self.positions, self.quaternions, frame=self.frame, began=began
+        )
 
 
 class ReadSamples(NamedTuple):

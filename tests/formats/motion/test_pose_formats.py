@@ -170,6 +170,7 @@ def test_a_case_follows_stamped_poses_and_says_so(tmp_path, capsys):
     case = load_cell(tmp_path, "moves: door.csv", "moves: door.yaml", door__yaml=STAMPED)
     assert cl.check(case).record.steps.num_rows >= 3
     assert any("door.yaml: 2 stamped poses" in note for note in case.notes)
+    assert case.obstacles[0].moves.began == pytest.approx(1700000000.1, abs=1e-6)
     write_cell(
         tmp_path,
         "moves: door.csv",
