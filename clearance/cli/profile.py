@@ -93,6 +93,9 @@ def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
     if found.verdict == "undecided":
         low, high = scale * whole.lower, scale * whole.upper
         yield f"  proven is {low:.12g} to {high:.12g}, which counts as beyond"
+    cuts = [_cut(drawn.profile) for drawn in (found.a, found.b) if drawn.profile is not None]
+    if len(set(cuts)) > 1:
+        yield f"  note      A is a {cuts[0]}, B a {cuts[1]}"
     metres, square = (" m", " m2") if scale != 1.0 else ("", "")
     sides = ("A", "B", found.forth), ("B", "A", found.back)
     for (side, other, spread), one in zip(sides, whole.directed.values(), strict=True):
@@ -116,6 +119,16 @@ def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
         )
     if len(found.beyond) > MOST_BEYOND:
         yield f"  beyond    on {len(found.beyond) - MOST_BEYOND} more stretches"
+
+
+def _cut(profile) -> str:
+    """What a profile is, with the height of its cut along the plane's normal."""
+    if profile.section is None:
+        return "silhouette"
+    import numpy as np
+
+    height = float(profile.plane_origin @ np.cross(*profile.plane_axes))
+    return f"section at {height:.6g} m"
 
 
 def _write(found, out: Path) -> None:

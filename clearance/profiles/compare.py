@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from clearance.errors import BadInput
 from clearance.planar.deviation import Deviation, deviation
 from clearance.planar.hausdorff import Hausdorff, hausdorff
 from clearance.profiles.outline_file import DrawnOutline
@@ -15,6 +16,9 @@ SAMPLES = 600
 """Points along each outline at which its deviation is measured, all joints among them."""
 
 PERCENTILES = (50, 95, 99)
+
+SAME_PLANE = 1e-9
+"""[m] or [-] Coordinates of two planes differ by no more where the planes are one but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +80,11 @@ def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> 
 
     Args:
         limit: in the outlines' unit, for `beyond` and `within_limit`.
+
+    Raises:
+        BadInput: two swept profiles whose coordinates are not of one plane.
     """
+    _require_one_plane(a, b)
     found = hausdorff(a.curve, b.curve)
     forth = deviation(a.curve, b.curve, limit=limit, samples=SAMPLES)
     back = deviation(b.curve, a.curve, limit=limit, samples=SAMPLES)
@@ -94,6 +102,19 @@ def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> 
             makers[side] = maker
     beyond = (*_beyond("a", a, forth), *_beyond("b", b, back))
     return OutlineComparison(a, b, found, forth, back, gained, lost, limit, beyond, makers)
+
+
+def _require_one_plane(a: DrawnOutline, b: DrawnOutline) -> None:
+    one, two = a.profile, b.profile
+    if one is None or two is None:
+        return
+    aside = (one.plane_origin - two.plane_origin) @ one.plane_axes.T
+    turned = one.plane_axes - two.plane_axes
+    if max(np.abs(aside).max(), np.abs(turned).max()) > SAME_PLANE:
+        planes = f"{a.name} is drawn in {one.plane!r} and {b.name} in {two.plane!r}"
+        raise BadInput(
+            f"{planes}, whose coordinates differ", where="plane", valid="sweeps with one --plane"
+        )
 
 
 def _beyond(side: str, drawn: DrawnOutline, profile: Deviation) -> list[Exceedance]:

@@ -146,6 +146,34 @@ def test_a_comparison_says_its_decision_first_and_lengths_with_their_unit(tmp_pa
     )
 
 
+def sweep(case, *asked, **cut):
+    found = cl.swept_profile(case, *asked, **cut)
+    return DrawnOutline(asked[0] if asked else "xy", found.curve, found)
+
+
+@pytest.mark.parametrize("plane", ["xz", "0.5 0 0.4 0 0 1", "0 0 0 1 0 0", "0 0 0 0 0 -1"])
+def test_sweeps_in_planes_of_other_coordinates_are_not_compared(plane):
+    """Two outlines in planes across one another can have the same numbers, and are nothing alike."""
+    case = turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 1.0])
+    with pytest.raises(BadInput, match="whose coordinates differ; sweeps with one --plane"):
+        compare(sweep(case), sweep(case, plane))
+    assert compare(sweep(case), sweep(case, "0 0 0.4 0 0 1")).found.distance <= 1e-9
+
+
+def test_a_section_beside_a_silhouette_is_named(tmp_path):
+    case = turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 1.0])
+    for name, height in (("whole", None), ("cut", 0.05), ("cut2", 0.06)):
+        write_profile(cl.swept_profile(case, section=height), tmp_path / f"{name}.yaml")
+
+    def told(*names):
+        paths = [str(tmp_path / f"{name}.yaml") for name in names]
+        return CliRunner().invoke(command, ["profile", "compare", *paths]).output
+
+    assert "note      A is a silhouette, B a section at 0.05 m" in told("whole", "cut")
+    assert "note      A is a section at 0.06 m, B a section at 0.05 m" in told("cut2", "cut")
+    assert "note" not in told("cut", "cut")
+
+
 def squares(tmp_path, unit):
     """Two squares of 1000 and 1003, in drawings of a unit."""
     import ezdxf
