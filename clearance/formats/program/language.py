@@ -21,7 +21,6 @@ class Language:
         suffix: of the file that has a called program by its name; empty where its name says nothing of the file.
         moving, still: words that decide where the robot goes, and those that do not.
         timed: words that take a time that counts; their file may not say how long.
-        still_before, timed_before: how more of them begin.
         retiming: words that change how long moves take also from a thread, a trap or an interrupt.
         values: functions whose value follows from their arguments.
     """
@@ -30,8 +29,6 @@ class Language:
     moving: Collection[str] = ()
     still: Collection[str] = ()
     timed: Collection[str] = ()
-    still_before: tuple[str, ...] = ()
-    timed_before: tuple[str, ...] = ()
     retiming: Collection[str] = ()
     values: Mapping[str, Callable[..., Any]] = {}
 
@@ -44,11 +41,11 @@ class Language:
         """Whether an instruction or a function can move the robot; None where it is not known."""
         if name in self.moving:
             return True
-        return False if name in self.still or name.startswith(self.still_before) else None
+        return False if name in self.still else None
 
     def waits(self, call: Call) -> bool:
         """Whether an instruction or a function takes a time that counts."""
-        return call.name in self.timed or call.name.startswith(self.timed_before)
+        return call.name in self.timed
 
     def writes(self, call: Call) -> Iterable[Expression]:
         """The arguments of an instruction or a function that it gives a value."""

@@ -37,12 +37,10 @@ from clearance.formats.program.tokens import text_of
 from clearance.formats.program.urscript_text import labels_of, script_of
 from clearance.formats.program.urscript_words import (
     BLOCKING,
-    BLOCKING_BEFORE,
     DEFAULTS,
     OTHER_MOVES,
     PARAMETERS,
     STILL,
-    STILL_BEFORE,
     TARGETS,
 )
 from clearance.geometry.pose import inverse, pose_from_rotation_vector
@@ -201,9 +199,8 @@ class _UrScript(Language):
     share: float = 1.0
     maker = "ur"
     moving = frozenset((*PARAMETERS, *OTHER_MOVES, "set_tcp"))
-    still = frozenset((*STILL, *_VALUES, "sleep", "get_inverse_kin"))
+    still = frozenset((*STILL, *_VALUES, "sleep"))
     timed = BLOCKING
-    still_before, timed_before = STILL_BEFORE, BLOCKING_BEFORE
     retiming = ("set_speed",)
     values = _VALUES
 

@@ -139,7 +139,10 @@ FAULTS = {
     "grip(20)": "line 1: 'grip' is no known instruction",
     "x = grip(20)": "line 1: 'grip' is no known instruction",
     "movej(home)": "line 1: the target is not known: 'home' is in no file",
-    "movej(get_list())": "line 1: the target is not known: get_list() at line 1",
+    "movej(get_list())": "line 1: 'get_list' is no known instruction",
+    "movej(get_target_waypoint())": "the target is not known: get_target_waypoint() at line 1",
+    "movel(pose_sub(p[1,0,0,0,0,0], p[0,0,0,0,0,0]))": "the target is not known: pose_sub() at line 1",
+    "set_pos([0,0,0,0,0,0])": "line 1: set_pos moves the robot on a way",
     "movej([0,0,0])": "six numbers",
     "movej([0,0,0,0,0,0], v=0)": "line 1: v is 0; more than 0",
     "movej([0,0,0,0,0,0], speed=1)": "movej has no 'speed'",
@@ -167,6 +170,18 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(text):
     with pytest.raises(cl.ClearanceError, match=r"^a\.script: ") as caught:
         moves_of(text)
     assert FAULTS[text] in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "name",
+    "set_tool set_frame set_base tool_change tool_pick get_part read_force write_log is_ready "
+    "enable_gripper disable_gripper socket_ask rpc_ask modbus_ask rtde_ask request_part assign_part".split(),
+)
+def test_a_function_that_no_file_has_is_refused_however_it_begins(name):
+    for text in (f"{name}(2)", f"x = {name}(2)"):
+        with pytest.raises(cl.ClearanceError, match=f"line 2: '{name}' is no known instruction"):
+            moves_of(f"{Q}\n{text}\n{Q}")
+    assert len(moves_of(f"def {name}(n):\n{Q}\nend\n{name}(2)\n{Q}")) == 2
 
 
 LINE = "movel(p[x, 0, 0, 0, 0, 0])"
