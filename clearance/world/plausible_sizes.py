@@ -36,8 +36,8 @@ unit: millimetres are 1000. Of 69 robots no mesh is shorter than 1/43 of the rea
 OF_A_MESH, RIDING = 100.0, 20.0
 """[-] The same of an obstacle that is a mesh, whose file may be in millimetres, and of what rides on a link."""
 
-LONG_MESH, SHORT_MESH = 50.0, 0.01
-"""[-] Parts of the reach from and up to which a mesh is also compared with the other obstacles."""
+LONG_MESH = 50.0
+"""[-] Times the reach from which a mesh is also compared with the other obstacles."""
 
 FAR_ORIGIN = 20.0
 """[m] No joint is as far from the one before, and no shape from its link; 20 mm is usual."""
@@ -127,10 +127,11 @@ def _odd_obstacles(case: Case, reaches: Sequence[float]) -> list[str]:
     for i, obstacle in enumerate(case.obstacles):
         others = lengths[:i] + lengths[i + 1 :]
         text = f"obstacle {obstacle.name!r} is {metres(lengths[i])} m long"
-        riding = _rides(case, obstacle) and lengths[i] >= RIDING * most > 0
-        if riding or _is_large(obstacle.body, lengths[i], others, most):
+        rides = _rides(case, obstacle)
+        is_long = rides and lengths[i] >= RIDING * most > 0
+        if is_long or _is_large(obstacle.body, lengths[i], others, most):
             large.append((lengths[i], text))
-        elif _is_small(obstacle.body, lengths[i], others, least):
+        elif _is_small(obstacle.body, lengths[i], least, rides=rides):
             small.append((-lengths[i], text))
     return _lengths_in_words(large, small, least)
 
@@ -148,11 +149,9 @@ def _is_large(body: Body, length: float, others: list[float], reach: float) -> b
     return among and length >= LONG_MESH * reach
 
 
-def _is_small(body: Body, length: float, others: list[float], reach: float) -> bool:
-    if length * RATIO <= reach:
-        return True
-    among = _is_mesh(body) and bool(others) and length * RATIO <= max(others)
-    return among and length <= SHORT_MESH * reach
+def _is_small(body: Body, length: float, reach: float, *, rides: bool) -> bool:
+    """True for what is far too short; parts in a hand may be screws."""
+    return length * (OF_A_MESH if _is_mesh(body) and not rides else RATIO) <= reach
 
 
 def _is_mesh(body: Body) -> bool:

@@ -73,6 +73,18 @@ def test_another_unit_is_suspect(changes, says):
     assert len(found) == 1 and says in found[0], found
 
 
+def test_a_mesh_a_hundred_times_shorter_than_the_reach_is_suspect():
+    """A machine of 7 m, in metres, with scale 0.001. In a hand it is a screw."""
+    small = case_of(obstacle=box((7e-3, 7e-3, 2e-3)))
+    (block,) = small.obstacles
+    mesh = replace(block, body=replace(block.body, origin="machine.stl"))
+    block = replace(block, body=replace(block.body, origin="box"))
+    assert ("suspect", "units") not in reported(replace(small, obstacles=(block,)))
+    assert reported(replace(small, obstacles=(mesh,))) == [("suspect", "units")]
+    held = Obstacle(mesh.body, mount=Mount("upper", at(0.1)))
+    assert ("suspect", "units") not in reported(replace(small, obstacles=(held,)))
+
+
 def test_what_rides_on_a_link_is_not_many_times_the_reach():
     """20 m where the robot reaches 0.8 m; a wall may be so long."""
     case = case_of(obstacle=box((20.0, 0.2, 0.2)), pose=np.eye(4))
