@@ -5,7 +5,7 @@ Not for: reading it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -46,6 +46,7 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
         *_on_frames_of_poses(case),
     )
     case = replace(case, notices=(*case.notices, *on_frames))
+    case = replace(case, notices=(*case.notices, *_on_padding_left_out(case, content)))
     if not content.allow and not content.link_padding:
         return case, []
     names = body_names(case)
@@ -70,7 +71,10 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
             f"allowed pairs of bodies that are not there are left out: {listed([*unknown], 6)}"
         )
     robots = tuple(_padded(placed, content.link_padding) for placed in case.robots)
-    notes += _notes_on_padding(case, content)
+    if content.link_padding:
+        notes.append(
+            "padding of the scene's file is a distance taken off the clearance, not a larger shape"
+        )
     return replace(case, robots=robots, allow=(*case.allow, *rows)), notes
 
 
@@ -155,13 +159,18 @@ def _padded(placed: PlacedRobot, given: dict[str, float]) -> PlacedRobot:
     return replace(placed, padding=own | placed.padding)
 
 
-def _notes_on_padding(case: Case, content: SceneContent) -> Iterable[str]:
-    if content.link_padding:
-        yield "padding of the scene's file is a distance taken off the clearance, not a larger shape"
-    links = {link for placed in case.robots for link in placed.robot.link_names}
-    missing = [repr(link) for link in content.link_padding if link not in links]
+def _on_padding_left_out(case: Case, content: SceneContent) -> Iterator[Notice]:
+    """A warning on padding of links that no robot has: clearances are larger than asked for."""
+    links = sorted({link for placed in case.robots for link in placed.robot.link_names})
+    missing = [
+        link for link, padding in content.link_padding.items() if padding and link not in links
+    ]
     if missing:
-        yield f"padding of links that are not there is left out: {listed(missing, 6)}"
+        text = (
+            f"padding of the scene's file is left out, since no robot has such links: "
+            f"{listed([repr(link) for link in missing], 6)}; {nearest_name(missing[0], links)}"
+        )
+        yield Notice(Severity.WARNING, "padding", text)
 
 
 def _any(pattern: str, names: Collection[str]) -> bool:

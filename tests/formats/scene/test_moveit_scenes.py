@@ -61,9 +61,11 @@ def test_what_may_touch_and_padding_go_into_the_case(tmp_path):
         "1 allowed pairs of the scene's file are left out: of two links",
         "bodies that are not there are left out: ghost",
         "padding of the scene's file is a distance",
-        "padding of links that are not there is left out: 'ghost'",
     ):
         assert said in told
+    (left_out,) = [one for one in case.notices if one.kind == "padding"]
+    assert left_out.severity == "warning"
+    assert "since no robot has such links: 'ghost'; " in left_out.text
     assert cl.check(case).worst["clearance"] == pytest.approx(0.05, abs=0.02)
 
 
