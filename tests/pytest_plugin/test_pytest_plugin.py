@@ -21,6 +21,7 @@ from clearance.pytest_plugin import assert_clear
 from clearance.simulate.measure import refine
 from clearance.world.notice import Notice, Severity
 from clearance.world.placed_robot import SelfClearance
+from clearance.world.rules import Allowance
 from tests.findings.gates import load_gates, write_gates
 from tests.made_cases import arm, at
 
@@ -362,6 +363,14 @@ def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_mea
 def test_a_pattern_of_what_is_not_measured_says_why(swaying, between, told):
     with pytest.raises(BadInput, match=re.escape(told)):
         assert_clear(swaying, between=between)
+
+
+def test_a_body_whose_every_pair_is_allowed_is_there(tmp_path):
+    run = cl.check(load_gates(tmp_path, CLEAR))
+    case = dataclasses.replace(run.record.case, allow=(Allowance(("box", A)),))
+    told = f"no pair is measured between ['box', {A!r}]: box - {A} (allowed by ['box', {A!r}])"
+    with pytest.raises(BadInput, match=re.escape(told)):
+        assert_clear(cl.check(case), between=("box", A), at_least=0.0)
 
 
 def test_contact_is_never_clear(tmp_path):
