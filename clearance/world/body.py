@@ -13,7 +13,7 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.world.carrier_error import CarrierError
-from clearance.world.field_types import require_types
+from clearance.world.field_types import owned, require_types
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 
@@ -90,7 +90,7 @@ class Obstacle:
             )
         require_types(self, mount=(Mount, None), moves=(PoseTable, None))
         with at(f"obstacle {self.name!r}"):
-            object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))
+            object.__setattr__(self, "world_from_body", owned(validated_pose(self.world_from_body)))
             checked_padding(self.padding)
             if not self.stands and not np.array_equal(self.world_from_body, np.eye(4)):
                 raise Contradiction(

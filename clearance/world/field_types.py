@@ -1,10 +1,15 @@
-"""The types of what a constructor is given, in one line each. Not for: values, which each type checks itself."""
+"""What a constructor is given: the types, in one line each, and arrays of the object's own.
+
+Not for: values, which each type checks itself.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from numbers import Real
 from typing import Any
+
+import numpy as np
 
 from clearance.errors import BadInput
 
@@ -37,6 +42,14 @@ def _require_each(made: object, name: str, given: Any, kind: type) -> None:
     for one in given:
         if not isinstance(one, kind):
             raise _wrong(made, name, one, _article(kind))
+
+
+def owned(array: np.ndarray) -> np.ndarray:
+    """The array if it is read-only, else a read-only copy: callers reuse their arrays for the next object."""
+    if array.flags.writeable:
+        array = array.copy()
+        array.flags.writeable = False
+    return array
 
 
 def require_two_patterns(made: object, name: str, given: Any) -> tuple[str, str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.errors import at
 from clearance.geometry.pose import validated_pose
-from clearance.world.field_types import require_types
+from clearance.world.field_types import owned, require_types
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,4 +26,4 @@ class Mount:
     def __post_init__(self) -> None:
         require_types(self, on=str)
         with at("pose"):
-            object.__setattr__(self, "pose", validated_pose(self.pose))
+            object.__setattr__(self, "pose", owned(validated_pose(self.pose)))

@@ -11,7 +11,7 @@ from clearance.errors import Contradiction, NoTrajectory, at
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import checked_padding
 from clearance.world.collision_matrix import CollisionMatrix
-from clearance.world.field_types import require_types
+from clearance.world.field_types import owned, require_types
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.names import checked_links
@@ -86,7 +86,7 @@ class PlacedRobot:
             mount=(Mount, None), timing=Timing, padding=Mapping, fixed_positions=Mapping, exclude_links=[str],
         )  # fmt: skip
         with at("world_from_base"):
-            object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
+            object.__setattr__(self, "world_from_base", owned(validated_pose(self.world_from_base)))
             if self.mount is not None and not np.array_equal(self.world_from_base, np.eye(4)):
                 raise Contradiction(
                     "both a base in the world and a mount are given", valid="one of them"

@@ -8,6 +8,7 @@ import numpy as np
 
 from clearance.errors import BadPose, BadShape, BadTime, NotFinite
 from clearance.tolerance import LARGEST, ROTATION
+from clearance.world.field_types import owned
 from clearance.world.slerp import aligned, slerp
 from clearance.world.timing import AS_GIVEN, Timing, require_increasing
 
@@ -107,4 +108,4 @@ def _numbers(given: object, name: str, width: int, n_rows: int) -> np.ndarray:
         raise BadShape(f"shape {numbers.shape} is given", where=name, valid=f"{wanted}")
     if not np.isfinite(numbers).all():
         raise NotFinite("a number is NaN or infinite", where=name, valid="finite numbers")
-    return numbers
+    return owned(numbers)

@@ -11,7 +11,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
 from clearance.world.corner_zone import CornerZone
-from clearance.world.field_types import require_types
+from clearance.world.field_types import owned, require_types
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing
 
@@ -277,6 +277,6 @@ def _shifted(spans: Sequence[Span], seconds: float) -> tuple[Span, ...]:
 
 def _numbers(given: object, name: str) -> np.ndarray:
     try:
-        return np.asarray(given, dtype=np.float64)
+        return owned(np.asarray(given, dtype=np.float64))
     except (TypeError, ValueError):
         raise BadShape(f"{given!r:.60} is given", where=name, valid="an array of numbers") from None

@@ -16,8 +16,9 @@ def session_of(case):
 
 def test_only_what_was_elsewhere_is_drawn_twice():
     case = slot()
-    moved = replace(case.robots[0], world_from_base=np.eye(4))
-    moved.world_from_base[1, 3] = -0.01
+    base = np.eye(4)
+    base[1, 3] = -0.01
+    moved = replace(case.robots[0], world_from_base=base)
     after = replay_of(session_of(replace(case, robots=(moved,))))
     (body,) = session_of(case).earlier_motion(after)
     assert after.bodies[body.i_body].name == "tool" and body.shown.all()

@@ -1,0 +1,43 @@
+"""What is made of an array keeps its numbers, whatever the caller does with the array afterwards."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.world.mount import Mount
+from clearance.world.pose_table import PoseTable
+from tests.report.cells import slider
+
+CUBE = cl.Body("cube", cl.box((0.1, 0.1, 0.1)))
+NO_TURN = np.array([[0.0, 0.0, 0.0, 1.0]])
+
+
+def placed(base: np.ndarray) -> cl.PlacedRobot:
+    return cl.PlacedRobot(slider("axis"), cl.Trajectory([0.0], ["s"], [[0.0]]), base)
+
+
+MADE: dict[str, tuple[np.ndarray, Callable[[np.ndarray], np.ndarray]]] = {
+    "obstacle": (np.eye(4), lambda pose: cl.Obstacle(CUBE, pose).world_from_body),
+    "mount": (np.eye(4), lambda pose: Mount("tool", pose).pose),
+    "base": (np.eye(4), lambda base: placed(base).world_from_base),
+    "trajectory": (np.zeros((1, 1)), lambda x: cl.Trajectory([0.0], ["x"], x).positions),
+    "velocities": (
+        np.zeros((1, 1)),
+        lambda v: cl.Trajectory([0.0], ["x"], [[0.0]], velocities=v).velocities,
+    ),
+    "pose table": (np.zeros((1, 3)), lambda xyz: PoseTable([0.0], xyz, NO_TURN).positions),
+}
+
+
+@pytest.mark.parametrize("kind", MADE)
+def test_an_array_that_is_used_again_changes_nothing_made_before(kind: str) -> None:
+    given, make = MADE[kind]
+    buffer = given.copy()
+    made = make(buffer)
+    before = made.copy()
+    buffer += 0.25
+    assert np.array_equal(made, before)
