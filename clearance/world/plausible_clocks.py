@@ -81,12 +81,11 @@ def notices_on_clocks(case: Case) -> list[Notice]:
 
 def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
     """Notices on slow tables that take many times as long as all that is not slow."""
-    usual = max(
-        (table for table in tables if not table.is_slow),
-        key=lambda table: table.length,
-        default=None,
-    )
-    for table in tables if usual is not None else ():
+    others = [table for table in tables if not table.is_slow]
+    if not others:
+        return
+    usual = max(others, key=lambda table: table.length)
+    for table in tables:
         if table.is_slow and not table.creeps and table.length > LONGER * usual.length > 0.0:
             text = (
                 f"CHECK UNITS: {table.name} takes {table.length:g} s, and moves no faster than "
