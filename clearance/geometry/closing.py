@@ -26,8 +26,9 @@ SOME = 1.0 / 10.0
 """[-] The same for a component of which it is asked whether something may be inside it: less than a box without a
 lid has (a sixth), or a tube 4.5 times as long as it is wide without its ends (a tenth)."""
 
-RIM = 1.0 / 4.0
-"""[-] Of a component's edges, those that may be open: beyond that it is a sheet or loose faces."""
+RIM = 3.0 / 4.0
+"""[-] Of a component's edges, those that may be open: beyond that it is loose faces. A tube of four faces without
+its ends has two thirds, and sheets have holes as large as they are."""
 
 
 class Closing(NamedTuple):

@@ -125,6 +125,19 @@ def test_larger_holes_leave_it_open_and_sheets_hold_nothing() -> None:
     assert distance(lidless, CUBE).inside == "no"
 
 
+@pytest.mark.parametrize("n_missing", [1, 2])
+def test_a_bar_of_few_faces_without_its_ends_is_in_doubt_as_one_of_many_is(n_missing: int) -> None:
+    """Four faces have few edges, of which the open ones are many; the holes are as small as in a fine mesh."""
+    bar = box((0.5, 0.1, 0.1))
+    ends = [i for i in range(bar.n_faces) if np.ptp(bar.face(i)[:, 0]) == 0.0]
+    faces = [face for i, face in enumerate(faces_of(bar)) if i not in ends[:n_missing]]
+    hollow, pin = Polyhedron(bar.vertices, faces), box((0.1, 0.02, 0.02))
+    for x in (-0.1, 0.0, 0.1):
+        near = distance(hollow, pin, pose_b=at(x, 0.0, 0.0))
+        assert (near.contact, near.inside) == (False, "undecided"), x
+    assert distance(hollow, pin, pose_b=at(0.0, 0.2, 0.0)).inside == "no"
+
+
 def test_a_cavity_with_a_fault_in_its_wall_stays_outside() -> None:
     wall = faulty(ball(0.5, 2).flipped(), "turned", 12)
     hollow = Polyhedron.merged([BALL, wall])
