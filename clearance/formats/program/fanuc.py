@@ -39,8 +39,8 @@ from clearance.formats.program.fanuc_text import (
     listing_of,
 )
 from clearance.formats.program.language import Language, entry_of
-from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
-from clearance.formats.program.statements import For, within
+from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID, WAITS
+from clearance.formats.program.statements import Assign, Do, For, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import pose_from_rpy
@@ -100,6 +100,7 @@ class _Fanuc(Language):
     moving = (*MOVES, *DECIDING)
     still = (*QUIET, WAIT)
     timed = (WAIT, *WAITING)
+    retiming = (OVERRIDE, *LARGEST_SPEEDS)
 
     @property
     def state(self) -> Any:
@@ -123,6 +124,7 @@ class _Fanuc(Language):
         """
         if call.name in MOVES:
             run.add(self._move(call, run).slowed(self.share))
+            self._do_on_the_way(call, run)
         elif call.name == OVERRIDE and call.args:
             self.share = run.share_of_speeds(run.evaluated(call.args[0]), call, 100.0)
         elif call.name in LARGEST_SPEEDS:
@@ -136,9 +138,6 @@ class _Fanuc(Language):
         (constant, speed), kind = call.args, MOVES[call.name]
         assert isinstance(constant, Constant)
         motion: Motion = constant.value
-        if motion.calls:
-            what = "programs that motions call on their way (TB, TA, DB): not followed"
-            run.note(what, f"{call.line}")
         for word in motion.options:
             if not _IDLE.fullmatch(word):
                 fault = f"{word} is not read, and may move the target or the way"
@@ -162,6 +161,29 @@ class _Fanuc(Language):
             **_speed(kind, motion.unit, run.evaluated(speed), call, run),
         )
 
+    def _do_on_the_way(self, call: Call, run: Execution) -> None:
+        """What a motion does at a time or a place on its way: no line behind it knows whether it is done.
+
+        Raises:
+            BadProgram: it moves the robot, or may.
+        """
+        motion: Motion = call.args[0].value  # type: ignore[union-attr]
+        for one in motion.beside:
+            if isinstance(one, Assign):
+                text = "is given a value on the way of a motion"
+                for name, line in run.effects.changed_in([(one,)]):
+                    run.concurrent[name] = Unknown(f"{name!r} {text} at {line}")
+            elif not isinstance(one, Do):
+                raise BadProgram("what it does on its way is not read", valid="CALL, or an output")
+            elif self.moves(one.call.name) is False:
+                run.pass_over(one.call)
+            else:
+                name, what = one.call.name, "programs that motions call on their way (TB, TA, DB)"
+                run.run_concurrently("program", name)
+                for waiting in run.effects.waiting([(one,)]):
+                    run.note(LEFT_OUT if name in run.skip else WAITS, waiting)
+                run.note(f"{what}: they move nothing", f"{name} ({call.line})")
+
     def _target(
         self, name: str, one: Position | None, kind: str, run: Execution
     ) -> tuple[Target, np.ndarray]:
@@ -170,7 +192,7 @@ class _Fanuc(Language):
         Raises:
             BadProgram: no position, or one of other frames than those in force.
         """
-        if name in run.variables:
+        if name in run.variables or name in run.concurrent:
             raise BadProgram(
                 f"{name} is given a value before", valid="a point that no line changes"
             )
@@ -213,7 +235,7 @@ class _Fanuc(Language):
             return np.eye(4)
         key, word = f"{kind}[{index or 0:g}]", "frames" if kind == "UFRAME" else "tools"
         given: Mapping[str, Any] = getattr(self.asked, word)
-        is_changed = run.variables.get(key) is not None
+        is_changed = key in run.variables or key in run.concurrent
         if index is not None and key in given and not is_changed:
             return np.asarray(given[key].matrix())
         if not needed:

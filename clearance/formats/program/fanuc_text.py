@@ -9,6 +9,7 @@ import operator
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from clearance.errors import BadProgram, BadSyntax
 from clearance.formats.program.blocks import BlockReader
@@ -104,15 +105,15 @@ class Motion:
 
     Attributes:
         points: where it goes, an arc by way of the first: a name, and the position if the file has one.
-        unit: of its speed. end: how it ends (FINE, CNT50, CR10). options: words behind that. calls: it calls
-            something at a time or a place on its way (TB, TA, DB).
+        unit: of its speed. end: how it ends (FINE, CNT50, CR10). options: words behind that. beside: what is
+            done at a time or a place on its way (TB, TA, DB).
     """
 
     points: tuple[tuple[str, Position | None], ...]
     unit: str
     end: str
     options: tuple[str, ...]
-    calls: bool = False
+    beside: tuple[Statement, ...] = ()
 
 
 _ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
@@ -288,10 +289,11 @@ class _Reader(BlockReader):
         if speed is None or end is None:
             fault = f"{found[0]!r:.60} has no speed and end"
             raise BadSyntax(fault, where=str(line), valid="as in L P[1] 100mm/sec FINE")
-        rest, n_calls = _TIMED.subn("", speed[3][end.end() :])
-        options = tuple(rest.upper().replace(",", " ").split())
+        further = speed[3][end.end() :]
+        options = tuple(_TIMED.sub("", further).upper().replace(",", " ").split())
+        timed = (self._simple(line, one[3]) for one in _TIMED.finditer(further))
         unit = (speed[2] or "").lower()
-        motion = Motion(tuple(points), unit, named(end[1]), options, n_calls > 0)
+        motion = Motion(tuple(points), unit, named(end[1]), options, tuple(chain(*timed)))
         args = (Constant(motion), _condition(speed[1], line))
         return Do(line, Call(found[1].upper(), args, {}, line))
 

@@ -67,7 +67,7 @@ C P[2]
 WAIT   1.50(sec) ;
 """
     )
-    found = program(body, zones={"CNT50": 0.02, "CNT": 0.01})
+    found = program(body, zones={"CNT50": 0.02, "CNT": 0.01}, skip=["GRIP"])
     home, line, next_, arc, wait = found.moves
     degrees = [10.0, 20.0, -5.0, 0.0, -45.0, 30.0]
     assert np.degrees(home.to.axes) == pytest.approx(degrees) and home.share == 0.5
@@ -124,6 +124,50 @@ def test_other_groups_and_axes_are_external():
 
 SKIP = ["JMP", "LBL", "IF", "TIMEOUT"]
 """No statement that decides which lines run is left out, even if asked."""
+
+ON_THE_WAY = FRAMES + "R[1]=1 ;\nL P[2] 100mm/sec FINE TB .10sec,CALL SUB ;\n"
+DECIDES = "IF (R[1]=1) THEN ;\nL P[3] 100mm/sec FINE ;\nENDIF ;\n"
+
+
+def on_the_way(sub: str, after: str, points: str = POINTS, **asked):
+    beside = {"SUB.LS": listing(sub, points).replace("CELL", "SUB").encode()}
+    return read("CELL.LS", listing(ON_THE_WAY + after), beside, **{**CASE, **asked})
+
+
+def test_a_program_that_a_motion_calls_on_its_way_runs_beside_the_others():
+    """TA, TB and DB: it moves nothing, and what it changes is not known behind the motion."""
+    found = on_the_way("WAIT 0.50(sec) ;\nOVERRIDE=50% ;\nR[2]=5 ;", DECIDES)
+    assert len(found.moves) == 2
+    assert "they move nothing: SUB (line 9)" in " ".join(found.notes)
+    left_out = " ".join(found.left_out)
+    assert "WAIT sec (SUB.LS line 6)" in left_out and "OVERRIDE (SUB.LS line 7)" in left_out
+    refused = "IF decides on L at line 11.*program 'SUB' may change it at any time: 'R.1.' at SUB"
+    with pytest.raises(cl.ClearanceError, match=refused):
+        on_the_way("R[1]=5 ;", DECIDES)
+    with pytest.raises(cl.ClearanceError, match=r"line 9: program 'SUB' moves the robot, or may"):
+        on_the_way(L2 + " ;", "")
+    for changed in ("P[2]=P[3] ;", "UTOOL[1]=PR[1] ;"):
+        with pytest.raises(
+            cl.ClearanceError, match=r"(given a value before|is set in the program)"
+        ):
+            on_the_way(changed, L2 + " ;")
+
+
+@pytest.mark.parametrize("word", ["TA", "TB", "DB"])
+def test_a_program_that_a_motion_calls_on_its_way_has_to_be_there(word):
+    text = ON_THE_WAY.replace("TB .10sec", f"{word} 10mm" if word == "DB" else f"{word} .10sec")
+    with pytest.raises(cl.ClearanceError, match=r"line 9: program 'SUB' .*it is in no file"):
+        program(text)
+    assert program(text, skip=["SUB"]).left_out == ("SUB (line 9)",)
+
+
+def test_what_a_motion_sets_on_its_way_is_not_known_behind_it():
+    output = ON_THE_WAY.replace("CALL SUB", "DO[1]=ON")
+    assert len(program(output + DECIDES).moves) == 2
+    refused = r"'R\[1\]' is given a value on the way of a motion at line 9"
+    with pytest.raises(cl.ClearanceError, match=refused):
+        program(ON_THE_WAY.replace("CALL SUB", "R[1]=5") + DECIDES)
+
 
 COUNT = "FOR R[1]=1 TO 2 ;\nENDFOR ;\n"
 
