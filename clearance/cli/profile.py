@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from clearance.cli import ExitCode
 from clearance.cli.options import OutputPath, SortParamType
 from clearance.options import LENGTH
 from clearance.run.options import MOTIONS
@@ -302,13 +303,14 @@ def sweep(
     motion: str,
     out: Path,
     quiet: bool,
-) -> None:
+) -> int:
     """Writes the outline that links sweep in a plane.
 
     It contains all that the links of CASE.yaml sweep.
 
     The motion between the samples is included: joints move linearly, or on cubics if the
     trajectory has velocities. The outline exceeds the swept area by at most the tolerance.
+    Exit code: 0 done, 2 bad or suspect input.
     """
     from clearance.extras import require
 
@@ -319,13 +321,13 @@ def sweep(
     from clearance.files import refuse_inputs, require_file_place
     from clearance.profiles.profile_file import require_suffix, write_profile
     from clearance.profiles.sweep import TOLERANCE, swept_profile
+    from clearance.world.case import uncounted_in_sweeps
 
     require_suffix(out)
     require_file_place(out)
     case = load_case(case_file)
     refuse_inputs([out], case.files_read)
-    if not quiet:
-        say_notices(case)
+    is_suspect = say_notices(case, quiet=quiet)
     moved = _moved(case, motion)
     with shown_progress(quiet, ["covering", "sweeping"]) as progress:
         found = swept_profile(
@@ -340,7 +342,8 @@ def sweep(
         )
     write_profile(found, out)
     if not quiet:
-        _print_sweep(found, out)
+        _print_sweep(found, out, uncounted_in_sweeps([case]))
+    return ExitCode.BAD_INPUT if is_suspect else ExitCode.CLEAR
 
 
 def _names(text: str) -> list[str]:
@@ -356,7 +359,7 @@ def _moved(case, motion: str):
     return check(case, motion=motion)
 
 
-def _print_sweep(found, out: Path) -> None:
+def _print_sweep(found, out: Path, uncounted: str) -> None:
     holes = sum(contour.area < 0.0 for contour in found.contours)
     outer = len(found.contours) - holes
     what = f"section at {found.section:g} m" if found.section is not None else "silhouette"
@@ -366,6 +369,8 @@ def _print_sweep(found, out: Path) -> None:
         f"{found.length:.6g} m long, area {found.area:.6g} m2"
     )
     click.echo(f"contains all that is swept, exceeds it by at most {1000 * found.bound:.4g} mm")
+    if uncounted:
+        click.echo(f"without the {uncounted} of the case")
     if found.facets:
         click.echo(f"facets of round shapes stand out by up to {1000 * found.facets:.4g} mm more")
     for name, part in found.parts.items():

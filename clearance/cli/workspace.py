@@ -57,7 +57,8 @@ def workspace(
 
     The robots are those of one CASE.yaml, or of several cases of one cell, in one world frame.
     Carried parts belong to their robot. Space shared with a robot that it stands on is not
-    counted. The volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
+    counted. The volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad or
+    suspect input.
     """
     from clearance.extras import require
 
@@ -73,8 +74,7 @@ def workspace(
     if out is not None:
         read = [path for case in cases for path in case.files_read]
         refuse_inputs([out / name for name in OWN], read)
-    for case in cases:
-        say_notices(case)
+    is_suspect = any([say_notices(case) for case in cases])
     found = shared_workspace(
         cases,
         within=WITHIN if within_mm is None else within_mm,
@@ -85,6 +85,8 @@ def workspace(
 
         write_workspace(found, out)
     _print(found, out, as_json)
+    if is_suspect:
+        return ExitCode.BAD_INPUT
     above = limit_litres is not None and found.volume * 1e3 > limit_litres
     return ExitCode.VIOLATED if above else ExitCode.CLEAR
 
@@ -125,6 +127,8 @@ def _lines(found: Workspace, out: Path | None) -> list[str]:
         f"an upper bound: convex pieces ({pieces}) hold the sweeps, "
         f"made wider by up to {found.leaves * 1e3:.3g} mm for the motion between the samples"
     )
+    if found.uncounted:
+        lines[0] += f", without the {found.uncounted} of the cases"
     lines += [
         f"not counted: what {a} shares with {b}, on which it stands" for a, b in found.carried
     ]

@@ -27,6 +27,7 @@ class Workspace:
         volume: [m^3] of the region: an upper bound. links: which links meet there.
         n_pieces: convex pieces of each robot's sweep. leaves: [m] the most a piece was made wider by.
         excluded: links that were left out, `robot/link`.
+        uncounted: what the cases give that widens no sweep: tolerances, paddings.
         carried: names of robots that stand on another one, and of that: what such two share is not counted.
     """
 
@@ -37,6 +38,7 @@ class Workspace:
     leaves: float
     within: float
     excluded: tuple[str, ...]
+    uncounted: str
     carried: tuple[tuple[str, str], ...] = ()
 
     @property

@@ -34,6 +34,7 @@ class Workspace(Keys):
     within: float
     leaves: float
     excluded: list[str]
+    without: str
     not_counted: list[tuple[str, str]]
     triangles: int
 

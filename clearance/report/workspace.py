@@ -37,6 +37,7 @@ def workspace_summary(workspace: Workspace) -> dict[str, Any]:
         "within": workspace.within,
         "leaves": workspace.leaves,
         "excluded": list(workspace.excluded),
+        "without": workspace.uncounted,
         "not_counted": [list(pair) for pair in workspace.carried],
         "triangles": len(region.triangles),
     }

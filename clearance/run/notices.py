@@ -15,7 +15,7 @@ from clearance.simulate.answers.carries import notices_on_carries
 from clearance.simulate.measure import inside
 from clearance.simulate.measure.neighbours import neighbours_that_meet
 from clearance.simulate.measure.sections import SectionAnswer, SectionPlan
-from clearance.world.case import Case
+from clearance.world.case import Case, uncounted_in_sweeps
 from clearance.world.extents import metres, reach_of
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.pairs import names_of
@@ -96,9 +96,7 @@ def _profiles_without(case: Case) -> Iterator[Notice]:
     """A warning on what profiles do not count of how far links may be from where they are said to be."""
     if not case.profiles:
         return
-    padded = any(padding > 0.0 for placed in case.robots for padding in placed.padding.values())
-    given = {"tolerances": case.tolerance is not None, "paddings": padded}
-    left_out = " and ".join(name for name, is_given in given.items() if is_given)
+    left_out = uncounted_in_sweeps([case])
     if left_out:
         names = listed([repr(space.name) for space in case.profiles])
         text = f"profiles are judged without the {left_out} of the case: {names}"

@@ -376,3 +376,13 @@ def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
     if name is None or names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
+
+
+def uncounted_in_sweeps(cases: Sequence[Case]) -> str:
+    """What cases give that widens no sweep: "tolerances", "paddings", both, or nothing."""
+    paddings = (one.padding.values() for case in cases for one in case.robots)
+    given = {
+        "tolerances": any(case.tolerance is not None for case in cases),
+        "paddings": any(padding > 0.0 for of_robot in paddings for padding in of_robot),
+    }
+    return " and ".join(name for name, is_given in given.items() if is_given)

@@ -95,3 +95,24 @@ def test_bad_input_is_one_line_and_exit_2(folder, capsys, names, given, told):
     assert run(["workspace", *paths(folder, *names), *given]) == 2
     error = capsys.readouterr().err
     assert told in error and error.count("\n") == 1
+
+
+def test_suspect_input_is_not_nothing_shared(folder, capsys):
+    away = folder / "away.yaml"
+    away.write_text(away.read_text().replace("[2, 0, 0.05]", "[2000, 0, 0.05]"))
+    assert run(["workspace", *paths(folder, "along", "away"), "--limit-litres", "0"]) == 2
+    told = capsys.readouterr()
+    assert "nothing is shared" in told.out and "suspect: away: CHECK UNITS" in told.err
+    sweep = ["profile", "sweep", str(away), "--out", str(folder / "swept.yaml"), "--quiet"]
+    assert run(sweep) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and "suspect: away: CHECK UNITS" in told.err
+
+
+def test_tolerances_and_paddings_that_widen_no_sweep_are_named_beside_the_answer(folder, capsys):
+    case = folder / "along.yaml"
+    case.write_text(case.read_text() + "tolerance: {base: {xyz: 0.2}}\n")
+    assert run(["workspace", *paths(folder, "along", "away"), "--out", str(folder / "out")]) == 0
+    first = capsys.readouterr().out.partition("\n")[0]
+    assert first.endswith(", without the tolerances of the cases")
+    assert json.loads((folder / "out" / "workspace.json").read_text())["without"] == "tolerances"

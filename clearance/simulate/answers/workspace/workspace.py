@@ -22,7 +22,7 @@ from clearance.query.common_point import common_point
 from clearance.record.workspace import SharedLinks, Workspace
 from clearance.simulate.answers.workspace.swept_pieces import SweptPiece, swept_pieces
 from clearance.world.body import require_no_shortfall
-from clearance.world.case import Case
+from clearance.world.case import Case, uncounted_in_sweeps
 from clearance.world.robot_in_cell import RobotInCell, robots_in_cell
 
 WITHIN = 0.005
@@ -76,6 +76,7 @@ def shared_workspace(
         leaves=max((piece.leaves for pieces in swept for piece in pieces), default=0.0),
         within=within,
         excluded=tuple(f"{one.name}/{n}" for one in robots for n in one.placed.exclude_links),
+        uncounted=uncounted_in_sweeps(cases),
         carried=tuple((a.name, b.name) for a, b in carried),
     )
 
