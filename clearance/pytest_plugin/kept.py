@@ -108,9 +108,9 @@ def _faults(record: Record, answer: RuleAnswer, at_least: float | None) -> Itera
 
 
 def _no_such_pair(run: Run, between: tuple[str, str]) -> BadInput:
-    names = {body.name_in(run.record.case) for pair in run.record.pairs for body in pair}
+    measured = {body.name_in(run.record.case) for pair in run.record.pairs for body in pair}
     left_out = [one for one in run.record.unmeasured if one.obstacle != "*"]
-    names = sorted(names | {name for one in left_out for name in (one.link, one.obstacle)})
+    names = sorted(measured | {name for one in left_out for name in (one.link, one.obstacle)})
     whole = {one.link: one.reason for one in run.record.unmeasured if one.obstacle == "*"}
     for pattern in between:
         if any(matches(name, pattern) for name in names):
