@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from clearance.world.collision_matrix import NEVER
+from clearance.world.collision_matrix import ADJACENT, NEVER
 from clearance.world.self_pairs import SelfPair
 
 
@@ -41,15 +41,26 @@ class PairFinding:
 
 @dataclass(frozen=True)
 class ExcusedPair:
-    """A pair that a file excuses, for a reason, and whether it can meet."""
+    """A pair that a file excuses, for a reason, and whether it can meet.
+
+    Attributes:
+        is_joined: the two lie together at home, as most neighbours do.
+    """
 
     reason: str
     finding: PairFinding
+    is_joined: bool = False
 
     @property
     def refuted(self) -> bool:
         """It is said never to meet, and a pose is known in which it does."""
         return self.reason == NEVER and self.finding.status is PairStatus.MEETS
+
+    @property
+    def hides_contact(self) -> bool:
+        """Its links are excused as neighbours, but lie apart at home, and a pose is known in which they meet."""
+        meets = self.finding.status is PairStatus.MEETS
+        return self.reason == ADJACENT and meets and not self.is_joined
 
     @property
     def unproven(self) -> bool:

@@ -45,6 +45,7 @@ class Audit(Keys):
     named: Literal[srdf.SCHEMA] = Field(alias="$schema")  # type: ignore[valid-type]
     never_refuted: int
     never_unproven: int
+    adjacent_refuted: int
     pairs: list[PairFinding]
 
 

@@ -22,6 +22,7 @@ def audit_summary(pairs: Sequence[ExcusedPair]) -> dict[str, Any]:
         "$schema": SCHEMA,
         "never_refuted": sum(pair.refuted for pair in pairs),
         "never_unproven": sum(pair.unproven for pair in pairs),
+        "adjacent_refuted": sum(pair.hides_contact for pair in pairs),
         "pairs": [
             {"reason": pair.reason, **asdict(pair.finding), "status": str(pair.finding.status)}
             for pair in pairs
@@ -30,7 +31,17 @@ def audit_summary(pairs: Sequence[ExcusedPair]) -> dict[str, Any]:
 
 
 def audit_headline(pairs: Sequence[ExcusedPair]) -> str:
-    """What became of those that are said never to meet."""
+    """What became of those that are said never to meet, and which neighbours lie apart at home and meet."""
+    hidden = sum(pair.hides_contact for pair in pairs)
+    if not hidden:
+        return _never_in_words(pairs)
+    lie = "lies" if hidden == 1 else "lie"
+    return (
+        f"{_never_in_words(pairs)}; {hidden} excused as {ADJACENT} {lie} apart at home and can meet"
+    )
+
+
+def _never_in_words(pairs: Sequence[ExcusedPair]) -> str:
     never = [pair for pair in pairs if pair.reason == NEVER]
     if not never:
         return f"no pair is excused as {NEVER}; {count(len(pairs), 'excused pair')} checked"
@@ -53,7 +64,8 @@ def audit_rows(robot: Robot, pairs: Sequence[ExcusedPair]) -> Iterator[tuple[str
 
 def _seriousness(pair: ExcusedPair) -> int:
     order = [PairStatus.MEETS, PairStatus.UNDECIDED, PairStatus.APART]
-    return order.index(pair.finding.status) + len(order) * (pair.reason != NEVER)
+    is_asked = pair.reason == NEVER or pair.hides_contact
+    return order.index(pair.finding.status) + len(order) * (not is_asked)
 
 
 def _finding_text(found: PairFinding, kinds: Mapping[str, str]) -> str:

@@ -100,6 +100,19 @@ def test_a_proposal_leaves_what_can_meet_to_be_measured(robot, tmp_path, capsys)
     assert load_srdf(tmp_path / "made.srdf", load_robot(urdf)).reason("base", "upper") is None
 
 
+def test_neighbours_that_lie_apart_at_home_and_can_meet_fail_an_audit(robot, capsys):
+    """The hand reaches back over the elbow, 50 mm away from it at home."""
+    urdf, srdf = robot(upper=0.25)
+    Path(urdf).write_text(Path(urdf).read_text().replace('"-2" upper="2"', '"-3" upper="3"'))
+    assert run(["srdf", "audit", urdf, srdf]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told[0].endswith("; 1 excused as Adjacent lies apart at home and can meet")
+    assert any(line.startswith("  lower - upper  Adjacent  can meet at elbow") for line in told)
+    assert run(["srdf", "audit", urdf, srdf, "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert objections("audit", found) == [] and found["adjacent_refuted"] == 1
+
+
 def test_a_proposal_excuses_no_neighbours_that_are_apart_at_home_and_can_meet(
     robot, tmp_path, capsys
 ):

@@ -214,7 +214,9 @@ def audit(
     ]
     found = []
     for i, pair in enumerate(excused, start=1):
-        found.append(ExcusedPair(str(pair.excused), audit_pair(robot, pair.link_a, pair.link_b)))
+        finding = audit_pair(robot, pair.link_a, pair.link_b)
+        joined = pair.excused == ADJACENT and not _is_apart_at_home(robot, pair)
+        found.append(ExcusedPair(str(pair.excused), finding, joined))
         if progress:
             progress(i, len(excused))
     return found
