@@ -2,7 +2,7 @@
 
 LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space, in metres where the
 header names a unit ($INSUNITS), else as the numbers stand. All lie in one plane z = const. Entities that meet end
-to end become one contour. Not for: blocks, layers, writing.
+to end become one contour. Not for: blocks, choosing layers, writing.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ def read_drawing(path: str | PathLike[str]) -> Drawing:
     """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
 
     Raises: MissingFile, BadSyntax (not DXF, an unknown unit, or none of its entities is a curve), BadCurve (an
-        entity of another kind, or one that lies outside the plane z = const), Unavailable (no ezdxf).
+        entity of another kind, one that is hidden, or one that lies outside the plane z = const), Unavailable (no
+        ezdxf).
     """
     with importing("dxf", "a DXF drawing"):
         import ezdxf
@@ -72,6 +73,8 @@ def _in_metres(drawing) -> Drawing:
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _METRES:
         raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16")
+    for entity in drawing.modelspace():
+        _require_visible(entity, drawing.layers)
     parts = [_curve_of(entity) for entity in drawing.modelspace()]
     if not parts:
         raise BadSyntax("a model space without entities", valid=f"at least one of {KINDS}")
@@ -81,6 +84,19 @@ def _in_metres(drawing) -> Drawing:
     if metres != 1.0:
         curve = curve.transformed(np.diag([metres, metres, 1.0]))
     return Drawing(curve, unit != 0)
+
+
+def _require_visible(entity, layers) -> None:
+    """Nothing, if an entity is seen in the drawing: whether one that is not belongs to the outline is open."""
+    name = entity.dxf.layer
+    why = "is invisible" if entity.dxf.invisible else ""
+    if layers.has_entry(name):
+        layer = layers.get(name)
+        why = f"is on layer {name!r}, which is frozen" if layer.is_frozen() else why
+        why = f"is on layer {name!r}, which is off" if layer.is_off() else why
+    if why:
+        problem = f"an entity {entity.dxftype()} (handle {entity.dxf.handle}) {why}"
+        raise BadCurve(problem, valid="a drawing of the outline alone, all of it visible")
 
 
 def _require_one_height(entities, tolerance: float) -> None:

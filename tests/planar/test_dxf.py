@@ -162,3 +162,24 @@ def test_a_drawing_at_any_one_height_is_read(tmp_path):
     assert read_dxf(drawing(tmp_path, 6, at_seven)).box == pytest.approx(
         np.array([[-1, -1], [2, 1]])
     )
+
+
+@pytest.mark.parametrize(
+    ("hide", "why"),
+    [
+        (lambda layer, entity: layer.off(), "is on layer 'aside', which is off"),
+        (lambda layer, entity: layer.freeze(), "is on layer 'aside', which is frozen"),
+        (lambda layer, entity: entity.dxf.set("invisible", 1), "is invisible"),
+    ],
+)
+def test_what_is_hidden_in_a_drawing_is_no_silent_part_of_its_outline(tmp_path, hide, why):
+    made = ezdxf.new()
+    space, layer = made.modelspace(), made.layers.add("aside")
+    space.add_circle((0, 0), 1)
+    entity = space.add_circle((3, 0), 1, dxfattribs={"layer": "aside"})
+    made.saveas(tmp_path / "d.dxf")
+    assert read_dxf(tmp_path / "d.dxf").contour.max() == 1
+    hide(layer, entity)
+    made.saveas(tmp_path / "d.dxf")
+    with pytest.raises(BadCurve, match=r"an entity CIRCLE \(handle \w+\) " + why):
+        read_dxf(tmp_path / "d.dxf")
