@@ -67,7 +67,7 @@ class BoundedFit(FitSearch):
         it was still growing, far beyond the outline.
         """
         target, size = self.target, self.shape.size
-        price, given = 10.0 * size, np.vstack([target.given, extra])
+        price, given = 10.0 * max(size, target.pieces.size), np.vstack([target.given, extra])
         gaps = target.gaps(here.pieces, samples, given)
         rows, chosen, change = self._rows(here, gaps)
         for _ in range(STEPS):

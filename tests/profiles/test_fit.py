@@ -182,3 +182,11 @@ def test_a_dimension_that_would_vanish_does_not_stop_the_others():
     found = cl.fit(s, outline, "nearest", free=["width", "depth"])
     assert found.dimensions["width"] == pytest.approx(2.0, abs=1e-5)
     assert 0.0 < found.dimensions["depth"] <= 3e-6
+
+
+def test_a_sketch_far_smaller_than_the_outline_about_it_grows_to_fill_it():
+    """The price of leaving the outline is above what area is worth there, not where the sketch was drawn."""
+    outline = cl.Curve.polyline([[-0.7, -0.4], [0.3, -0.4], [0.3, 0.6], [-0.7, 0.6]], closed=True)
+    found = cl.fit(rectangle(0.1, 0.1), outline, "inside", margin=0.005)
+    assert found.dimensions == pytest.approx({"width": 0.99, "depth": 0.99}, abs=1e-6)
+    assert found.clearance >= 0.005
