@@ -307,6 +307,7 @@ def _sample_few(lent, clocks, state, found, tally):
     for row in range(n_a):
         if found.clearance[row] > least:
             found.clearance[row], found.gaps_sq[row] = least, least * least * NOT_LESS
+            found.pair[row], found.step_b[row] = len(clocks.world.pairs), -1  # not seen here
 
 
 @kernel
