@@ -6,6 +6,7 @@ Not for: writing them (`junit`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from clearance.codes import coded_of
@@ -134,15 +135,25 @@ def _is_violated(answer: RuleAnswer) -> bool:
 
 def _of_pairs(model: ReportModel) -> Iterator[TestResult]:
     """One case for each finding that is not clear, and for each pair without one, by each rule that judges it."""
-    listed = set()
+    listed, broken = set(), {one.name for one in model.judgement.judging if _is_violated(one)}
+    hidden = broken if model.may_lack else set()
     for finding in model.judgement.findings:
         if finding.status != Status.CLEAR:
             listed.add((finding.body_a, finding.body_b, finding.rule))
-            yield _of_finding(finding)
+            yield _unless_hidden(model, _of_finding(finding), finding.rule in hidden)
     judge = PairJudge.of(model.record)
     for minimum in model.session.motion_minima():
         if (minimum.link, minimum.obstacle, minimum.rule) not in listed:
-            yield _of_minimum(model.record, judge, minimum)
+            is_hidden = minimum.proven is None and minimum.rule in hidden
+            yield _unless_hidden(model, _of_minimum(model.record, judge, minimum), is_hidden)
+
+
+def _unless_hidden(model: ReportModel, result: TestResult, is_hidden: bool) -> TestResult:
+    """The result; skipped where it is no failure, and a nearer pair may hide that it is one."""
+    if not is_hidden or result.fault or result.skipped:
+        return result
+    text = f"not judged by itself, since its rule is broken and {model.may_lack}; {result.text}"
+    return replace(result, text=text, skipped=True)
 
 
 def _of_finding(finding: Finding) -> TestResult:

@@ -51,6 +51,8 @@ def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
     """The verdict, why, and the findings that are not clear; with what became of them since a baseline."""
     verdict, findings = model.verdict, model.findings
     points = [*_verdict_lines(verdict)]
+    if model.may_lack:
+        points.append(f"other pairs may break their limits too: {model.may_lack}")
     if comparison is not None:
         gone = [gone_text(row) for row in comparison.rows if row.now is None]
         points += [

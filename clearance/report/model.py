@@ -16,7 +16,7 @@ from clearance.findings.finding import Finding
 from clearance.findings.findings_file import FindingList, finding_list_of
 from clearance.findings.judgement import Judgement, judgement_of
 from clearance.findings.of_budget import judged_budgets, of_budget
-from clearance.findings.of_record import findings_of
+from clearance.findings.of_record import findings_of, why_incomplete
 from clearance.findings.verdict import Verdict, verdict_of
 from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.moment import Moment
@@ -68,6 +68,12 @@ class ReportModel:
         """What each rule comes to between which bodies, the worst first; what is waived is among it."""
         return findings_of(self.record, self.judgement, self.of_tolerances)
 
+    @property
+    def may_lack(self) -> str:
+        """Why a run that fails may have findings that are not listed; empty where none can."""
+        fails = any(finding.fails for finding in self.findings)
+        return why_incomplete(self.session) if fails else ""
+
     @cached_property
     def finding_list(self) -> FindingList:
         """What `findings.json` holds: the findings, and what is needed to compare them with another run's."""
@@ -95,7 +101,7 @@ class PageContent:
     Attributes:
         summary: as `summary.json` has it. pictures: of each profile as SVG, by its name.
         verdict, findings, comparison: those of the run, and what became of findings since a baseline, if there is
-            one.
+            one. may_lack: why findings may be missing; empty where none can.
     """
 
     summary: dict[str, Any]
@@ -103,3 +109,4 @@ class PageContent:
     pictures: Mapping[str, str] = field(default_factory=dict)
     findings: Sequence[Finding] = ()
     comparison: Comparison | None = None
+    may_lack: str = ""

@@ -70,7 +70,9 @@ def page_text(
         measured: where the record's rows are. comparison: with a baseline.
     """
     findings = model.finding_list.findings
-    content = PageContent(summary_of(model), model.verdict, drawn.pictures, findings, comparison)
+    content = PageContent(
+        summary_of(model), model.verdict, drawn.pictures, findings, comparison, model.may_lack
+    )
     curves = pair_curves(model.record, model.session.motion_minima(), measured)
     more = PageCurves(curves, [*more_curves(model.record)])
     return page_of(content, drawn.replay, more, drawn.earlier)

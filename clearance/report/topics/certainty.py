@@ -129,6 +129,8 @@ def lines(model: ReportModel) -> Iterator[Line]:
     """What is proven, what facets may hide, what a peer says, notes."""
     record = model.record
     yield from _certified_lines(record, model.verdict)
+    if model.may_lack:
+        yield "incomplete", f"other pairs may break their limits too: {model.may_lack}"
     bound = tessellation_bound(record)
     if bound > 0.01 * record.worst.clearance and bound != 0.0:
         shapes = f"round shapes are faceted from outside, by up to {bound * 1000:.3g} mm for a pair"

@@ -5,7 +5,7 @@ Not for: finding them (room `findings`), nor the file that holds all (`findings.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.finding import Finding
@@ -48,7 +48,7 @@ def sections(content: PageContent) -> Iterator[Section]:
     rows = [_row(one, since.get(one.id), bool(compared)) for one in found[:MOST_ROWS]]
     table = Table((*HEADS, *compared, "Waived", "Name"), rows, "clickable findings", tall=True)
     before = [] if comparison is None else [*_since(comparison)]
-    yield Section("Findings", [*before, table, *map(faint, _notes(found))])
+    yield Section("Findings", [*before, table, *map(faint, _notes(content))])
 
 
 def rows_of_now(comparison: Comparison | None) -> dict[str, ComparedFinding]:
@@ -57,10 +57,13 @@ def rows_of_now(comparison: Comparison | None) -> dict[str, ComparedFinding]:
     return {row.finding.id: row for row in rows if row.now}
 
 
-def _notes(found: Sequence[Finding]) -> Iterator[str]:
+def _notes(content: PageContent) -> Iterator[str]:
+    found = content.findings
     yield (
         "A pair that breaks a rule has a row for every time it does; a rule that is kept has its nearest pair."
     )
+    if content.may_lack:
+        yield f"Other pairs may break their limits too: {content.may_lack}."
     if len(found) > MOST_ROWS:
         yield f"{count(len(found) - MOST_ROWS, 'more finding')} in findings.json."
 

@@ -9,12 +9,18 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
+from clearance.report.junit_cases import results_of
+from clearance.report.markdown import markdown
+from clearance.report.topics.certainty import lines
 from clearance.simulate.measure.sections import section_plan
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
+from clearance.world.robot import Joint, JointKind
 from clearance.world.timing import Window
 from tests.cells import cell, pose_at
 from tests.gains.gantries import along_x, gantry, standing
+from tests.made_cases import at
+from tests.simulate.measure.test_unsynchronised import sliding
 
 CLOCK = {
     "left": 0,
@@ -168,3 +174,42 @@ def test_contact_that_no_one_time_has_is_said_to_have_no_depth():
     run = cl.check(replace(loose(1, np.inf), accept=("start",)), certify=False)
     assert run.status == "contact"
     assert any("no depth" in text for text in run.verdict.warnings)
+
+
+def past_two_posts(slack: float) -> cl.Case:
+    """A tall slide that goes past two posts of another robot, one above the other, between its two samples."""
+    tall = sliding("slide", (-0.5, 0.0, 0.0), (1.0, 0.0, 0.0), size=(0.1, 0.1, 0.8), n_steps=2)
+    other = sliding("posts", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), n_steps=2)
+    (joint,), (low,) = other.robot.joints, other.robot.bodies
+    fixed = Joint("fixed", JointKind.FIXED, "tool", "high", pose_of(0.0))
+    high = cl.Body("high", low.shape.transformed(at(z=0.3)))
+    posts = cl.Robot("posts", ("base", "tool", "high"), (joint, fixed), (low, high))
+    return cl.Case("two", (tall, replace(other, robot=posts)), (), clock=Clock(slack))
+
+
+@pytest.mark.parametrize("slack", [np.inf, 0.1])
+def test_a_pair_that_another_may_hide_passes_nowhere(slack):
+    report = cl.check(past_two_posts(slack)).report
+    pairs = {one.name: one for one in results_of(report) if one.group == "slide/tool"}
+    broken = [one for one in pairs.values() if one.fault]
+    (hidden,) = [one for one in pairs.values() if not one.fault]
+    assert len(broken) == 1 and hidden.skipped
+    assert hidden.text.startswith("not judged by itself, since its rule is broken and where clocks")
+    said = "other pairs may break their limits too: where clocks are not tied only the nearest pair"
+    assert said in markdown(report)
+    assert ("incomplete", said + " of each step is known") in [*lines(report)]
+
+
+@pytest.mark.parametrize("slack", [np.inf, 0.5])
+def test_the_least_of_a_pair_is_at_the_step_that_has_it(slack):
+    """Its points are so far from each other; the slide is nearest at its third step."""
+    case = past_two_posts(slack)
+    slide, posts = case.robots
+    x = np.array([[0.0], [0.1], [0.35], [0.2]])
+    path = cl.Trajectory(np.arange(4.0), ("joint",), x)
+    rows = cl.Trajectory(np.arange(4.0), ("joint",), np.array([[0.0], [0.01], [0.0], [0.01]]))
+    robots = replace(slide, trajectory=path), replace(posts, trajectory=rows)
+    for row in cl.check(replace(case, robots=robots), certify=False).pair_minima:
+        apart = np.linalg.norm(np.subtract(row.point_link, row.point_obstacle))
+        assert apart == pytest.approx(row.clearance, abs=1e-9)
+        assert (row.step, row.time) == (2, 2.0)
