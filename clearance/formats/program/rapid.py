@@ -8,10 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import islice
 from typing import Any
-
-import numpy as np
 
 from clearance.errors import BadProgram, at
 from clearance.formats.program import rapid_words as words
@@ -19,7 +16,6 @@ from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
     ControllerProgram,
-    ControllerWait,
     PoseTarget,
     ProgramRequest,
     Target,
@@ -30,9 +26,7 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     Name,
-    Part,
     Unknown,
-    calls_in,
     known,
     number,
 )
@@ -54,6 +48,7 @@ from clearance.formats.program.rapid_data import (
     work_of,
     zone_of,
 )
+from clearance.formats.program.rapid_moves import name_of, on_cycles, require_plain, with_zones
 from clearance.formats.program.rapid_text import FIRST, Declaration, Modules
 from clearance.formats.program.rapid_words import GRAMMAR, MOVES, MoveRule
 from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
@@ -86,8 +81,8 @@ def read_rapid(asked: ProgramRequest) -> ControllerProgram:
         asked_name = (given.entry or "").lower()
         entry = entry_of("procedure", names, given.entry, asked_name, "main")
         run.enter(modules.routines[entry])
-        run.moves = _with_zones(run.moves, language.zones)
-        notes = (*language.assumed, *_on_cycles(run.moves))
+        run.moves = with_zones(run.moves, language.zones)
+        notes = (*language.assumed, *on_cycles(run.moves))
         return language.program_of(run, notes, _replaced(modules, given))
 
 
@@ -247,7 +242,7 @@ class Rapid(Language):
         return super().result_of(call, run)
 
     def _move(self, call: Call, rule: MoveRule, run: Execution) -> None:
-        _require_plain(call, rule)
+        require_plain(call, rule)
         asked = {
             "target": call.args[rule.to],
             "speed": call.args[rule.speed],
@@ -298,7 +293,7 @@ class Rapid(Language):
     def _target(
         self, call: Call, value: Any, one: Expression, work: Work, run: Execution
     ) -> Target:
-        name = _shown(one, run)
+        name = name_of(one, run)
         if call.name == "MoveAbsJ":
             axes, external = value
             own = tuple(math.radians(one) for one in axes if abs(one) < NO_AXIS)
@@ -311,40 +306,6 @@ class Rapid(Language):
         return replace(found, **configuration_of(flags, bool(more)))
 
 
-def _require_plain(call: Call, rule: MoveRule) -> None:
-    """Nothing, if a move has all its arguments, and none that changes its way.
-
-    Raises:
-        BadProgram: it has not.
-    """
-    for name in ("corr", "track", "weave", "sync"):
-        if name in call.named:
-            raise BadProgram(f"\\{name} changes the way", valid="take the argument out")
-    if len(call.args) <= rule.tool:
-        fault = f"{call.name} has {len(call.args)} of its arguments"
-        raise BadProgram(fault, valid="target, speed, zone and tool")
-
-
-def _shown(one: Expression, run: Execution) -> str:
-    """The name of a target: that of the datum that it is made of, within the functions that move it."""
-    if isinstance(one, Part):
-        return _shown(one.of, run)
-    if not isinstance(one, Call):
-        return str(one.name).rpartition(".")[2] if isinstance(one, Name) else ""
-    name = _shown(one.args[0], run) if one.args else ""
-    if not name or one.name not in ("Offs", "RelTool"):
-        return name
-    shown = [_number(part, run) for part in one.args[1:]]
-    turned = [f"\\{key.title()}:={_number(part, run)}" for key, part in one.named.items()]
-    return f"{one.name}({', '.join([name, *shown, *turned])})"
-
-
-def _number(one: Expression, run: Execution) -> str:
-    """A number in words; what a function says, which may change something, is left out."""
-    value = "…" if any(True for _ in calls_in(one)) else run.evaluated(one)
-    return f"{value:g}" if isinstance(value, int | float) else "…"
-
-
 def _replaced(modules: Modules, given: ProgramFile) -> Iterator[str]:
     """A line on each tool and work object of the case whose data the files have too."""
     for key, poses in (("tools", given.tools), ("frames", given.frames)):
@@ -353,38 +314,3 @@ def _replaced(modules: Modules, given: ProgramFile) -> Iterator[str]:
             if own is not None:
                 text = f"replaces {own.name} at {own.line}, which the file gives"
                 yield f"{key}.{name} of the case {text}"
-
-
-def _on_cycles(moves: list[ControllerMove | ControllerWait]) -> list[str]:
-    """A line on the way back that a controller in cycles makes, if the program ends elsewhere than it begins."""
-    ends = [one.to for one in moves if isinstance(one, ControllerMove)]
-    if not ends or (isinstance(ends[0], AxisTarget) and ends[0] == ends[-1]):
-        return []
-    return [
-        "the procedure runs once: in cycles the way from its end to its beginning is not measured"
-    ]
-
-
-def _with_zones(
-    moves: list[ControllerMove | ControllerWait], zones: dict[int, tuple[float, float]]
-) -> list[ControllerMove | ControllerWait]:
-    """Moves with the radius of their zone: that of the tool's point; where the tool turns before or after the
-    larger one of its orientation. A wait turns nothing.
-    """
-    found = list(moves)
-    for i, (point, turn) in zones.items():
-        before = (move for move in reversed(moves[:i]) if isinstance(move, ControllerMove))
-        one, around = moves[i], [*islice(before, 1), *moves[i : i + 2]]
-        turns = [
-            move.to.pose[:3, :3]
-            if isinstance(move, ControllerMove) and isinstance(move.to, PoseTarget)
-            else None
-            for move in around
-        ]
-        first = turns[0]
-        same = first is not None and all(
-            one is not None and np.abs(one - first).max() < 1e-9 for one in turns
-        )
-        assert isinstance(one, ControllerMove)
-        found[i] = replace(one, zone=point if same and len(turns) == 3 else max(point, turn))
-    return found
