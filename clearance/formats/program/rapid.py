@@ -51,7 +51,7 @@ from clearance.formats.program.rapid_data import (
 from clearance.formats.program.rapid_moves import name_of, on_cycles, require_plain, with_zones
 from clearance.formats.program.rapid_text import FIRST, Declaration, Modules
 from clearance.formats.program.rapid_words import GRAMMAR, MOVES, MoveRule
-from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
+from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID
 from clearance.formats.program.remarks import WAITS as TAKES_TIME
 from clearance.formats.program.statements import assigned
 from clearance.formats.program.tokens import on, text_of
@@ -266,6 +266,26 @@ class Rapid(Language):
         if max(zone) > 0.0:
             self.zones[len(run.moves)] = zone
         run.add(move.slowed(self.share))
+        if call.name.endswith("Sync"):
+            self._run_beside(call, rule, run)
+
+    def _run_beside(self, call: Call, rule: MoveRule, run: Execution) -> None:
+        """The procedure that a move calls at its end: no line behind it knows whether it is done.
+
+        Raises:
+            BadProgram: it moves the robot, or may, or its name is not known.
+        """
+        name, *_ = [*map(run.evaluated, call.args[rule.tool + 1 :]), ""]
+        if not isinstance(known(name, "the procedure"), str) or not name:
+            fault = f"{call.name} names no procedure"
+            raise BadProgram(fault, valid='its name behind the tool, as in "glue_on"')
+        own = name.rpartition(":")[2].strip().lower()  # a module may stand before it
+        named = [one for one in self.modules.routines if one.lower().rpartition(".")[2] == own]
+        for one in named or [GRAMMAR.folded(own)]:
+            run.run_concurrently("procedure", one)
+            if one in run.skip:
+                run.note(LEFT_OUT, f"{one} ({call.line})")
+        run.note("procedures that moves call at their end and that move nothing", name)
 
     def _made(
         self,

@@ -252,6 +252,35 @@ def test_a_module_that_is_cut_off_is_refused(end):
         read("a.mod", CELL[: CELL.index(end) + len(end)])
 
 
+GLUE = f"MoveL {P},v100,fine,tool0;"
+SYNC = {
+    'MoveLSync P,v100,fine,tool0,"x";': "line 3: procedure 'x' moves the robot, or may: it is in no file",
+    'MoveJSync P,v100,fine,tool0,"M:Go";': "procedure 'go' moves the robot, or may: MoveL at line 5",
+    'MoveCSync P,P,v100,fine,tool0,"own";': "procedure 'M.own' moves the robot, or may: MoveL at line",
+    "MoveLSync P,v100,fine,tool0,found();": "line 3: the procedure is not known: ",
+    "MoveLSync P,v100,fine,tool0;": "line 3: MoveLSync names no procedure",
+    'MoveLSync P,v100,fine,tool0,"change";MoveL P,v100,fine,t0;': "'change' may change it at any time: 't0'",
+    'MoveLSync P,v100,fine,tool0,"change";IF n=1 go;': "procedure 'change' may change it at any time: 'n'",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("body", SYNC)
+def test_a_procedure_that_a_move_calls_moves_nothing_and_changes_what_is_then_not_known(body):
+    data = "PERS tooldata t0:=[TRUE,[[0,0,1],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]; VAR num n:=1;"
+    more = f"\nENDPROC\nPROC go() {GLUE} ENDPROC LOCAL PROC own() {GLUE} ENDPROC\nPROC change() n:=2;\n"
+    more += (
+        "t0.tframe.trans.z:=5; ENDPROC FUNC string found() RETURN NumToStr(1); ENDFUNC PROC last()"
+    )
+    with pytest.raises(cl.ClearanceError, match=r"^a\.mod: ") as caught:
+        moves_of(body.replace("P,", f"{P},") + more, data)
+    assert SYNC[body] in str(caught.value)
+
+
+def test_a_procedure_of_outputs_that_a_move_calls_is_run_beside():
+    body = f'MoveLSync {P},v100,fine,tool0,"glue_on";\n{GLUE}\nENDPROC\nPROC glue_on() SetDO do1,1;'
+    assert len(moves_of(body)) == 2
+
+
 UNDECIDED = {
     "VAR num x:=1;\nIF di1=1 x:=2;": "'x' is given a value at line 4",
     "VAR num x:=1;\nIF di1=1 Incr x;": "'x' is given a value at line 4",
