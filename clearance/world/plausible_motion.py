@@ -124,7 +124,8 @@ def _suspect(texts: Sequence[str]) -> list[Notice]:
 
 _IN_DEGREES = (
     "If so, write 'NAME [deg]' in the header of the table, or trajectory: {file: …, units: {angle: deg}} "
-    "(clearance new --units deg); `joints` of a robot are in radians"
+    "(clearance new --units deg); `clearance convert` makes such a table from a bag or a message; `joints` of a "
+    "robot are in radians"
 )
 
 

@@ -105,9 +105,12 @@ class Choice(StrictModel):
         """
         for name in Choice.model_fields:
             if name not in used and getattr(self, name) is not None:
-                raise BadMotion(
-                    f"{name!r} says nothing about {what}", valid=f"leave {name!r} out of trajectory"
-                )
+                remedy = f"leave {name!r} out of trajectory"
+                if name == "units":
+                    remedy += (
+                        ", or give it of the table that `clearance convert` makes of this file"
+                    )
+                raise BadMotion(f"{name!r} says nothing about {what}", valid=remedy)
 
 
 class TrajectoryFile(Choice, TimedFile):
