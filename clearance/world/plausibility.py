@@ -30,6 +30,9 @@ LARGE_LIMIT = 0.5
 is usual.
 """
 
+SMALL_LIMITS = 1e-6, 5e-5
+"""[m] Nobody asks a robot for 1 to 50 micrometres; 1 to 50 mm, in metres and read as millimetres, are that."""
+
 
 def notices_of(case: Case) -> tuple[Notice, ...]:
     """All that is suspect about a case, and all warnings, worst first: what loading found and what is seen here.
@@ -83,9 +86,18 @@ def _notices_on_limits(case: Case) -> list[Notice]:
     for i, rule in enumerate(limits.rules):
         levels = {"fail": rule.fail, "warn": rule.warn}
         given |= {f"limits.rules[{i}].{key}": level for key, level in levels.items() if level}
+    small = [
+        f"{key} is {value * 1000:g} mm"
+        for key, value in given.items()
+        if SMALL_LIMITS[0] <= value <= SMALL_LIMITS[1]
+    ]
     given |= {f"profiles[{i}].limit": space.limit for i, space in enumerate(case.profiles)}
     large = [f"{key} is {value:g} m" for key, value in given.items() if value > LARGE_LIMIT]
-    return _in_millimetres(large, "limits are")
+    found = _in_millimetres(large, "limits are")
+    if small:
+        text = f"CHECK UNITS: {' and '.join(small[:2])}; is this metres, given to an option in millimetres?"
+        found.append(Notice(Severity.SUSPECT, "units", text))
+    return found
 
 
 def _notices_on_padding(case: Case) -> list[Notice]:

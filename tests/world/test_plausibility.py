@@ -66,6 +66,7 @@ def test_a_good_case_tells_nothing():
         ({"positions": (0.0, 45.0)}, "joint 'elbow' goes to 45 rad"),
         ({"times": (0.0, 1000.0)}, "is this milliseconds?"),
         ({"limits": Limits(5.0, 20.0)}, "limits.fail is 5 m and limits.warn is 20 m"),
+        ({"limits": Limits(5e-6, 0.02)}, "limits.fail is 0.005 mm; is this metres, given to an"),
     ],
 )
 def test_another_unit_is_suspect(changes, says):
