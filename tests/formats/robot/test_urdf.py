@@ -271,6 +271,7 @@ def test_a_speed_that_is_one_is_read_and_nothing_is_refused_for_it(tmp_path, giv
 
 
 VISUAL = '<visual><geometry><box size="2 2 2"/></geometry></visual>'
+INSIDE = VISUAL.replace("2 2 2", "0.8 0.8 0.8")
 
 
 def arm(base: str, *others: str) -> str:
@@ -281,7 +282,7 @@ def arm(base: str, *others: str) -> str:
 
 
 def test_links_that_are_seen_but_not_measured_are_a_warning_of_their_own(tmp_path):
-    (notice,) = load_robot(tmp_path, arm(BOX, VISUAL, "", VISUAL, BOX + VISUAL)).notices
+    (notice,) = load_robot(tmp_path, arm(BOX, VISUAL, "", VISUAL, BOX + INSIDE)).notices
     assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
     assert notice.text.startswith(
         "2 links have a visual but no collision shape and are not measured: 'link0', 'link2'; "
@@ -291,8 +292,35 @@ def test_links_that_are_seen_but_not_measured_are_a_warning_of_their_own(tmp_pat
     assert "9 links have" in notice.text and "'link5' and 3 more" in notice.text
 
 
+def test_visual_shapes_that_reach_far_out_of_the_collision_shapes_are_warned_of(tmp_path):
+    """Fingers drawn later, from 0.1 to 0.5 m, on a cube that ends at 0.05 m."""
+
+    def warned(visual, asked="collision"):
+        hand = collision('<box size="0.1 0.1 0.1"/>') + visual
+        read = load_robot(tmp_path, robot(link(hand)), geometry=asked)
+        return [one.text for one in read.notices if one.severity is Severity.WARNING]
+
+    fingers = _seen('<box size="0.4 0.1 0.1"/>', 0.3)
+    for asked in ("collision", "collision_or_visual"):
+        assert warned(fingers, asked) == [
+            "visual shapes reach out of the collision shapes, and are not measured there: "
+            "link 'a' by 0.45 m; add collision shapes, or give robot: {geometry: visual}"
+        ]
+    assert warned(fingers, "visual") == []
+    for near in (
+        _seen('<box size="0.2 0.2 0.2"/>', 0.0),
+        _seen('<sphere radius="0.001"/>', 1.0),
+        _seen('<mesh filename="not_there.stl"/>', 0.0),
+    ):
+        assert warned(near) == []
+
+
+def _seen(shape, x):
+    return collision(shape, f'<origin xyz="{x} 0 0"/>').replace("collision", "visual")
+
+
 def test_collision_or_visual_measures_all_that_has_a_shape(tmp_path):
-    urdf = arm(BOX + VISUAL, VISUAL, "")
+    urdf = arm(BOX + INSIDE, VISUAL, "")
     found = load_robot(tmp_path, urdf, geometry="collision_or_visual")
     assert found.notices == ()
     sizes = {body.name: float(body.shape.bounds[1, 0]) for body in found.bodies}

@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadSyntax, at
+import numpy as np
+
+from clearance.errors import BadSyntax, ClearanceError, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.mesh_store import MeshStore
@@ -31,6 +33,7 @@ from clearance.formats.robot.urdf.shapes import ShapeReader
 from clearance.formats.text.unread import Unread, notes_on, notices_on
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
+from clearance.world.extents import greatest, metres
 from clearance.world.names import require_own_names
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Joint, Robot
@@ -66,6 +69,7 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
             *reader.notices(),
             *axis_notices(links, bodies, ordered, reader),
             *unseen(kinds, request.geometry),
+            *_on_visuals_beyond(links, bodies, reader),
             *_on_empty(empty),
             *_on_coupled(others, ordered),
             *notices_on(others),
@@ -80,6 +84,51 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         (*made, *reader.notes(), *notes),
         tuple(notices),
     )
+
+
+BEYOND = 0.06
+"""[m] How far a visual box, ball, cylinder or capsule of this size and more may reach beyond its link's collision
+shapes. Of 1,128 robots two have one that reaches farther, both on links that are measured in part only."""
+
+
+def _on_visuals_beyond(
+    links: Sequence[Element], bodies: Sequence[Body], reader: ShapeReader
+) -> list[Notice]:
+    """A warning on visual shapes that reach far out of the box round what is measured of their link.
+
+    Visual meshes are not read.
+    """
+    boxes = {body.name: body.shape.bounds for body in bodies}
+    measured = [link for link in links if link.get("name") in boxes]
+    far = [
+        (beyond, f"link {link.get('name')!r} by {metres(beyond)} m")
+        for link in measured
+        if reader.kind(link) == "collision"
+        and (beyond := _reach_beyond(boxes[link.get("name")], link, reader)) > BEYOND
+    ]
+    if not far:
+        return []
+    names = listed([text for _, text in greatest(far)], 6)
+    text = (
+        f"visual shapes reach out of the collision shapes, and are not measured there: {names}; "
+        "add collision shapes, or give robot: {geometry: visual}"
+    )
+    return [Notice(Severity.WARNING, "geometry", text)]
+
+
+def _reach_beyond(box: np.ndarray, link: Element, reader: ShapeReader) -> float:
+    """[m] How far a link's visual shapes that are no meshes reach out of a box; at least 0."""
+    beyond = 0.0
+    for element in link.iterfind("visual"):
+        if element.find("geometry/mesh") is not None:
+            continue
+        try:
+            low, high = reader.shape(element)[0].bounds
+        except ClearanceError:  # a picture that cannot be made is no reason to stop
+            continue
+        if (high - low).max() > BEYOND:
+            beyond = max(beyond, float((box[0] - low).max()), float((high - box[1]).max()))
+    return beyond
 
 
 def _on_empty(empty: list[str]) -> list[Notice]:
