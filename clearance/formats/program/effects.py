@@ -7,13 +7,20 @@ Not for: running them (`execution`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
 
 from clearance.errors import BadProgram
-from clearance.formats.program.expressions import Call, Expression, Unknown, calls_in, names_in
+from clearance.formats.program.expressions import (
+    Call,
+    Expression,
+    Unknown,
+    calls_in,
+    names_in,
+    number,
+)
 from clearance.formats.program.language import Language
 from clearance.formats.program.statements import (
     STOP,
@@ -229,6 +236,24 @@ def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:
         raise BadProgram(fault, valid=f"{len(routine.parameters)} at most")
     in_order = zip(routine.parameters, call.args, strict=False)
     return {**routine.defaults, **dict(in_order), **call.named}
+
+
+def range_of(one: For, value_of: Callable[[Expression], Any]) -> tuple[float, float, float]:
+    """The first value of a loop's counter, the last one, and the step.
+
+    Raises:
+        BadProgram: one is no known number, or the step is 0.
+    """
+    name = one.name.name
+    first, last = (
+        number(value_of(part), f"the range of {name!r}") for part in (one.first, one.last)
+    )
+    step = -1.0 if one.turns_back and last < first else 1.0
+    if one.step is not None:
+        step = number(value_of(one.step), f"the step of {name!r}")
+    if step == 0.0:
+        raise BadProgram("a step of 0", valid="another")
+    return first, last, step
 
 
 def given_back(routine: Routine, call: Call) -> list[Expression]:

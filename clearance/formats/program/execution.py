@@ -18,6 +18,7 @@ from clearance.formats.program.effects import (
     Effects,
     PersistentValues,
     arguments_of,
+    range_of,
     require_repeating,
     undecided,
     unknown_word,
@@ -32,7 +33,6 @@ from clearance.formats.program.expressions import (
     Unknown,
     calls_in,
     is_constant,
-    number,
     value_of,
     with_passed,
 )
@@ -368,15 +368,7 @@ class Execution(Remarks):
 
     def _for(self, one: For) -> Leave | None:
         name = one.name.name
-        first, last = (
-            number(self.evaluated(part), f"the range of {name!r}") for part in (one.first, one.last)
-        )
-        step = -1.0 if one.turns_back and last < first else 1.0
-        if one.step is not None:
-            step = number(self.evaluated(one.step), f"the step of {name!r}")
-        if step == 0.0:
-            raise BadProgram("a step of 0", valid="another")
-        at = first
+        at, last, step = range_of(one, self.evaluated)
         origin = self.persistent.origin_of(filter(None, (one.first, one.last, one.step)))
         place = self.frames[-1] if one.is_own else self._place(name)
         before = {key: place[key] for key in (name,) if key in place}
