@@ -256,6 +256,22 @@ def range_of(one: For, value_of: Callable[[Expression], Any]) -> tuple[float, fl
     return first, last, step
 
 
+def value_after(one: For, before: float, value: Any, is_free: bool) -> float:
+    """The counter of a loop at the end of a pass that began with a value of it.
+
+    Args:
+        is_free: the loop goes on from whatever value a pass gives it.
+
+    Raises:
+        BadProgram: the pass may have changed it, and how the loop goes on then is not known.
+    """
+    now = number(value, f"the counter {one.name.name!r}")
+    if now != before and not is_free:
+        fault = f"{one.name.name!r} counts the passes of a loop, and one of them changes it"
+        raise BadProgram(fault, valid="another variable in it")
+    return now
+
+
 def given_back(routine: Routine, call: Call) -> list[Expression]:
     """The arguments of a call that are the caller's own variables, which the routine may change."""
     given = {**dict(zip(routine.parameters, call.args, strict=False)), **call.named}

@@ -23,6 +23,7 @@ from clearance.formats.program.effects import (
     undecided,
     unknown_word,
     unreadable_word,
+    value_after,
 )
 from clearance.formats.program.expressions import (
     Call,
@@ -372,13 +373,17 @@ class Execution(Remarks):
         origin = self.persistent.origin_of(filter(None, (one.first, one.last, one.step)))
         place = self.frames[-1] if one.is_own else self._place(name)
         before = {key: place[key] for key in (name,) if key in place}
-        left = None
+        left, place[name] = None, at
         while left is None and (at <= last if step > 0.0 else at >= last):
             self._count()
             place[name] = at
             left = self.run(one.body)
             left = None if left is not None and left.what == CONTINUE else left
-            at += step
+            if left is None:
+                now = place[name] if one.is_own else self.concurrent.get(name, place[name])
+                at = value_after(one, at, now, self.language.keeps_counter) + step
+        if left is None and not self.language.keeps_counter:
+            place[name] = Unknown(f"{name!r} counted the loop at {one.line}")
         self._doubt(one, origin)
         if one.is_own:
             place.pop(name, None)

@@ -96,7 +96,7 @@ class _Fanuc(Language):
 
     asked: ProgramFile
     share: float = 1.0
-    maker, base, suffix = "fanuc", BASE, ".LS"
+    maker, base, suffix, keeps_counter = "fanuc", BASE, ".LS", True
     moving = (*MOVES, *DECIDING)
     still = (*QUIET, WAIT)
     timed = (WAIT, *WAITING)

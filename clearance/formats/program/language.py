@@ -22,6 +22,8 @@ class Language:
         moving, still: words that decide where the robot goes, and those that do not.
         timed: words that take a time that counts; their file may not say how long.
         retiming: words that change how long moves take also from a thread, a trap or an interrupt.
+        keeps_counter: a loop counts by the value of its variable, and leaves it at the last one; elsewhere it is
+            not known behind the loop.
         values: functions whose value follows from their arguments.
     """
 
@@ -30,6 +32,7 @@ class Language:
     still: Collection[str] = ()
     timed: Collection[str] = ()
     retiming: Collection[str] = ()
+    keeps_counter = False
     values: Mapping[str, Callable[..., Any]] = {}
 
     @property

@@ -113,6 +113,23 @@ L P[4] R[9]mm/sec FINE ;
     assert any("assumed: line 17" in note for note in found.notes)
 
 
+@pytest.mark.parametrize(
+    ("loop", "ends"),
+    [
+        ("FOR R[1]=3 TO 1 ;\nL P[2] 9mm/sec FINE ;\nENDFOR ;", 3),
+        ("FOR R[1]=1 TO 3 ;\nENDFOR ;", 3),
+        ("FOR R[1]=1 TO 3 ;\nR[1]=3 ;\nENDFOR ;", 3),
+        ("FOR R[1]=1 TO 3 ;\nR[1]=R[1]+4 ;\nENDFOR ;", 5),
+        ("FOR R[1]=4 DOWNTO 2 ;\nR[1]=R[1]-1 ;\nENDFOR ;", 1),
+    ],
+)
+def test_a_loop_counts_by_its_register_and_leaves_it_at_its_last_value(loop, ends):
+    """It is set before the first pass, whether there is one or not."""
+    decides = f"IF (R[1]={ends}) THEN ;\nL P[3] 9mm/sec FINE ;\nENDIF ;\n"
+    (move,) = program(f"{FRAMES}R[1]=0 ;\n{loop}\n{decides}").moves
+    assert move.to.name == "P[3]"
+
+
 def test_other_groups_and_axes_are_external():
     turned = "\n   GP2:\n\tUF : 1, UT : 1,\t\n\tJ1=    30.000 deg"
     rail = ",\n\tE1=   250.000  mm"

@@ -161,6 +161,23 @@ ENDFOR"""
     assert place(move) == pytest.approx([0.5 - 0.0035, 0.0045, 0.302])
 
 
+COUNTED = "IF i==3 THEN\nPTP XHOME\nENDIF"
+LOOPS = {
+    "INT i\ni=0\nFOR i=3 TO 1\nPTP XHOME\nENDFOR\n": "'I' counted the loop at line 9",
+    "INT i\nFOR i=1 TO 3\nENDFOR\n": "'I' counted the loop at line 8",
+    "INT i\nFOR i=1 TO 3\ni=i+1\nENDFOR\n": "'I' counts the passes of a loop, and one of them changes it",
+    "INT i\nFOR i=1 TO 3\nIF $IN[1] THEN\ni=2\nENDIF\nENDFOR\n": "the counter 'I' is not known",
+}
+
+
+@pytest.mark.parametrize("loop", LOOPS)
+def test_the_counter_of_a_loop_that_has_ended_decides_nothing(loop):
+    with pytest.raises(cl.ClearanceError, match=r"^weld\.src: ") as caught:
+        moves_of(loop + COUNTED)
+    assert LOOPS[loop] in str(caught.value)
+    assert len(moves_of("INT i\nFOR i=1 TO 9\nIF i==3 THEN\nEXIT\nENDIF\nENDFOR\n" + COUNTED)) == 1
+
+
 def test_turns_of_a_joint_move_become_ranges_of_axes():
     body = (
         FRAMES
