@@ -54,6 +54,7 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
         )
     if gain.kept and gain.size == 0.0:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
+        yield from _not_passed(gain)
         return
     yield from _kept(gain) if gain.kept else _not_kept(gain)
     if gain.request.kind == "obstacle" and gain.size > 0.0:
@@ -112,8 +113,15 @@ def _kept(gain: Gain) -> Iterator[Line]:
     yield from (("tool", line) for line in tool_lines(gain))
     yield "after", _worst(gain.after)
     yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
+    yield from _not_passed(gain)
+
+
+def _not_passed(gain: Gain) -> Iterator[Line]:
+    """That the case fails though every rule holds, and by what beside its clearances: those alone are sought."""
     if not gain.after.passed:
-        yield "but", f"the changed case is not passed: {gain.after.verdict.headline()}"
+        case = "changed case" if gain.size > 0.0 else "case"
+        yield "but", f"the {case} is not passed: {gain.after.verdict.headline()}"
+        yield from (("but", line) for line in gain.after.verdict.beside)
 
 
 def _not_kept(gain: Gain) -> Iterator[Line]:
