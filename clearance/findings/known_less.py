@@ -20,6 +20,9 @@ from clearance.record.wording import count, limit_mm, seconds
 from clearance.world.notice import listed
 from clearance.world.rules import matches
 
+TIME = 1e-6
+"""[s] Times that differ by less are the same, summed otherwise."""
+
 _Limits = tuple[tuple[str, float], ...]
 """The fail limits [m] of a pair, each with when it holds; the last one holds otherwise."""
 
@@ -28,7 +31,7 @@ def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
     """What is not known of now as it was before, one line each."""
     old, new = before.measured, now.measured
     found = (less(old, new) for less in (_proven_less, _measured_less, _counted_less, _asked_less))
-    return tuple(itertools.chain(*found, _listed_less(before, now)))
+    return tuple(itertools.chain(*found, _present_less(before, now), _listed_less(before, now)))
 
 
 def motion_shorter(before: FindingList, now: FindingList) -> Iterator[str]:
@@ -157,6 +160,16 @@ def _is_softer(old: _Limits, new: _Limits) -> bool:
 
 def _limits_text(limits: _Limits) -> str:
     return ", else ".join(f"{limit_mm(fail)} mm {when}".strip() for when, fail in limits)
+
+
+def _present_less(before: FindingList, now: FindingList) -> Iterator[str]:
+    """Robots and obstacles that are in the cell for less time than before; not those that are new."""
+    old = before.measured
+    known = {*_bodies(old.pairs), *(robot.name for robot in old.robots)}
+    for name, present in now.measured.present.items():
+        was = old.present.get(name, before.duration)
+        if name in known and present < was - TIME:
+            yield f"{name} is in the cell for {seconds(present)}, and was for {seconds(was)}"
 
 
 def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:

@@ -70,6 +70,7 @@ class MeasurementConditions:
         joints: what a joint beyond its limits is: "warn" or "fail". paddings: [m] of bodies that have one.
         moving: robots and obstacles with a motion of their own.
         tolerances: sha256 of the errors that were counted with; empty without any. errors: their sizes by name.
+        present: [s] how long robots and obstacles are in the cell that are not there all the time.
     """
 
     need: str
@@ -87,6 +88,7 @@ class MeasurementConditions:
     paddings: dict[str, float] = field(default_factory=dict, hash=False)
     moving: tuple[str, ...] = ()
     errors: dict[str, float] = field(default_factory=dict, hash=False)
+    present: dict[str, float] = field(default_factory=dict, hash=False)
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -121,7 +123,23 @@ def conditions_of(record: Record) -> MeasurementConditions:
         paddings=paddings_in(record.case),
         moving=tuple(_moving(record.case)),
         errors={name: size for name, size in _errors(record.case.tolerance) if size},
+        present=_present(record),
     )
+
+
+def _present(record: Record) -> dict[str, float]:
+    """[s] How long those are in the cell that some phase is without."""
+    case, found = record.case, dict[str, float]()
+    for phase in record.timeline.phases:
+        robots = (case.robots[i].robot.name for i in sorted(phase.absent_robots))
+        obstacles = (case.obstacles[i].name for i in sorted(phase.absent_obstacles))
+        found |= dict.fromkeys([*robots, *obstacles], 0.0)
+    for phase in record.timeline.phases if found else ():
+        gone = {case.robots[i].robot.name for i in phase.absent_robots}
+        gone |= {case.obstacles[i].name for i in phase.absent_obstacles}
+        for name in found.keys() - gone:
+            found[name] += phase.span[1] - phase.span[0]
+    return found
 
 
 def _moving(case: Case) -> Iterator[str]:

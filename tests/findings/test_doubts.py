@@ -16,6 +16,7 @@ from clearance.findings.findings_file import (
     findings_text,
     read_findings,
 )
+from clearance.findings.known_less import known_less
 from clearance.report.comparison_text import comparison_text, doubt_lines
 from clearance.run import Question, Run, answer
 from clearance.world.case import Clock, Limits
@@ -24,6 +25,7 @@ from clearance.world.rules import Rule
 from clearance.world.timing import Window
 from tests.findings.gates import load_gates
 from tests.findings.test_waivers import TODAY, waiver
+from tests.formats.making_cell import DOOR, load_cell
 
 A = "gate_a"
 CLEAR = {A: (-0.5, 0.05), "gate_b": (0.5, 0.05)}
@@ -248,3 +250,18 @@ def test_pairs_beyond_any_cell_are_refused(tmp_path):
     )
     with pytest.raises(BadInput, match=r"measured\.unmeasured.*2,250,000 pairs"):
         read_findings(tmp_path)
+
+
+def test_what_is_in_the_cell_for_less_time_is_known_less(tmp_path):
+    """The door's table was cut short: it is gone after 0.4 s, which says nothing of the rest."""
+    absent = "moves: door.csv", "moves: {file: door.csv, after: absent}"
+    cut = "\n".join(DOOR.splitlines()[:-1]) + "\n"
+    runs = [
+        cl.check(load_cell(tmp_path, *absent, door=door), certify=False) for door in (DOOR, cut)
+    ]
+    whole, short = (run.finding_list for run in runs)
+    assert whole.measured.present == {} and short.measured.present == {"door": 0.4}
+    (line,) = [one for one in known_less(whole, short) if "in the cell" in one]
+    assert line == "door is in the cell for 0.400 s, and was for 1.000 s"
+    assert not any("in the cell" in one for one in known_less(short, whole))
+    assert not any("in the cell" in one for one in known_less(short, short))
