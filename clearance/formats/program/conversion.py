@@ -305,7 +305,17 @@ class _Conversion:
         """A line each on what controllers may do otherwise, whatever confirms axes and base."""
         yield from self.arm.doubts_on_configurations(self._poses)
         yield from dict.fromkeys(self._stops.cut)
+        yield from self._doubts_on_others()
         yield from self.read.doubts
+
+    def _doubts_on_others(self) -> Iterator[str]:
+        """A line each on external axes that stand away from 0, and that no joint follows."""
+        for axis, value in self.others.items():
+            if axis not in self.arm.axes.external.values() and abs(value) > STANDS:
+                says = [axis in one.to.external for one in self._moves]
+                some = "" if all(says) else f" in {sum(says)} of {len(says)} targets alone"
+                text = f"external axis {axis} is at {value:g}{some}, and no joint follows it: it is taken to "
+                yield f"{text}stand, and to carry neither the robot nor the work"
 
     @cached_property
     def _poses(self) -> list[PoseTarget]:

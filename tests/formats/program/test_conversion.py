@@ -208,6 +208,27 @@ def test_times_rest_on_accelerations_unless_all_moves_say_them_or_their_time():
     assert made(HOME).is_rough and made(*known, replace(line, acceleration=None)).is_rough
 
 
+@pytest.mark.parametrize(
+    ("values", "told"),
+    [
+        ((1500.0, 1500.0), "external axis E1 is at 1500, and no joint follows it: it is taken to stand, and"),
+        ((None, -90.0), "external axis E1 is at -90 in 1 of 3 targets alone, and no joint follows it"),
+        ((0.0, 0.0), ""),
+        ((None, 0.0), ""),
+        ((None, None), ""),
+    ],
+)  # fmt: skip
+def test_an_external_axis_that_stands_away_from_0_without_a_joint_is_told(values, told):
+    ends = [{} if value is None else {"E1": value} for value in values]
+    moves = [
+        ControllerMove(Line(7), "lin", PoseTarget(at(0.5, 0.01 * i, 0.3), end), np.eye(4))
+        for i, end in enumerate(ends)
+    ]
+    home = replace(HOME, to=replace(AXES, external=ends[0]))
+    found = [one for one in made(home, *moves).assumed if "external axis" in one]
+    assert len(found) == bool(told) and all(told in one for one in found)
+
+
 def test_an_external_axis_that_moves_needs_a_joint():
     target = PoseTarget(at(0.5, 0.0, 0.3), {"E1": 0.0})
     one = ControllerMove(Line(7), "lin", target, np.eye(4))
