@@ -65,7 +65,7 @@ class AskedNeighbours:
                     fixed = case.robots[i].fixed_positions
                     stays = np.array([[fixed.get(name, 0.0) for name in pair.joints]])
                     self.at_rest += [one] if (one := pair.meets_at(stays)) else []
-                elif len(pair.joints) == 1:
+                elif pair.is_by_one_joint:
                     column = first + given.index(pair.joints[0])
                     self._watched.append(_Watched(pair, column, pair.free_range()))
             first += len(given)

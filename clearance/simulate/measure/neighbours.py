@@ -1,10 +1,11 @@
 """Links that one joint joins, which are excused since most touch always: those that meet or come below their fail
-limit, and are farther apart at home or at first.
+limit, and are farther apart at home or at first. Links that an SRDF calls `Adjacent` count, whatever joins them.
 
 How two such links lie depends on the position of their joint alone. From a position at which they are separate the
 joint goes on by their distance over the farthest point's arm, as often as they are farther apart than `GAP`. So no
-position passed meets, and the way between samples counts too. A joint of several degrees of freedom is checked at
-the steps only. Not for: pairs that are measured, and pairs that an SRDF excuses by another reason than `Adjacent`.
+position passed meets, and the way between samples counts too. A joint of several degrees of freedom, and several
+joints, are checked at the steps only. Not for: pairs that are measured, and pairs that an SRDF excuses by another
+reason than `Adjacent`.
 
 Source of the advancement: Mirtich 1996.
 """
@@ -86,6 +87,11 @@ class Neighbours:
         )
         return np.concatenate([*parts])
 
+    @property
+    def is_by_one_joint(self) -> bool:
+        """True if one joint of one degree of freedom moves one against the other."""
+        return len(self._chain.joints) == 1
+
     @cached_property
     def gap_at_home(self) -> float:
         """[m]"""
@@ -160,13 +166,11 @@ def excused_neighbours(case: Case, i_robot: int) -> Iterator[Neighbours]:
     placed = case.robots[i_robot]
     asked = placed.self_clearance
     number = {body.name: BodyIndex(i_robot, k) for k, body in enumerate(placed.robot.bodies)}
-    matrix = asked.matrix if asked else None
-    for one in self_pairs(placed.robot) if asked else ():
-        links = one.link_a, one.link_b
+    for one in self_pairs(placed.robot, asked.matrix) if asked else ():
         pair = number[one.link_a], number[one.link_b]
-        if one.excused not in (ADJACENT, PARENT) or {*links} & {*placed.exclude_links}:
+        if one.excused not in (ADJACENT, PARENT):
             continue
-        if matrix is not None and matrix.reason(*links) != ADJACENT:
+        if not {one.link_a, one.link_b}.isdisjoint(placed.exclude_links):
             continue
         names = [names_of(case, body) for body in pair]
         if not any(row.matches(*names) for row in case.allow if not row.when):
@@ -226,7 +230,7 @@ def _first_within(
     pair: Neighbours, motions: Sequence[Motion], first: np.ndarray, within: float
 ) -> tuple[np.ndarray, float, str] | None:
     """Where, when [s] and how well known two neighbours that are farther apart at first come within [m]."""
-    if len(pair.joints) > 1:
+    if not pair.is_by_one_joint:
         for motion in motions:
             positions = _positions(pair, motion)
             touching = np.flatnonzero(pair.gaps(positions) <= within + GAP)

@@ -15,7 +15,7 @@ import clearance as cl
 from clearance.formats.robot.compound_joints import chained
 from clearance.simulate.measure.neighbours import Neighbours
 from clearance.world.collision_matrix import PARENT, CollisionMatrix
-from clearance.world.robot import Joint, JointKind
+from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.rules import Allowance
 from tests.made_cases import at
 
@@ -146,6 +146,51 @@ def test_what_a_file_excuses_or_a_row_allows_is_told_of_no_more():
         assert len(told_of(replace(folded, robots=(filtered,)))) == n_told
     run = cl.check(folding([0.0, 2.9], matrix=CollisionMatrix()))
     assert run.status == "contact" and {run.worst["link"], run.worst["obstacle"]} == {"arm", "hand"}
+
+
+def test_what_an_srdf_calls_adjacent_is_looked_at_though_a_link_lies_between():
+    """A flange with a shape turns on the arm, and the hand is fixed to it."""
+    matrix = CollisionMatrix(disabled=(("arm", "hand", "Adjacent"), ("arm", "flange", "User")))
+    case = folding([0.0, 2.9], matrix=matrix)
+    (placed,) = case.robots
+    shoulder, wrist = placed.robot.joints
+    bolts = Joint("bolts", JointKind.FIXED, "flange", "hand", np.eye(4))
+    disc = cl.Body("flange", cl.box((0.02, 0.02, 0.02)))
+    robot = replace(
+        placed.robot,
+        link_names=("base", "arm", "flange", "hand"),
+        joints=(shoulder, replace(wrist, child="flange"), bolts),
+        bodies=(*placed.robot.bodies, disc),
+    )
+    (told,) = told_of(replace(case, robots=(replace(placed, robot=robot),)))
+    assert "arm - hand, 0.1 m apart at first, touch " in told
+    assert float(re.search(r"wrist = (\S+) rad", told)[1]) == pytest.approx(MEETS, abs=2e-3)
+
+
+def test_two_links_that_one_position_moves_by_two_joints_are_checked_at_the_steps():
+    """The flange turns on the arm, and the hand by as much again on the flange."""
+    matrix = CollisionMatrix(disabled=(("arm", "hand", "Adjacent"),))
+    case = folding([0.0, 1.0, 2.9], matrix=matrix)
+    (placed,) = case.robots
+    shoulder, wrist = placed.robot.joints
+    again = replace(
+        wrist,
+        name="again",
+        parent="flange",
+        parent_from_joint=np.eye(4),
+        mimic=Mimic("wrist", 1.0, 0.0),
+    )
+    robot = replace(
+        placed.robot,
+        link_names=("base", "arm", "flange", "hand"),
+        joints=(shoulder, replace(wrist, child="flange"), again),
+    )
+    case = replace(case, robots=(replace(placed, robot=robot),))
+    half = replace(placed.trajectory, positions=placed.trajectory.positions / 2.0)
+    (told,) = told_of(replace(case, robots=(replace(case.robots[0], trajectory=half),)))
+    assert "touch at a step, at wrist = 1.45 rad, at 4.000 s" in told
+    asked = replace(case, robots=(replace(case.robots[0], trajectory=None),))
+    assert cl.Checker(asked).notices == ()
 
 
 def test_a_configuration_in_which_neighbours_meet_is_warned_of_once(recwarn, monkeypatch):
