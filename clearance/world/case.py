@@ -300,7 +300,8 @@ class Case:
 
         Args:
             times: (n,) [s]. positions, velocities: (n, k) of `joint_names` [rad] or [m], and per second.
-            joint_names: those of the trajectory that it has, else all its moving joints that are not fixed.
+            joint_names: those of the trajectory that it has, in its order, else all its moving joints that are not
+                fixed. A note says where that order is not the one of the robot's file.
             robot: its name; needed only where there are several. wrap: as in `Trajectory`.
 
         Raises:
@@ -313,7 +314,13 @@ class Case:
         names = placed.joints_given if joint_names is None else tuple(joint_names)
         trajectory = Trajectory(times, names, positions, velocities, wrap=wrap)
         moved = replace(placed, trajectory=trajectory, trajectory_path="")
-        return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
+        robots = (*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :])
+        in_file = [joint.name for joint in placed.robot.moving_joints if joint.name in names]
+        if joint_names is not None or in_file == list(names):
+            return replace(self, robots=robots)
+        order = f"columns are taken in the order of the trajectory before: {', '.join(names)}"
+        note = f"{order}; the robot's file has another, and `joint_names` says which is meant"
+        return replace(self, robots=robots, notes=tuple(dict.fromkeys((*self.notes, note))))
 
 
 @once_a_cell(16)

@@ -70,6 +70,20 @@ def test_a_trajectory_is_replaced_in_the_order_of_the_one_before(given):
     assert given.robots[0].trajectory is asked
 
 
+def test_a_note_says_the_order_of_columns_where_it_is_not_that_of_the_robots_file(given):
+    """A table has its columns in any order. Who gives a planner's edge has the joints in that of the robot."""
+    names = given.robots[0].trajectory.joint_names
+    rows = np.zeros((2, len(names)))
+    assert given.with_trajectory([0.0, 1.0], rows).notes == given.notes
+    turned = given.with_trajectory([0.0, 1.0], rows, joint_names=names[::-1])
+    assert turned.notes == given.notes
+    again = turned.with_trajectory([0.0, 1.0], rows)
+    (note,) = set(again.notes) - set(given.notes)
+    said = f"columns are taken in the order of the trajectory before: {', '.join(names[::-1])}; "
+    assert note.startswith(said) and note.endswith("`joint_names` says which is meant")
+    assert again.with_trajectory([0.0, 1.0], rows).notes == again.notes
+
+
 @pytest.mark.parametrize(
     ("times", "positions", "options", "fault"),
     [
