@@ -116,3 +116,22 @@ def test_tolerances_and_paddings_that_widen_no_sweep_are_named_beside_the_answer
     first = capsys.readouterr().out.partition("\n")[0]
     assert first.endswith(", without the tolerances of the cases")
     assert json.loads((folder / "out" / "workspace.json").read_text())["without"] == "tolerances"
+
+
+def test_samples_that_are_too_far_apart_for_the_pieces_are_told(folder, capsys):
+    """An arm that turns by 2 rad in one step is held by one piece, whatever size is asked for."""
+    (folder / "arm.urdf").write_text(
+        URDF.replace("prismatic", "revolute").replace('<axis xyz="1 0 0"/>', '<axis xyz="0 0 1"/>')
+    )
+    for name in ("along", "across"):
+        path = folder / f"{name}.yaml"
+        path.write_text(path.read_text().replace("cart.urdf", "arm.urdf"))
+    said = (
+        "no piece is shorter than a step of its trajectory, so the 5 mm asked for are not reached"
+    )
+    assert run(["workspace", *paths(folder, "along", "across")]) == 0
+    assert said in capsys.readouterr().out
+    angles = [f"{i / 200},{-0.5 + 1.2 * i / 200}" for i in range(201)]
+    (folder / "path.csv").write_text("\n".join(["time,rail", *angles, ""]))
+    assert run(["workspace", *paths(folder, "along", "across")]) == 0
+    assert said not in capsys.readouterr().out
