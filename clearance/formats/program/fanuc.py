@@ -25,7 +25,7 @@ from clearance.formats.program.controller_program import (
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Constant, Name, Unknown, number
+from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
 from clearance.formats.program.fanuc_positions import Position
 from clearance.formats.program.fanuc_text import (
     DECIDING,
@@ -149,7 +149,7 @@ class _Fanuc(Language):
         if not kind or len(motion.points) != (2 if kind == "circ" else 1):
             fault = f"{call.name} with {len(motion.points)} points is not read"
             raise BadProgram(fault, valid="J and L with one, C with two")
-        ends = [self._target(name, one, kind, run) for name, one in motion.points]
+        ends = [self._target(point, motion.positions, kind, run) for point in motion.points]
         to, tool = ends[-1]
         return ControllerMove(
             line=call.line,
@@ -185,20 +185,27 @@ class _Fanuc(Language):
                 run.note(f"{what}: they move nothing", f"{name} ({call.line})")
 
     def _target(
-        self, name: str, one: Position | None, kind: str, run: Execution
+        self,
+        point: tuple[str, Expression],
+        positions: Mapping[int, Position],
+        kind: str,
+        run: Execution,
     ) -> tuple[Target, np.ndarray]:
         """The end of a motion, and the tool on the flange.
 
         Raises:
             BadProgram: no position, or one of other frames than those in force.
         """
+        word, by = point
+        index = number(run.evaluated(by), f"the number of {word}[…]")
+        name, is_own = f"{word}[{index:.17g}]", word == "P" and index.is_integer()
+        one = positions.get(int(index)) if is_own else None
         if name in run.variables or name in run.concurrent:
             raise BadProgram(
                 f"{name} is given a value before", valid="a point that no line changes"
             )
         if one is None:
-            is_register = name.startswith("PR")
-            fault = "a position register" if is_register else "no position of it under /POS"
+            fault = "a position register" if word == "PR" else "no position of it under /POS"
             raise BadProgram(f"{name}: {fault}", valid="use P[…] with a position in the file")
         untaught = [key for key, value in one.values.items() if value is None]
         is_joints = "J1" in one.values

@@ -84,7 +84,7 @@ _GRAMMAR = Grammar(
     fold=named,
 )
 
-_POINT = r"(PR?)\s*\[\s*([^\]:]*)(?::[^\]]*)?\]"
+_POINT = r"(PR?)\s*\[\s*(A?R\s*\[(?:[^\[\]]|\[[^\]]*\])*\]|[^\]:\[]*)(?::[^\]]*)?\]"
 _MOTION = re.compile(rf"([JLCAS])\s+{_POINT}(?:\s*{_POINT})?\s*(.*)", re.IGNORECASE | re.DOTALL)
 _SPEED = re.compile(
     r"\s*([0-9]+\.?[0-9]*|\.[0-9]+|A?R\s*\[[^\]]*\]|\w+)\s*(mm/sec|cm/min|inch/min|deg/sec|msec|sec|%)?\s*(.*)",
@@ -104,12 +104,13 @@ class Motion:
     """A motion instruction.
 
     Attributes:
-        points: where it goes, an arc by way of the first: a name, and the position if the file has one.
+        points: where it goes, an arc by way of the first: P or PR, and its number. positions: that the file has.
         unit: of its speed. end: how it ends (FINE, CNT50, CR10). options: words behind that. beside: what is
             done at a time or a place on its way (TB, TA, DB).
     """
 
-    points: tuple[tuple[str, Position | None], ...]
+    points: tuple[tuple[str, Expression], ...]
+    positions: Mapping[int, Position]
     unit: str
     end: str
     options: tuple[str, ...]
@@ -281,9 +282,9 @@ class _Reader(BlockReader):
         Raises:
             BadSyntax: no speed, or no end, as in a file that is cut off.
         """
-        points = [self._point(found[2], found[3])]
+        points = [(found[2].upper(), _condition(found[3], line))]
         if found[4] is not None:
-            points.append(self._point(found[4], found[5]))
+            points.append((found[4].upper(), _condition(found[5], line)))
         speed = _SPEED.fullmatch(found[6])
         end = None if speed is None else _END.match(speed[3])
         if speed is None or end is None:
@@ -293,15 +294,11 @@ class _Reader(BlockReader):
         options = tuple(_TIMED.sub("", further).upper().replace(",", " ").split())
         timed = (self._simple(line, one[3]) for one in _TIMED.finditer(further))
         unit = (speed[2] or "").lower()
-        motion = Motion(tuple(points), unit, named(end[1]), options, tuple(chain(*timed)))
+        motion = Motion(
+            tuple(points), self.positions, unit, named(end[1]), options, tuple(chain(*timed))
+        )
         args = (Constant(motion), _condition(speed[1], line))
         return Do(line, Call(found[1].upper(), args, {}, line))
-
-    def _point(self, kind: str, index: str) -> tuple[str, Position | None]:
-        """A point's name, and its position; none of a register, or of one that the file does not have."""
-        index, kind = index.strip(), kind.upper()
-        is_own = kind == "P" and re.fullmatch("[0-9]{1,9}", index)
-        return f"{kind}[{index}]", self.positions.get(int(index)) if is_own else None
 
 
 def _first(text: str) -> str:

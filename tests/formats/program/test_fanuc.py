@@ -130,6 +130,41 @@ def test_a_loop_counts_by_its_register_and_leaves_it_at_its_last_value(loop, end
     assert move.to.name == "P[3]"
 
 
+def test_a_register_may_hold_the_number_of_a_point():
+    body = f"""{FRAMES}FOR R[1:row]=2 TO 4 ;
+L P[R[1:row]] 100mm/sec FINE ;
+ENDFOR ;
+C P[R[1]:end] P[2] 100mm/sec FINE ;
+CALL SUB(3) ;
+"""
+    sub = listing("L P[AR[1]] 100mm/sec FINE ;", point(3, 0.0, 0.0)).replace("CELL", "SUB")
+    found = read("CELL.LS", listing(body), {"SUB.LS": sub.encode()}, **CASE).moves
+    assert [one.to.name for one in found] == ["P[2]", "P[3]", "P[4]", "P[2]", "P[3]"]
+    assert place(found[1]) == pytest.approx(
+        place(program(FRAMES + "L P[3] 9mm/sec FINE ;").moves[0])
+    )
+    assert place(found[4]) == pytest.approx([0.5, 0.0, 0.25]) and found[3].via.name == "P[4]"
+
+
+@pytest.mark.parametrize(
+    ("before", "motion", "told"),
+    [
+        ("", "L P[R[1]] 9mm/sec FINE ;", "the number of P[…] is not known: 'R[1]' is in no file"),
+        ("R[1]=GI[1] ;", "L P[R[1]] 9mm/sec FINE ;", "the number of P[…] is not known: only the controller"),
+        ("R[1]=2.5 ;", "L P[R[1]] 9mm/sec FINE ;", "P[2.5]: no position of it under /POS"),
+        ("R[1]=9 ;", "L P[R[1]] 9mm/sec FINE ;", "P[9]: no position of it under /POS"),
+        ("R[1]=2 ;", "L PR[R[1]] 9mm/sec FINE ;", "PR[2]: a position register"),
+        ("R[1]=2 ;\nP[2]=P[3] ;", "L P[R[1]] 9mm/sec FINE ;", "P[2] is given a value before"),
+        ("", "L P[2 9mm/sec FINE ;", "'L' is not understood"),
+        ("R[2]=2 ;", "L P[R[R[2]]] 9mm/sec FINE ;", "the number of P[…] is not known: 'R[R[2]]'"),
+    ],
+)  # fmt: skip
+def test_a_point_whose_number_is_not_known_or_has_no_position_is_refused(before, motion, told):
+    with pytest.raises(cl.ClearanceError, match=r"^CELL\.LS: ") as caught:
+        program(f"{FRAMES}{before}\n{motion}\n")
+    assert told in str(caught.value)
+
+
 def test_other_groups_and_axes_are_external():
     turned = "\n   GP2:\n\tUF : 1, UT : 1,\t\n\tJ1=    30.000 deg"
     rail = ",\n\tE1=   250.000  mm"
