@@ -28,7 +28,8 @@ ARM = TWO_JOINTS.replace(
     '<link name="tip"><collision><origin xyz="0 0 1.5"/><geometry><sphere radius="0.1"/></geometry>'
     "</collision></link>",
 )
-_HEAD, _, _TAIL = MESSAGE.partition("  attached_collision_objects:")
+HELD = MESSAGE.replace("- {link_name: ghost, padding: 1.0}\n", "")
+_HEAD, _, _TAIL = HELD.partition("  attached_collision_objects:")
 PLANNING = _HEAD + _TAIL[_TAIL.index("allowed_collision_matrix:") :]
 SRDF = """<robot name="arm"><disable_collisions link1="base" link2="upper" reason="Adjacent"/>
 <disable_collisions link1="upper" link2="tip" reason="Adjacent"/>
@@ -52,7 +53,7 @@ def cell(tmp_path, monkeypatch):
         "arm.urdf": ARM, "one.urdf": TWO_JOINTS, "arm.srdf": SRDF,
         "path.csv": PATH, "degrees.csv": DEGREES, "path.yaml": ROS2,
         "scene.yaml": SCENE, "door.csv": DOOR, "world.sdf": sdf(world(model(link(collision())))),
-        "case.yaml": CASE, "planning.yaml": PLANNING, "held.yaml": MESSAGE, "cell.scene": FIRST,
+        "case.yaml": CASE, "planning.yaml": PLANNING, "held.yaml": HELD, "cell.scene": FIRST,
     }  # fmt: skip
     (tmp_path / "cell").mkdir()
     for name, text in files.items():
