@@ -368,7 +368,7 @@ def _print_sweep(found, out: Path, uncounted: str) -> None:
         f"outlines {outer}, holes {holes}, {found.n_pieces} lines and arcs, "
         f"{found.length:.6g} m long, area {found.area:.6g} m2"
     )
-    click.echo(f"contains all that is swept, exceeds it by at most {1000 * found.bound:.4g} mm")
+    click.echo(f"contains {found.content}, exceeds it by at most {1000 * found.bound:.4g} mm")
     if uncounted:
         click.echo(f"without the {uncounted} of the case")
     if found.facets:

@@ -15,7 +15,6 @@ import numpy as np
 from clearance.errors import at
 from clearance.planar.deviation import deviation
 from clearance.planar.hausdorff import hausdorff
-from clearance.profiles.cross_section import NOT_CLOSED
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
@@ -97,10 +96,9 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
 
 
 def _open_cuts(space: ReservedSpace, swept: Profile) -> Iterator[Notice]:
-    for note in swept.notes:
-        if note.endswith(NOT_CLOSED):
-            text = f"profile {space.name!r}: {note}, without what it encloses"
-            yield Notice(Severity.WARNING, "profiles", text)
+    for note in swept.open_cuts:
+        text = f"profile {space.name!r}: {note}, without what it encloses"
+        yield Notice(Severity.WARNING, "profiles", text)
 
 
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):

@@ -15,10 +15,8 @@ from clearance.kernels.profile.swept_cover import Raster
 from clearance.kernels.profile.swept_cut import add_cut_cover, cut_hulls, cut_segments
 from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
+from clearance.profiles.profile import NOT_CLOSED
 from clearance.profiles.silhouette import CHUNK, Hulls, PlaneView
-
-NOT_CLOSED = "is not closed: its cut is that of its surface"
-"""The end of a note: what an open body encloses is not in its section."""
 
 
 class CrossSection(PlaneView):

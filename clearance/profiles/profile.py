@@ -30,6 +30,10 @@ class Origin:
     step: np.ndarray
 
 
+NOT_CLOSED = "is not closed: its cut is that of its surface"
+"""The end of a note: what an open body encloses is not in its section."""
+
+
 @dataclass(frozen=True, eq=False)
 class Profile:
     """The sweep of a motion in a plane, or any set of closed outlines.
@@ -75,6 +79,16 @@ class Profile:
         from clearance.profiles.region import region_of
 
         return region_of([contour.flattened(1e-6) for contour in self.contours])
+
+    @property
+    def open_cuts(self) -> tuple[str, ...]:
+        """The notes on bodies of which only the surface is cut."""
+        return tuple(note for note in self.notes if note.endswith(NOT_CLOSED))
+
+    @property
+    def content(self) -> str:
+        """What it contains for certain, in words."""
+        return "the surfaces that are swept" if self.open_cuts else "all that is swept"
 
     @property
     def n_pieces(self) -> int:

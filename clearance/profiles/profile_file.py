@@ -144,7 +144,7 @@ def svg_text(profile: Profile) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
         f'viewBox="{low[0]:.9g} {-high[1]:.9g} {width:.9g} {height:.9g}" style="{FITTING}">\n'
         f"<title>{escape(profile.name)}, {escape(profile.plane)}</title>\n"
-        f"<desc>contains all that is swept; exceeds it by at most {profile.bound * 1000:.4g} mm</desc>\n"
+        f"<desc>contains {profile.content}; exceeds it by at most {profile.bound * 1000:.4g} mm</desc>\n"
         f'<path transform="scale(1 -1)" d="{paths}" fill="#dbe7f5" fill-rule="evenodd" '
         f'stroke="#1f5fbf" stroke-width="{stroke:.3g}"/>\n</svg>\n'
     )

@@ -10,6 +10,7 @@ import clearance as cl
 from clearance.errors import BadShape
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.planar.curve import Curve
+from clearance.profiles.profile_file import svg_text
 from clearance.sketch import Sketch
 from clearance.world.body import Body, Obstacle
 from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
@@ -101,9 +102,13 @@ def test_nothing_is_said_where_nothing_is_left_out():
 def test_the_cut_of_an_open_arm_stands_in_the_headline():
     """A pin in the middle of the arm is clear of the arm's surface, and would not be of the arm."""
     faces = [face for face in ARM.triangles() if ARM.vertices[face, 0].min() < 0.5]
-    found = checked("inside", (0.005, 0.012), arm=Polyhedron(ARM.vertices, faces), section=0.05)
+    hollow = Polyhedron(ARM.vertices, faces)
+    found = checked("inside", (0.005, 0.012), arm=hollow, section=0.05)
     assert found.record.profiles[0].passed
     said = (
         "profile 'zone': l1 is not closed: its cut is that of its surface, without what it encloses"
     )
     assert warnings(found) == [said] and said in found.verdict.text()
+    for arm, held in ((hollow, "the surfaces that are swept"), (ARM, "all that is swept")):
+        swept = cl.swept_profile(turning(arm, [0.0, 0.5, 1.0]), section=0.05)
+        assert f"<desc>contains {held}; exceeds" in svg_text(swept)
