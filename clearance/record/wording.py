@@ -114,7 +114,9 @@ def padded_mm(moment: Moment, levels: Sequence[float] = ()) -> str:
     if not moment.touches and moment.padding >= SEEN_PADDING:
         padding = depth_mm(moment.padding)  # rounded up, as the clearance is rounded down
         return f"{text} ({mm(shapes)} mm less {padding} mm of padding)"
-    decides = any(moment.clearance < level <= shapes + EQUAL for level in levels)
+    decides = moment.padding > 0.0 and any(
+        moment.clearance < level <= shapes + EQUAL for level in levels
+    )
     if moment.touches or not decides:
         return text
     return f"{text} ({mm(shapes + EQUAL)} mm less {scientific_mm(moment.padding)} mm of padding)"

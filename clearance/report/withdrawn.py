@@ -19,7 +19,8 @@ OLDER_SUMMARY = "summary.older.json"
 _MARK = b'<header id="older">'
 _NOTE = _MARK + (
     b'<div class="title"><h1>Not finished</h1><p class="verdict violated">what follows is older</p></div>'
-    b'<ul class="beside"><li>A later run into this folder has not come to its end; the same command goes on. '
+    b'<ul class="beside"><li>A later run into this folder has not come to its end: it was refused, or it was '
+    b"stopped and the same command goes on. "
     b"This page shows the run before it.</li></ul></header>\n"
 )
 
