@@ -138,12 +138,7 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
         for name, position in zip(state.names, state.positions, strict=True):
             one = joints.setdefault(checked_name(name), _Joint([], [], [], []))
             if one.times and state.nanoseconds <= one.times[-1]:
-                raise BadTime(
-                    f"its time is not later than that of the message before with {name!r}",
-                    where=where,
-                    valid="times that increase: cut the bag where the clock was set back (rosbag filter, ros2 bag "
-                    "convert), or give a CSV of time and joints",
-                )
+                raise _not_later(name, where, is_same=state.nanoseconds == one.times[-1])
             if not math.isfinite(position):
                 one.unknown.append(i + 1)
                 one.lost.append(len(one.times) - 1)
@@ -151,6 +146,18 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
             one.times.append(state.nanoseconds)
             one.positions.append(position)
     return joints
+
+
+def _not_later(name: str, where: str, *, is_same: bool) -> BadTime:
+    """The error of a message that is not later than the one before with a joint."""
+    why = "a message was recorded twice" if is_same else "the clock was set back"
+    remedy = "leave out one of the two" if is_same else "cut the bag there"
+    return BadTime(
+        f"its time is not later than that of the message before with {name!r}",
+        where=where,
+        valid=f"times that increase: if {why}, {remedy} (rosbag filter, ros2 bag convert), or give a CSV of time "
+        "and joints",
+    )
 
 
 def _known_span(joints: Mapping[str, _Joint], *, stays_after_end: bool) -> tuple[int, int]:

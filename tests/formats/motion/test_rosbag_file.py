@@ -138,6 +138,9 @@ def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
     bag = write_bag(tmp_path / "a", "mcap", {"/joint_states": [STATES[1], STATES[0]]})
     with pytest.raises(BadTime, match=r"message 2: its time is not later than .* cut the bag"):
         read(bag)
+    twice = write_bag(tmp_path / "twice", "mcap", {"/joint_states": [STATES[0], STATES[0]]})
+    with pytest.raises(BadTime, match="if a message was recorded twice, leave out one of the two"):
+        read(twice)
     other = state(3, [0.0], ["gripper"])
     bag = write_bag(tmp_path / "b", "mcap", {"/joint_states": [*STATES, other]})
     with pytest.raises(
