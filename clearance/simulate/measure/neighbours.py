@@ -207,7 +207,7 @@ def neighbours_that_meet(phases: Sequence[Phase]) -> Iterator[Notice]:
 
 def _meeting(pair: Neighbours, motions: Sequence[Motion], within: float, come: str) -> str:
     """Where two neighbours are apart and come within [m], in words; empty if they are not, or do not."""
-    first, apart_from = _positions(pair, motions[0])[0], within + APART
+    first, apart_from = _positions(pair, motions[0])[0], max(within + GAP, APART)
     at_first = float(pair.gaps(first[None])[0])
     if max(at_first, pair.gap_at_home) <= apart_from:
         return ""

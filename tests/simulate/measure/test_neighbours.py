@@ -103,12 +103,13 @@ def test_neighbours_that_come_below_their_fail_limit_are_told_of_as_those_that_m
         (cl.Limits(fail=0.001, rules=(cl.Rule(("arm", "hand"), fail=0.04),)), 0.04),
         (cl.Limits(fail=0.04, rules=(cl.Rule(("arm", "hand"), fail=0.001),)), None),
         (cl.Limits(fail=0.001), None),
+        (cl.Limits(fail=0.098), 0.098),  # 2 mm above it at first
         (cl.Limits(fail=0.2), None),  # below it at home and at first: nothing is new
     ):
         told = told_of(replace(case, limits=limits))
         assert len(told) == (level is not None)
         for one in told:
-            assert "0.1 m apart at first, come below their fail limit of 40 mm" in one
+            assert f"0.1 m apart at first, come below their fail limit of {1e3 * level:g} mm" in one
             turn, time = map(float, re.search(r"wrist = (\S+) rad, at (\S+) s", one).groups())
             assert gap(turn) == pytest.approx(level, abs=1e-3)
             assert time == pytest.approx(turn, abs=3e-3)
