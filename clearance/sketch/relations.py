@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from clearance.errors import BadDimension, UnknownKey, at, nearest_name
+from clearance.errors import BadDimension, BadInput, UnknownKey, at, nearest_name
 from clearance.sketch.constraints import Constraint, form_of, measured
 from clearance.sketch.entities import Entity, Point
 from clearance.sketch.expression import evaluated, names_in
@@ -64,11 +64,25 @@ class Relations(Register):
         self.parameters[name] = number(value, name)
 
     def set(self, name: str, value: float | str) -> None:
-        """Changes a parameter or a dimension, and every dimension that is an expression of it.
+        """Changes a parameter or a dimension, and every dimension that is an expression of it, or nothing.
 
         Raises:
-            UnknownEntity: no parameter or dimension has this name.
+            UnknownEntity: no parameter or dimension has this name. BadDimension: a value that it, or one that
+                follows, may not have.
         """
+        parameters, users = dict(self.parameters), {k: [*v] for k, v in self._users.items()}
+        dimensions = [(c, c.given, c.number) for c in self.constraints.values()]
+        try:
+            self._set(name, value)
+        except BadInput:
+            self.parameters.clear()
+            self.parameters.update(parameters)
+            self._users = users
+            for constraint, given, now in dimensions:
+                constraint.given, constraint.number = given, now
+            raise
+
+    def _set(self, name: str, value: float | str) -> None:
         parameters, constraints = self.parameters, self.constraints
         if name in parameters:
             parameters[name] = number(value, name)

@@ -18,12 +18,15 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
-from clearance.errors import BadSyntax, MissingKey, UnknownKey, at, nearest_name
+from clearance.errors import BadSyntax, Contradiction, MissingKey, UnknownKey, at, nearest_name
 from clearance.files import write_file
 from clearance.plain_yaml import yaml_file
 from clearance.sketch.entities import Line
 
 _SECTIONS = ("parameters", "points", "lines", "segments", "circles", "arcs", "constraints")
+AS_DRAWN = 1e-6
+"""[-] How far the value that a file has of a driven dimension may be off, [m], [rad] or relative."""
+
 _FIELDS = {"kind", "of", "value", "name", "driven", "inside"}
 
 
@@ -133,7 +136,15 @@ def _constraint(sketch, entry) -> None:
             raise UnknownKey(f"unknown key {key!r}", valid=nearest_name(str(key), _FIELDS))
     of = entry["of"] if isinstance(entry["of"], list) else [entry["of"]]
     options = {k: entry[k] for k in ("value", "name", "driven", "inside") if k in entry}
-    sketch.add(str(entry["kind"]), *map(str, of), **options)
+    added = sketch.add(str(entry["kind"]), *map(str, of), **options)
+    if added.driven and isinstance(entry.get("value"), int | float):
+        drawn = sketch.value(added.name)
+        if not abs(entry["value"] - drawn) <= AS_DRAWN * (1.0 + abs(drawn)):
+            raise Contradiction(
+                f"{added.kind} {added.name} is driven, so {entry['value']:.9g} is not asked for: the drawing has "
+                f"{drawn:.9g}",
+                valid="leave out `driven` to ask for the value, or leave out the value",
+            )
 
 
 def write(sketch, path: Path) -> None:

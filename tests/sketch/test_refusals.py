@@ -54,14 +54,29 @@ def test_a_segment_that_is_refused_leaves_a_sketch_that_solves(s):
     assert s.solve().solved and math.dist(*(s.entity(e).position for e in "ab")) == 2.0
 
 
-def test_a_parameter_that_some_dimensions_refuse_changes_the_others(s):
+def test_a_change_that_some_dimensions_refuse_changes_nothing(s):
     s.parameter("w", 1.0)
     s.distance("a", "b", "w", name="width"), s.radius("c", "2 - w", name="r")
     assert s.solve().solved
     refused(lambda: s.set("w", 3.0), "radius r")
-    assert s.value("width") == 3.0
-    s.solve()
-    assert math.dist(*(s.entity(e).position for e in "ab")) == pytest.approx(3.0, rel=1e-12)
+    refused(lambda: s.set("width", "w - 5"), "distance width")
+    assert [s.value(name) for name in ("w", "width", "r")] == [1.0, 1.0, 1.0]
+    s.set("w", 0.5)
+    assert [s.value(name) for name in ("w", "width", "r")] == [0.5, 0.5, 1.5]
+    assert s.solve().solved
+    assert math.dist(*(s.entity(e).position for e in "ab")) == pytest.approx(0.5, rel=1e-12)
+
+
+def test_a_driven_dimension_with_another_value_than_is_drawn_is_refused(s, tmp_path):
+    s.distance("a", "b", name="width", driven=True)
+    file = tmp_path / "drawn.yaml"
+    s.save(file)
+    assert Sketch.load(file).value("width") == s.value("width")
+    text = file.read_text()
+    drawn = repr(s.value("width"))
+    assert text.count(f"value: {drawn}") == 1
+    file.write_text(text.replace(f"value: {drawn}", "value: 0.45"))
+    refused(lambda: Sketch.load(file), "distance width is driven", "0.45", "leave out `driven`")
 
 
 def test_kinds(s):
