@@ -32,6 +32,9 @@ _METRES = {
 _MOST_DEGREES = 36_000.0
 """An angle of an arc beyond a hundred turns has few digits, and is damage."""
 
+_FRAME = 16
+"""The flag of vertices that control the spline of a POLYLINE, whose curve has vertices of its own."""
+
 
 class Drawing(NamedTuple):
     """A curve, and whether the drawing names a unit, so that it is in metres."""
@@ -170,8 +173,8 @@ def _light_polyline(entity) -> Curve:
 def _polyline(entity) -> Curve:
     if not entity.is_2d_polyline:
         raise BadCurve("a polyline in space, a mesh or a polyface", valid="a polyline in the plane")
-    rows = [(*tuple(v.dxf.location)[:2], v.dxf.get("bulge", 0.0)) for v in entity.vertices]
-    return _bulged(rows, entity.is_closed)
+    drawn = [vertex.dxf for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
+    return _bulged([(*tuple(dxf.location)[:2], dxf.bulge) for dxf in drawn], entity.is_closed)
 
 
 def _spline(entity) -> Curve:
@@ -185,14 +188,15 @@ def _spline(entity) -> Curve:
 def _bulged(rows: list[tuple[float, float, float]], closed: bool) -> Curve:
     """The chain of segments and arcs of vertices (x, y, bulge); bulge = tan(sweep / 4), positive to the left."""
     if closed:
-        rows = [*rows, (rows[0][0], rows[0][1], 0.0)]
+        rows = [*rows, *rows[:1]]
     parts = []
     for (x0, y0, bulge), (x1, y1, _) in zip(rows[:-1], rows[1:], strict=True):
         if (x0, y0) == (x1, y1):
             continue
         parts.append(_bulge_arc(x0, y0, x1, y1, bulge) if bulge else Curve.line((x0, y0), (x1, y1)))
     if not parts:
-        raise BadCurve("a polyline of zero length", valid="at least two points that differ")
+        valid = "at least two points that differ, beside the frame of a spline"
+        raise BadCurve("a polyline of zero length", valid=valid)
     return Curve.chain(parts)
 
 

@@ -183,3 +183,37 @@ def test_what_is_hidden_in_a_drawing_is_no_silent_part_of_its_outline(tmp_path, 
     made.saveas(tmp_path / "d.dxf")
     with pytest.raises(BadCurve, match=r"an entity CIRCLE \(handle \w+\) " + why):
         read_dxf(tmp_path / "d.dxf")
+
+
+SQUARE = [(0, 0), (1000, 0), (1000, 1000), (0, 1000)]
+
+
+def spline_fitted(space, curve):
+    """A closed POLYLINE as others write it whose spline is on: the frame's vertices and those of its curve."""
+    made = space.add_polyline2d([], close=True, dxfattribs={"smooth_type": 6})
+    made.dxf.flags |= made.SPLINE_FIT_VERTICES_ADDED
+    made.append_vertices(SQUARE, {"flags": 16})
+    made.append_vertices(curve, {"flags": 8})
+
+
+def test_the_frame_of_a_polylines_spline_is_no_part_of_its_curve(tmp_path):
+    turns = [math.radians(9 * k) for k in range(40)]
+    curve = [(500 + 400 * math.cos(turn), 500 + 400 * math.sin(turn)) for turn in turns]
+    read = read_dxf(drawing(tmp_path, 4, lambda space: spline_fitted(space, curve)))
+    known = Curve.polyline(1e-3 * np.array(curve), closed=True)
+    assert hausdorff(read, known).distance <= 1e-12
+    assert read.is_closed and read.contour.max() == 0
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda space: spline_fitted(space, []),
+        lambda space: space.add_polyline2d([], close=True),
+    ],
+)
+def test_a_polyline_of_which_nothing_is_drawn_is_refused(tmp_path, draw):
+    with pytest.raises(
+        BadCurve, match=r"zero length; .* that differ, beside the frame of a spline"
+    ):
+        read_dxf(drawing(tmp_path, 4, draw))
