@@ -52,8 +52,8 @@ def read_drawing(path: str | PathLike[str]) -> Drawing:
     """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
 
     Raises: MissingFile, BadSyntax (not DXF, an unknown unit, or none of its entities is a curve), BadCurve (an
-        entity of another kind, one that is hidden, or one that lies outside the plane z = const), Unavailable (no
-        ezdxf).
+        entity of another kind, one that is hidden, a polyline with a width, or one that lies outside the plane
+        z = const), Unavailable (no ezdxf).
     """
     with importing("dxf", "a DXF drawing"):
         import ezdxf
@@ -167,6 +167,8 @@ def _circle(entity) -> Curve:
 
 
 def _light_polyline(entity) -> Curve:
+    ends = [width for pair in entity.get_points("se") for width in pair]
+    _require_no_width(entity, [entity.dxf.const_width, *ends])
     return _bulged([(x, y, bulge) for x, y, bulge in entity.get_points("xyb")], entity.closed)
 
 
@@ -174,7 +176,17 @@ def _polyline(entity) -> Curve:
     if not entity.is_2d_polyline:
         raise BadCurve("a polyline in space, a mesh or a polyface", valid="a polyline in the plane")
     drawn = [vertex.dxf for vertex in entity.vertices if not vertex.dxf.flags & _FRAME]
+    ends = [width for dxf in drawn for width in (dxf.start_width, dxf.end_width)]
+    _require_no_width(entity, [entity.dxf.default_start_width, entity.dxf.default_end_width, *ends])
     return _bulged([(*tuple(dxf.location)[:2], dxf.bulge) for dxf in drawn], entity.is_closed)
+
+
+def _require_no_width(entity, widths: list[float]) -> None:
+    """Nothing, if a polyline is drawn as its line: a wide one is a band, whose edges no contour here follows."""
+    widest = max(widths, key=abs)
+    if widest != 0.0:
+        problem = f"a polyline of width {widest:g} on layer {entity.dxf.layer!r}"
+        raise BadCurve(problem, valid="polylines of width 0, along the outline itself")
 
 
 def _spline(entity) -> Curve:

@@ -192,7 +192,7 @@ def spline_fitted(space, curve):
     """A closed POLYLINE as others write it whose spline is on: the frame's vertices and those of its curve."""
     made = space.add_polyline2d([], close=True, dxfattribs={"smooth_type": 6})
     made.dxf.flags |= made.SPLINE_FIT_VERTICES_ADDED
-    made.append_vertices(SQUARE, {"flags": 16})
+    made.append_vertices(SQUARE, {"flags": 16, "start_width": 9})
     made.append_vertices(curve, {"flags": 8})
 
 
@@ -217,3 +217,39 @@ def test_a_polyline_of_which_nothing_is_drawn_is_refused(tmp_path, draw):
         BadCurve, match=r"zero length; .* that differ, beside the frame of a spline"
     ):
         read_dxf(drawing(tmp_path, 4, draw))
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda space: space.add_lwpolyline(SQUARE, close=True, dxfattribs={"const_width": 100}),
+        lambda space: space.add_lwpolyline([(0, 0, 100, 0, 0), (1, 0)]),
+        lambda space: space.add_lwpolyline([(0, 0, 0, 100, 0), (1, 0)]),
+        lambda space: space.add_lwpolyline(
+            [(0, 0, 9, 100, 0), (1, 0)], dxfattribs={"const_width": 0}
+        ),
+        lambda space: space.add_polyline2d(SQUARE, dxfattribs={"default_start_width": 100}),
+        lambda space: space.add_polyline2d(SQUARE, dxfattribs={"default_end_width": 100}),
+        lambda space: space.add_polyline2d([(0, 0, 100, 0, 0), (1, 0, 0, 0, 0)], format="xyseb"),
+    ],
+)
+def test_a_polyline_with_a_width_is_refused(tmp_path, draw):
+    """It is drawn as a band that reaches half its width beyond the line that was read."""
+
+    def both(space):
+        space.add_circle((5, 5), 1)
+        draw(space).dxf.layer = "cut"
+
+    said = (
+        r"d\.dxf: \w+ \(handle \w+\): a polyline of width 100 on layer 'cut'; polylines of width 0"
+    )
+    with pytest.raises(BadCurve, match=said):
+        read_dxf(drawing(tmp_path, 4, both))
+
+
+def test_a_polyline_whose_widths_are_0_is_read(tmp_path):
+    def both(space):
+        space.add_lwpolyline(SQUARE, close=True, dxfattribs={"const_width": 0})
+        space.add_polyline2d(SQUARE, close=True, dxfattribs={"default_end_width": 0})
+
+    assert read_dxf(drawing(tmp_path, 4, both)).box == pytest.approx(np.array([[0, 0], [1, 1]]))
