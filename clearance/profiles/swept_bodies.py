@@ -113,16 +113,15 @@ def swept_bodies(
 
 
 def moving_but_not_swept(run: TimedCase, swept: Sequence[SweptBody]) -> list[str]:
-    """The names of obstacles that move by themselves at some time, and are not among the swept ones."""
-    labels = {one.label for one in swept}
+    """The names of obstacles that move by themselves at some time, and are not swept then."""
+    known = {(one.label, one.first) for one in swept}
     return [
         obstacle.name
         for i, obstacle in enumerate(run.case.obstacles)
-        if obstacle.name not in labels
-        and any(
+        if any(
             BodyIndex(OBSTACLE, i).frame_in(phase.case) != WORLD and link_below(phase, i) is None
             for phase in run.timeline.phases
-            if i not in phase.absent_obstacles
+            if i not in phase.absent_obstacles and (obstacle.name, phase.first) not in known
         )
     ]
 

@@ -203,6 +203,21 @@ def test_a_part_is_swept_only_while_it_is_carried():
     assert whole.area == pytest.approx(0.2 * 0.45, abs=1e-3)
 
 
+def test_a_part_that_goes_from_a_hand_to_a_truck_is_not_swept_on_the_truck():
+    case, turned = carrying(end=1.5), np.array([[0, 0, 0, 1.0]] * 2)
+    table = PoseTable(np.array([0.0, 2.0]), np.array([[0, 3.0, 0], [1.0, 3.0, 0]]), turned)
+    truck = Obstacle(Body("truck", cl.box((0.2, 0.2, 0.2))), moves=table)
+    carries = (*case.carries, Carry("part", "truck", Window(1.5)))
+    case = replace(case, obstacles=(*case.obstacles, truck), carries=carries)
+
+    def left_out(obstacles):
+        return cl.swept_profile(case, obstacles=obstacles).notes
+
+    assert left_out([]) == ("not swept, though moving by themselves: part, truck",)
+    assert left_out(["part"]) == ("not swept, though moving by themselves: truck",)
+    assert left_out(["part", "truck"]) == ()
+
+
 @pytest.mark.parametrize(("top", "kept"), [(1.15, True), (1.05, False)])
 def test_a_reserved_outline_is_held_against_what_is_in_hand_too(top, kept):
     """The part reaches y = 1.1 while it is carried."""
