@@ -92,13 +92,14 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
     )
     picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
     odd = notices_on_zone(case, space, curve, swept.curve, answer.gap)
-    return AnsweredProfile(answer, picture, (*odd, *_open_cuts(space, swept)))
+    return AnsweredProfile(answer, picture, (*odd, *_uncounted(space, swept)))
 
 
-def _open_cuts(space: ReservedSpace, swept: Profile) -> Iterator[Notice]:
-    for note in swept.open_cuts:
-        text = f"profile {space.name!r}: {note}, without what it encloses"
-        yield Notice(Severity.WARNING, "profiles", text)
+def _uncounted(space: ReservedSpace, swept: Profile) -> Iterator[Notice]:
+    """A warning on each thing of the motion that the sweep does not contain."""
+    open_cuts = (f"{note}, without what it encloses" for note in swept.open_cuts)
+    for note in (*open_cuts, *swept.left_out):
+        yield Notice(Severity.WARNING, "profiles", f"profile {space.name!r}: {note}")
 
 
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):

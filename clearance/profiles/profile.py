@@ -33,6 +33,9 @@ class Origin:
 NOT_CLOSED = "is not closed: its cut is that of its surface"
 """The end of a note: what an open body encloses is not in its section."""
 
+NOT_SWEPT = "not swept, though moving by themselves:"
+"""The start of a note: obstacles that no link carries and that nobody asked for."""
+
 
 @dataclass(frozen=True, eq=False)
 class Profile:
@@ -84,6 +87,11 @@ class Profile:
     def open_cuts(self) -> tuple[str, ...]:
         """The notes on bodies of which only the surface is cut."""
         return tuple(note for note in self.notes if note.endswith(NOT_CLOSED))
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """The note on obstacles that move by themselves and are not swept."""
+        return tuple(note for note in self.notes if note.startswith(NOT_SWEPT))
 
     @property
     def content(self) -> str:

@@ -18,7 +18,7 @@ from clearance.kernels.profile.swept_cover import Raster, row_sums
 from clearance.profiles.contour import Contour
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
-from clearance.profiles.profile import Origin, Profile
+from clearance.profiles.profile import NOT_SWEPT, Origin, Profile
 from clearance.profiles.region import (
     Region,
     covered_region,
@@ -121,7 +121,7 @@ def swept_profile(
     found = _swept(name, bodies, seen_on, section, tolerance, progress, parts)
     left_out = moving_but_not_swept(moved, bodies)
     if left_out:
-        text = f"not swept, though moving by themselves: {listed(left_out)}"
+        text = f"{NOT_SWEPT} {listed(left_out)}"
         found = replace(found, notes=(*found.notes, text))
     return found
 

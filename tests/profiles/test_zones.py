@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import clearance as cl
@@ -15,6 +16,8 @@ from clearance.sketch import Sketch
 from clearance.world.body import Body, Obstacle
 from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import ReservedSpace
+from clearance.world.mount import Mount
+from clearance.world.pose_table import PoseTable
 from tests.profiles.moving import slab, turning
 
 POST = Obstacle(Body("post", slab([0.3, -0.5, 0.0], [0.4, -0.4, 0.1])))
@@ -34,12 +37,20 @@ def squares(*spans: tuple[float, float]) -> Sketch:
 ARM = slab([0.0, -0.05, 0.0], [0.5, 0.05, 0.1])
 
 
-def checked(mode: str, *spans: tuple[float, float], arm=ARM, padding=0.0, tolerance=None, **given):
+def checked(
+    mode: str,
+    *spans: tuple[float, float],
+    arm=ARM,
+    padding=0.0,
+    tolerance=None,
+    obstacles=(POST,),
+    **given,
+):
     """An arm of 0.5 m that turns by 1 rad, and squares that it keeps to, or out of."""
     case = turning(arm, [0.0, 0.5, 1.0])
     space = ReservedSpace("zone", squares(*spans), mode=mode, **given)
     robots = tuple(replace(one, padding={"l1": padding}) for one in case.robots)
-    changes = {"robots": robots, "obstacles": (POST,), "tolerance": tolerance}
+    changes = {"robots": robots, "obstacles": obstacles, "tolerance": tolerance}
     return cl.check(replace(case, profiles=(space,), **changes))
 
 
@@ -112,3 +123,15 @@ def test_the_cut_of_an_open_arm_stands_in_the_headline():
     for arm, held in ((hollow, "the surfaces that are swept"), (ARM, "all that is swept")):
         swept = cl.swept_profile(turning(arm, [0.0, 0.5, 1.0]), section=0.05)
         assert f"<desc>contains {held}; exceeds" in svg_text(swept)
+
+
+def test_what_moves_by_itself_through_a_zone_stands_in_the_headline():
+    """A truck drives through the zone with a crate on it; the zone is held against the arm alone."""
+    ways = np.array([[-2.0, 0.4, 0.5], [2.0, 0.4, 0.5]]), np.tile([0.0, 0.0, 0.0, 1.0], (2, 1))
+    table = PoseTable(np.array([0.0, 2.0]), *ways)
+    truck = Obstacle(Body("truck", slab([-0.1] * 3, [0.1] * 3)), moves=table)
+    crate = Obstacle(Body("crate", slab([-0.1, -0.1, 0.1], [0.1, 0.1, 0.2])), mount=Mount("truck"))
+    found = checked("outside", (-0.55, 0.55), obstacles=(POST, truck, crate))
+    assert found.record.profiles[0].passed
+    said = "profile 'zone': not swept, though moving by themselves: truck, crate"
+    assert warnings(found) == [said] and said in found.verdict.text()
