@@ -27,6 +27,7 @@ from clearance.record.wording import (
     of_rule,
     padded_mm,
     span_text,
+    swept_text,
 )
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.rules import DEFAULT
@@ -114,8 +115,8 @@ def profile_text(answer: ProfileAnswer) -> str:
     """Whether a profile is kept, how close it comes, who and when."""
     verdict = "kept" if answer.passed else "NOT KEPT"
     what = "distance" if answer.mode == "nearest" else "gap"
-    at = "" if answer.section is None else f" at {answer.section:g} m"
+    swept = swept_text(answer.plane, answer.section, answer.links)
     return (
-        f"{answer.name} ({answer.mode}, {answer.plane}{at}): {verdict}, {what} {gap_text(answer.gap)} mm, "
+        f"{answer.name} ({answer.mode}, {swept}): {verdict}, {what} {gap_text(answer.gap)} mm, "
         f"limit {answer.limit * 1000:g} mm, {answer.link}, step {answer.step}"
     )

@@ -14,6 +14,7 @@ from clearance.record.record import ProfileAnswer, Record
 from clearance.record.rule_answer import MOST_NEAR_STEPS
 from clearance.record.session import Session
 from clearance.record.status import Status
+from clearance.record.wording import swept_text
 from clearance.world.notice import Severity
 
 
@@ -71,7 +72,6 @@ def why_incomplete(session: Session) -> str:
 def _of_profile(record: Record, answer: ProfileAnswer) -> Finding:
     status = Status.CLEAR if answer.passed else Status.VIOLATED
     name = FindingName(record.case.name, PROFILE, answer.name, (), 0)
-    at = "" if answer.section is None else f" at {answer.section:g} m"
     return Finding(
         id=name.id,
         kind=PROFILE,
@@ -86,7 +86,7 @@ def _of_profile(record: Record, answer: ProfileAnswer) -> Finding:
         warn=float(answer.limit),
         time=float(record.motions[0].times[answer.step]),
         step=int(answer.step),
-        text=f"{answer.mode}, {answer.plane}{at}",
+        text=f"{answer.mode}, {swept_text(answer.plane, answer.section, answer.links)}",
     ).with_moves(record.moves)
 
 

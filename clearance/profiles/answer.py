@@ -89,6 +89,7 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
         point_sketch=_pair(ends[1]),
         link=link,
         step=step,
+        links=space.links,
     )
     picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
     odd = notices_on_zone(case, space, curve, swept.curve, answer.gap)

@@ -110,7 +110,7 @@ class ProfileAnswer:
             is beyond it. For nearest the Hausdorff distance.
         bound: [m] the true gap is at most this much larger.
         point_sweep, point_sketch: [m] in the plane, where it is attained. link, step: who swept there.
-        picture: draws it as SVG, when a report asks for it.
+        links: names or patterns of the links that alone are judged; empty for all.
     """
 
     name: str
@@ -126,6 +126,7 @@ class ProfileAnswer:
     point_sketch: tuple[float, float]
     link: str
     step: int
+    links: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

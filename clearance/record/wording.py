@@ -160,6 +160,12 @@ def gap_text(gap: float) -> str:
     return mm(gap) if gap >= 0.0 else f"-{-gap * 1000:.3f}"
 
 
+def swept_text(plane: str, section: float | None, links: Sequence[str]) -> str:
+    """The sweep that a profile is held against: `xy`, `yz at 0.5 m`, `xy, only gripper`."""
+    at = "" if section is None else f" at {section:g} m"
+    return f"{plane}{at}, only {listed(links)}" if links else f"{plane}{at}"
+
+
 def moment_text(record: Record, moment: Moment) -> str:
     """When a moment is: `1.220 s, step 61`, or which steps it is between; and when its second body is there, if
     that has a clock of its own."""

@@ -9,6 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadShape
+from clearance.findings.limit_lines import profile_text
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.planar.curve import Curve
 from clearance.profiles.profile_file import svg_text
@@ -19,6 +20,7 @@ from clearance.world.case import ReservedSpace
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from tests.profiles.moving import slab, turning
+from tests.report.made import page_of, summary_of
 
 POST = Obstacle(Body("post", slab([0.3, -0.5, 0.0], [0.4, -0.4, 0.1])))
 
@@ -135,3 +137,17 @@ def test_what_moves_by_itself_through_a_zone_stands_in_the_headline():
     assert found.record.profiles[0].passed
     said = "profile 'zone': not swept, though moving by themselves: truck, crate"
     assert warnings(found) == [said] and said in found.verdict.text()
+
+
+@pytest.mark.parametrize(
+    ("links", "said"),
+    [((), "zone (outside, xy): kept"), (("l*",), "zone (outside, xy, only l*): kept")],
+)
+def test_the_links_that_alone_are_judged_are_said_wherever_the_answer_is(links, said):
+    found = checked("outside", (-0.55, 0.55), links=links)
+    (answer,) = found.record.profiles
+    assert profile_text(answer).startswith(said)
+    assert tuple(summary_of(found)["profiles"][0]["links"]) == links
+    (finding,) = [one for one in found.findings if one.kind == "profile"]
+    told = ("only l*" in finding.text, "xy, only l*" in page_of(found))
+    assert told == (bool(links), bool(links))

@@ -9,7 +9,7 @@ from typing import Any
 
 from clearance.findings.limit_lines import profile_text
 from clearance.record.record import ProfileAnswer
-from clearance.record.wording import gap_text
+from clearance.record.wording import gap_text, swept_text
 from clearance.report.blocks import At, Inline, Picture, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import step_link
@@ -51,10 +51,9 @@ def sections(content: PageContent) -> Iterator[Section]:
 
 
 def _row(answer: dict[str, Any]) -> Row:
-    cut = answer["section"]
     cells = [
         f"{answer['name']} ({answer['mode']})",
-        answer["plane"] if cut is None else f"{answer['plane']} at {cut:g} m",
+        swept_text(answer["plane"], answer["section"], answer["links"]),
         Inline("yes") if answer["passed"] else Inline("no", "text-violated"),
         number(gap_text(answer["gap"])),
         number(f"{answer['limit'] * 1000:g}"),
