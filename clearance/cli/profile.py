@@ -111,6 +111,8 @@ def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
     if found.gained is not None:
         yield f"  area      {found.lost:.6g}{square} only in A, {found.gained:.6g}{square} only in B"
     for side, drawn in (("A", found.a), ("B", found.b)):
+        if drawn.region_fault:
+            yield f"  note      no areas: {drawn.region_fault}"
         if drawn.profile is not None:
             yield f"  sweep {side}   exceeds what is swept by at most {scale * drawn.profile.bound:.4g}{unit}"
     for one in found.beyond[:MOST_BEYOND]:

@@ -46,7 +46,7 @@ class OutlineComparison:
     Attributes:
         found: the Hausdorff distance, both ways, with witnesses and proven error.
         forth, back: deviation along a from b and along b from a.
-        gained, lost: area of b outside a and of a outside b; None where a contour is open.
+        gained, lost: area of b outside a and of a outside b; None where either encloses no region.
         beyond: stretches beyond `limit`, in order along a and then b.
         makers: for "a" and "b" the link and step that made the worst point there, where it is a sweep.
     """
@@ -89,7 +89,7 @@ def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> 
     forth = deviation(a.curve, b.curve, limit=limit, samples=SAMPLES)
     back = deviation(b.curve, a.curve, limit=limit, samples=SAMPLES)
     gained = lost = None
-    if a.curve.is_closed and b.curve.is_closed:
+    if not (a.region_fault or b.region_fault):
         from clearance.profiles.region import area, difference
 
         gained, lost = area(difference(b.region, a.region)), area(difference(a.region, b.region))

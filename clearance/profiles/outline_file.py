@@ -53,6 +53,19 @@ class DrawnOutline:
         require_closed(self.curve, self.name)
         return region_of(rings_of_curve(self.curve))
 
+    @cached_property
+    def region_fault(self) -> str:
+        """Why the contours enclose no region, as one is open or two overlap; "" if they do."""
+        from clearance.profiles.gap import ClosedContours
+
+        try:
+            require_closed(self.curve, self.name)
+            if self.profile is None:
+                ClosedContours.of_curve(self.curve).require_apart(self.name)
+        except BadShape as fault:
+            return str(fault)
+        return ""
+
 
 def require_closed(curve: Curve, name: str) -> None:
     """Nothing, if every contour ends where it starts.

@@ -68,7 +68,7 @@ def picture_bytes(
     size = (width * scale + 4.2, max(height * scale, 3.0) + 1.2)
     figure = _new_figure(size)
     whole, near = figure.subplots(1, 2, width_ratios=[max(width * scale, 2.0), 3.2])
-    fill = a.curve.is_closed and b.curve.is_closed
+    fill = not (a.region_fault or b.region_fault)
     for axes in (whole, near):
         _fill(axes, a, b, ends, shade if fill else None)
     whole.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")

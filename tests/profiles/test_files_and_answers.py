@@ -1,6 +1,7 @@
 """Profiles through files and the command line, two compared, and what `check` says of a case's profiles."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -144,6 +145,40 @@ def test_a_comparison_says_its_decision_first_and_lengths_with_their_unit(tmp_pa
     assert within.output.startswith(
         "within 0.0051 (unit of the files): the outlines differ by 0.005 "
     )
+
+
+RING = [[0, 0], [1, 0], [1, 1], [0, 1]]
+ASIDE = [[0.5, 0], [1.5, 0], [1.5, 1], [0.5, 1]]
+
+
+@pytest.mark.parametrize(
+    ("second", "closed", "why"),
+    [
+        (RING, True, r"one\.yaml: contours 1 and 2 overlap, as at .*, which leaves open what is inside"),
+        (ASIDE, True, r"one\.yaml: contours 1 and 2 overlap"),
+        (ASIDE, False, r"one\.yaml: contour 2 is open: it ends 1 away from its start"),
+    ],
+)  # fmt: skip
+def test_contours_that_enclose_no_region_have_no_areas_and_the_comparison_says_why(
+    tmp_path, second, closed, why
+):
+    """Parity would say that the same square twice encloses nothing, beside a distance of 0 to the square."""
+    one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
+    ring = f"{{polyline: {{points: {RING}, closed: true}}}}"
+    other = f"{{polyline: {{points: {second}, closed: {str(closed).lower()}}}}}"
+    one.write_text(f"curves: [{ring}, {other}]\n")
+    two.write_text(f"curves: [{ring}]\n")
+    for paths in ((one, two), (two, one)):
+        out = CliRunner().invoke(
+            command, ["profile", "compare", *map(str, paths), "--out", str(tmp_path / "d")]
+        )
+        assert out.exit_code == 0 and "  area " not in out.output
+        assert re.search("  note      no areas: " + why, out.output)
+        found = json.loads((tmp_path / "d" / "comparison.json").read_text())
+        assert found["area_gained"] is found["area_lost"] is None
+        assert "only in" not in (tmp_path / "d" / "comparison.svg").read_text()
+    out = CliRunner().invoke(command, ["profile", "compare", str(two), str(two)])
+    assert "  area      0 only in A" in out.output and "note" not in out.output
 
 
 def sweep(case, *asked, **cut):
