@@ -89,7 +89,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                 )
         entry = asked.asked.entry
         entry = entry_of("procedure", files.public, entry, (entry or "").upper(), files.public[0])
-        run.run(files.routines[entry].body)
+        run.enter(files.routines[entry])
         run.require_all()
         bodies = [routine.body for routine in files.routines.values()]
         unread = [*not_followed(bodies, run)]
