@@ -41,7 +41,7 @@ GIVEN = {
     "CL430": "neighbours", "CL431": "columns",
     "CL501": "clearance", "CL502": "profile",
     "CL510": "unused waiver", "CL511": "BadWaiver", "CL512": "waivers", "CL520": "NothingToMeasure",
-    "CL521": "pairs", "CL522": "paper", "CL523": "rules", "CL524": "profiles",
+    "CL521": "pairs", "CL522": "paper", "CL523": "rules", "CL524": "profiles", "CL525": "sketch",
     "CL530": "surroundings", "CL531": "self-collision", "CL532": "floor and walls", "CL601": "unproven",
     "CL602": "tolerances", "CL603": "tolerances of waived", "CL604": "BadTolerance",
     "CL605": "unproven motion", "CL610": "certificate", "CL611": "contact",

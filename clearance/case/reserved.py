@@ -33,7 +33,7 @@ def reserved_spaces(
                 raise DuplicateName(f"the name {entry.name!r} is taken", where="name")
             with at("links"):
                 require_link_patterns(entry.links, links)
-            sketch = _sketch(resolved(entry.sketch, folder), files)
+            sketch, drift = _sketch(resolved(entry.sketch, folder), files)
             made.append(
                 ReservedSpace(
                     entry.name,
@@ -43,12 +43,14 @@ def reserved_spaces(
                     entry.mode,
                     entry.limit,
                     tuple(entry.links),
+                    drift,
                 )
             )
     return tuple(made)
 
 
-def _sketch(path: Path, files: InputFiles) -> Sketch:
+def _sketch(path: Path, files: InputFiles) -> tuple[Sketch, float]:
+    """A solved sketch, and how far it is from where it is drawn [m] though nothing fixes it."""
     from clearance.sketch import Sketch
 
     with at("sketch"):
@@ -62,4 +64,4 @@ def _sketch(path: Path, files: InputFiles) -> Sketch:
                 raise BadShape(
                     "an open contour", valid="closed contours, since a region is asked for"
                 )
-    return sketch
+    return sketch, result.drift

@@ -23,6 +23,9 @@ from clearance.world.phase import Phase
 from clearance.world.plausible_sizes import FAR_OFF, far_off_notice
 from clearance.world.rules import Rule
 
+ROUNDED = 1e-4
+"""[m] Coordinates that a sketch's file rounds may be off by as much."""
+
 _BY_PAPER = Notice(
     Severity.WARNING,
     "paper",
@@ -42,7 +45,7 @@ def notices_of(
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_idle_rules(question.case, plan)]
     empty += _waivers_of_all(question.case)
-    empty += _profiles_without(question.case)
+    empty += [*_profiles_without(question.case), *_sketches_that_slid(question.case)]
     empty += _far_off(question.case, found)
     empty += notices_on_carries(phases) if question.case.carries else ()
     empty += neighbours_that_meet(phases)
@@ -103,6 +106,15 @@ def _profiles_without(case: Case) -> Iterator[Notice]:
         yield Notice(
             Severity.WARNING, "profiles", f"{text}; give them a limit of what these may add"
         )
+
+
+def _sketches_that_slid(case: Case) -> Iterator[Notice]:
+    """A warning on each sketch that is judged at another place than its file draws, though nothing fixes it."""
+    for space in case.profiles:
+        if space.drift > ROUNDED:
+            zone = f"the sketch of profile {space.name!r} is up to {1000 * space.drift:.3g} mm"
+            text = f"{zone} from where it is drawn, and nothing fixes it; fix the corner that is to stay"
+            yield Notice(Severity.WARNING, "sketch", text)
 
 
 def _far_off(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:

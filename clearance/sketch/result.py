@@ -87,6 +87,14 @@ class SketchResult:
         return float(np.linalg.norm(shift))
 
     @cached_property
+    def drift(self) -> float:
+        """[m] the largest shift of a point, where no entity is fixed; 0 where one is."""
+        if any(one.kind == "fix" for one in self.sketch._lists.constraints):
+            return 0.0
+        role, shift = self._problem.tables.role, self._outcome.x - self._before
+        return float(np.hypot(shift[role == X], shift[role == Y]).max(initial=0.0))
+
+    @cached_property
     def plan(self) -> list[Step]:
         """The construction plan, step by step."""
         return readable(self.sketch, self._problem, self._outcome.fates)

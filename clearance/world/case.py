@@ -149,6 +149,7 @@ class ReservedSpace:
             differ by no more than the limit.
         limit: [m] the least gap (outside, inside) or the greatest distance (nearest).
         links: names; empty for all.
+        drift: [m] how far points of a sketch without a fixed entity moved when its file was solved.
     """
 
     name: str
@@ -158,6 +159,7 @@ class ReservedSpace:
     mode: str = "outside"
     limit: float = 0.0
     links: tuple[str, ...] = ()
+    drift: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -36,8 +36,8 @@ WARNED_TOO = ("units", "limits", "gaps", "clocks", START)
 
 WARNINGS = (
     "geometry", "equality", "scene", "padding", "reach", "scan", "program", "carry", "rest", "neighbours",
-    "columns", "recorded run", "pairs", "rules", "profiles", "waivers", "paper", "certificate", "contact",
-    "cross-check",
+    "columns", "recorded run", "pairs", "rules", "profiles", "sketch", "waivers", "paper", "certificate",
+    "contact", "cross-check",
 )  # fmt: skip
 """Kinds of warnings alone, which a case can accept too: where warnings fail, these do not then."""
 

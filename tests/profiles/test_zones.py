@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.case.reserved import reserved_spaces
 from clearance.errors import BadShape
 from clearance.findings.limit_lines import profile_text
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.schema.case import Profile
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.planar.curve import Curve
 from clearance.profiles.profile_file import svg_text
@@ -151,3 +154,35 @@ def test_the_links_that_alone_are_judged_are_said_wherever_the_answer_is(links, 
     (finding,) = [one for one in found.findings if one.kind == "profile"]
     told = ("only l*" in finding.text, "xy, only l*" in page_of(found))
     assert told == (bool(links), bool(links))
+
+
+ZONE = """\
+points: {a: [-0.6, -0.6], b: [0.6, -0.6], c: [0.6, 0.6], d: [-0.6, 0.6]}
+segments: {s: [a, b], e: [b, c], n: [c, d], w: [d, a]}
+constraints:
+- {kind: horizontal, of: [s]}
+- {kind: horizontal, of: [n]}
+- {kind: vertical, of: [e]}
+- {kind: vertical, of: [w]}
+- {kind: distance, of: [a, b], value: WIDTH, name: width}
+"""
+FIXED = "- {kind: fix, of: [a]}\n"
+SLID = "the sketch of profile 'zone' is up to 20 mm from where it is drawn, and nothing fixes it"
+
+
+@pytest.mark.parametrize(
+    ("width", "fixed", "said"),
+    [("1.16", "", [SLID]), ("1.16", FIXED, []), ("1.2", "", []), ("1.2001", "", [])],
+)
+def test_a_zone_that_slides_when_its_width_is_edited_stands_in_the_headline(
+    width, fixed, said, tmp_path
+):
+    """Both ends give way by half of the change, where one may be a wall."""
+    (tmp_path / "zone.yaml").write_text(ZONE.replace("WIDTH", width) + fixed)
+    entry = Profile(name="zone", sketch="zone.yaml")
+    profiles = reserved_spaces([entry], tmp_path, InputFiles(tmp_path), ["l1"])
+    case = replace(turning(ARM, [0.0, 0.5, 1.0]), obstacles=(POST,), profiles=profiles)
+    found = cl.check(case)
+    told = [one.text for one in found.record.notices if one.kind == "sketch"]
+    assert [one.split(";")[0] for one in told] == said
+    assert all(one in found.verdict.text() for one in said)
