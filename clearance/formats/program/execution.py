@@ -186,7 +186,8 @@ class Execution(Remarks):
 
     def _misspelt(self, name: str) -> str:
         """The variable that is perhaps meant; empty if none is near."""
-        hint = nearest_name(name, {*self.frames[-1], *self.variables})
+        known = (*self.frames[-1], *self.variables)
+        hint = nearest_name(name, {one for one in known if str(one) != str(name)})
         return hint if hint.startswith("did") else ""
 
     def result_of(self, call: Call) -> Any:

@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import PurePosixPath
 from typing import Any
 
 import numpy as np
@@ -29,8 +30,10 @@ from clearance.formats.program.expressions import Call, Expression, Name, Unknow
 from clearance.formats.program.krl_expressions import (
     AGGREGATE,
     FRAME,
+    GRAMMAR,
     MM,
     MOVES,
+    OF,
     QUIET,
     SPLINE,
     SYSTEM,
@@ -78,7 +81,9 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
     with at(asked.shown):
         files = files_of(asked)
         language = _Krl(asked.asked)
-        skip = frozenset(name.upper() for name in asked.asked.skip)
+        of_module = f"{OF}{PurePosixPath(asked.shown).stem}"
+        names = (name for one in asked.asked.skip for name in (one, one + of_module))
+        skip = frozenset(GRAMMAR.folded(name) for name in names)
         run = Execution(language, files.routines, skip)
         run.variables |= first_variables(asked.asked, run)
         run.run(files.declared)
@@ -87,9 +92,9 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                 run.persistent.put(
                     one.target.name, f"{one.target.name} ({one.line})", run.variables
                 )
-        entry = asked.asked.entry
-        entry = entry_of("procedure", files.public, entry, (entry or "").upper(), files.public[0])
-        run.enter(files.routines[entry])
+        entry, own = asked.asked.entry, {str(name): name for name in files.public}
+        entry = entry_of("procedure", [*own], entry, (entry or "").upper(), files.public[0])
+        run.enter(files.routines[own[entry]])
         run.require_all()
         bodies = [routine.body for routine in files.routines.values()]
         unread = [*not_followed(bodies, run)]
@@ -178,7 +183,7 @@ class _Krl(Language):
         elif call.name == SPLINE:
             raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
         elif call.args:  # an interrupt or a trigger, and what it calls
-            (called,) = (str(run.evaluated(one)) for one in call.args)
+            (called,) = (run.evaluated(one) for one in call.args)
             if called != SYSTEM:
                 run.run_concurrently(call.name, called)
             run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
@@ -351,7 +356,7 @@ def _aggregate(value: Any) -> Aggregate:
 
 
 def _name_of(one: Expression) -> str:
-    return one.name if isinstance(one, Name) else ""
+    return str(one.name) if isinstance(one, Name) else ""
 
 
 def _numeric(value: Any) -> float:

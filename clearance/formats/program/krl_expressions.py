@@ -23,7 +23,7 @@ from clearance.formats.program.expressions import (
     ExpressionReader,
     Unknown,
 )
-from clearance.formats.program.grammar import Grammar, numeric, ranked
+from clearance.formats.program.grammar import Grammar, Spelled, numeric, ranked
 from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 from clearance.geometry.pose import pose_from_rpy
 
@@ -148,6 +148,16 @@ def _of(kind: type, act: Callable[..., Any]) -> Callable[..., Any]:
     return acted
 
 
+OF = " of "
+"""Between a name that only its module knows and the module: no word of a file has it."""
+
+
+def _folded(name: str) -> str:
+    """A name as it is compared; messages do not show its module."""
+    written, of, _ = name.upper().partition(OF.upper())
+    return Spelled(name.upper(), written) if of else written
+
+
 GRAMMAR = Grammar(
     binary=ranked(
         *("== <> < > <= >=", "OR B_OR", "EXOR B_EXOR", "AND B_AND", "+ -", "* /", ":"),
@@ -166,7 +176,7 @@ GRAMMAR = Grammar(
     },
     constants={"TRUE": True, "FALSE": False},
     leaves_out=True,
-    fold=str.upper,
+    fold=_folded,
 )
 
 

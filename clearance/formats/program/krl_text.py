@@ -25,6 +25,7 @@ from clearance.formats.program.krl_expressions import (
     GRAMMAR,
     MOVES,
     NOTHING,
+    OF,
     QUIET,
     SPLINE,
     TYPES,
@@ -36,6 +37,7 @@ from clearance.formats.program.krl_expressions import (
     called_beside,
     parameters_of,
 )
+from clearance.formats.program.krl_settings import FIRST
 from clearance.formats.program.statements import (
     BREAK,
     RETURN,
@@ -115,8 +117,9 @@ class _Reader(BlockReader):
             if self.cursor.next.kind != END:
                 is_public = self.cursor.next.line in self._public
                 routine = self._routine()
-                routines.setdefault(routine.name.upper(), routine)
-                public.update([routine.name.upper()] if is_public else [])
+                name = GRAMMAR.folded(routine.name)
+                routines.setdefault(name, routine)
+                public.update([name] if is_public else [])
         return Module(routines, (*public, *[*routines][:1]), tuple(declared))
 
     def _routine(self) -> Routine:
@@ -148,7 +151,7 @@ class _Reader(BlockReader):
     def statement(self) -> list[Statement]:
         """The statements of the next line, and of the block that begins there."""
         cursor, first = self.cursor, self.cursor.next
-        word, line = first.text.upper(), first.line
+        word, line = GRAMMAR.folded(first.text), first.line
         if cursor.accept(*_BLOCKS):
             return [self._block(word, line)]
         row = self._row()
@@ -319,9 +322,10 @@ def files_of(asked: ProgramRequest) -> Module:
     for file, data in (*asked.beside.items(), ("", asked.data)):
         stem = PurePosixPath(file or asked.shown).stem.upper()
         groups.setdefault(stem, []).append([*_rows(data, file)])
-    own = groups.pop(PurePosixPath(asked.shown).stem.upper())
+    module = PurePosixPath(asked.shown).stem.upper()
+    own = groups.pop(module)
     modules = [one for name, group in groups.items() for one in _modules(name, group, types)]
-    mine = [_module_of(rows, types) for rows in own]
+    mine = _modules(module, own, types, {*FIRST})
     if not mine[-1].routines:
         raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
     every = (*modules, *mine)
@@ -330,15 +334,23 @@ def files_of(asked: ProgramRequest) -> Module:
     return Module(routines, tuple(mine[-1].routines), declared)
 
 
-def _modules(name: str, group: list[list[list[Token]]], types: dict[str, str]) -> list[Module]:
-    """The files of a module beside the program; names that are its own have the module's behind them.
+def _modules(
+    name: str,
+    group: list[list[list[Token]]],
+    types: dict[str, str],
+    of_all: Collection[str] = (),
+) -> list[Module]:
+    """The files of a module; names that are its own have the module's behind them.
 
     Data without procedures (`$config.dat`) are for all.
+
+    Args:
+        of_all: variables of the controller, which the program's own data may give without a file of them.
     """
     plain = [_module_of(rows, {}) for rows in group]
     own = set[str]()
     if any(module.routines for module in plain):
-        own = {one for module in plain for one in _own_names(module)}
+        own = {one for module in plain for one in _own_names(module)}.difference(of_all)
     return [_module_of([_named(row, own, name) for row in rows], types) for rows in group]
 
 
@@ -347,7 +359,8 @@ def _own_names(module: Module) -> set[str]:
     statements = [one for one in module.declared if isinstance(one, Assign) and not one.is_of_all]
     names = [assigned(one.target) for one in statements]
     private = module.routines.keys() - {*module.public}
-    return {one.name for one in names if one is not None} | private
+    variables = {one.name for one in names if one is not None and not one.name.startswith("$")}
+    return variables | private
 
 
 def _rows(data: bytes, file: str) -> Iterator[list[Token]]:
@@ -361,11 +374,15 @@ def _rows(data: bytes, file: str) -> Iterator[list[Token]]:
 
 def _named(words: list[Token], own: set[str], module: str) -> list[Token]:
     """Words, in which a module's own names have its name behind them; parts of aggregates are no such names."""
-    found, depth = list[Token](), 0
+    found, opened = list[Token](), list[str]()
     for i, one in enumerate(words):
-        depth += (one.text == "{") - (one.text == "}")
-        before = words[i - 1].text if i else ""
-        is_part = before == "." or (depth > 0 and before in ("{", ","))
+        if one.text in ("{", "[", "("):
+            opened.append(one.text)
+        elif one.text in ("}", "]", ")") and opened:
+            opened.pop()
+        before = [word.text for word in words[max(0, i - 3) : i]]
+        begins = before[-1:] in (["{"], [","]) or (before[:1] == ["{"] and before[2:] == [":"])
+        is_part = before[-1:] == ["."] or (opened[-1:] == ["{"] and begins)
         is_own = one.kind == "name" and not is_part and one.text.upper() in own
-        found.append(one._replace(text=f"{one.text} of {module}") if is_own else one)
+        found.append(one._replace(text=f"{one.text}{OF}{module}") if is_own else one)
     return found

@@ -35,3 +35,59 @@ def test_a_variable_of_a_procedure_is_not_known_in_those_that_it_calls(place):
         cl.ClearanceError, match=r"line 11: Y of the target is not known: 'M' is in"
     ):
         heights(body, sub.replace("m=150\n", ""))
+
+
+B = f"DEF b()\nLIN {at(0)}\nc()\nEND\n"
+C = f"DEF c()\nLIN {at(300)}\nEND\n"
+OWN = f"DEF c()\nLIN {at(11)}\nEND"
+
+
+def test_a_subprogram_is_known_in_its_own_file_only_unless_it_is_global():
+    body = f"{FRAMES}c()\nb()"
+    assert heights(body, OWN, b_src=B, c_src=C) == [11, 0, 300]
+    assert heights(f"{FRAMES}b()\nc()", f"GLOBAL {OWN}", b_src=B) == [0, 11, 11]
+    with pytest.raises(cl.ClearanceError, match=r"b.src line 3: 'C' .*beside: \[C.src\]"):
+        heights(body, OWN, b_src=B)
+    what = "INTERRUPT DECL 9 WHEN $IN[1] DO c()\n"
+    with pytest.raises(cl.ClearanceError, match="'C' moves the robot, or may"):
+        heights(f"{FRAMES}{what}b()", OWN, b_src=B, c_src=C.replace("LIN", ";LIN"))
+
+
+def test_the_case_names_the_subprograms_of_the_file():
+    quiet = "DEF c()\nWAIT FOR $IN[1]\nEND\n"
+    beside = {"b.src": B.encode()}
+    text = f"DEF a()\n{FRAMES}c()\nLIN {at(7)}\nEND\n{quiet}DEF d()\n{FRAMES}LIN {at(5)}\nEND\n"
+    assert len(read("a.src", text, beside, skip=["c"]).moves) == 1
+    (move,) = read("a.src", text, beside, entry="d").moves
+    assert move.to.pose[1, 3] == pytest.approx(0.005)
+
+
+def test_data_are_known_in_their_own_file_only_unless_they_are_global():
+    own, of_all = (f"DECL E6POS PT={at(y)}" for y in (10, 300))
+    a, config = data("a", own), data("$CONFIG", of_all)
+    b = "DEF b()\nPT.Y=PT.Y+1\nLIN PT\nEND"
+    body = f"{FRAMES}LIN PT\nb()\nLIN PT\nLIN {{FRAME: X 0,Y PT.Y,Z 0,A 0,B 0,C 0}}"
+    assert heights(body, a_dat=a, b_src=b, config_dat=config) == [10, 301, 10, 10]
+    assert heights(body, config_dat=config, b_src=b, a_dat=a) == [10, 301, 10, 10]
+    public = a.replace("DECL E6POS", "DECL GLOBAL E6POS")
+    assert heights(body, b_src=b, a_dat=public) == [10, 11, 11, 11]
+    with pytest.raises(cl.ClearanceError, match=r"b.src line 2: .*'PT' is in no file"):
+        heights(body, a_dat=a, b_src=b.replace("PT.Y=PT.Y+1", "LIN PT"))
+    far = {"a_dat": a.replace("PT", "PICKPOSITION"), "b_src": "DEF b()\nLIN PICKPOSITION\nEND"}
+    with pytest.raises(cl.ClearanceError, match="'PICKPOSITION' is in no file that is given; the"):
+        heights(f"{FRAMES}b()", **far)
+    tool = "DECL FRAME T1={X 0,Y 0,Z %d,A 0,B 0,C 0}"
+    more = {"a_dat": data("a", tool % 100), "config_dat": data("$CONFIG", tool % 300)}
+    beside = {name.replace("_", "."): text.encode() for name, text in more.items()}
+    text = f"DEF a()\n{FRAMES}$TOOL=T1\nLIN {at(0)}\nb()\nLIN {at(0)}\nEND\n"
+    found = read("a.src", text, {**beside, "b.src": b"DEF b()\n$TOOL=T1\nEND"}).moves
+    assert [move.tool[2, 3] for move in found] == [0.1, 0.3]
+
+
+@pytest.mark.parametrize("name", ["Y", "I", "PT"])
+def test_names_in_brackets_within_an_aggregate_are_no_parts_of_it(name):
+    own = data("b", f"DECL REAL {name}=1.0", "DECL INT n=2", "DECL INT list[2]", "list[2]=7")
+    b = f"DEF b()\nLIN {{E6POS: X 0,Y list[n]+two(0,n),Z {name},A 0,B 0,C 0}}\nEND\n"
+    b += "DEFFCT INT two(p:IN,q:IN)\nINT p,q\nRETURN q\nENDFCT"
+    other = data("$CONFIG", "DECL INT n=1", f"DECL REAL {name}=5.0")
+    assert heights(f"{FRAMES}b()", b_src=b, b_dat=own, config_dat=other) == [9]
