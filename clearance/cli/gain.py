@@ -77,8 +77,8 @@ def _folders(read: Case, out: Path, robot: tuple[str, ...]) -> list[Path]:
 
 
 def _code(found: Gain) -> int:
-    """That of a check of the changed case, where every rule is proven to hold by the margin."""
-    return found.after.verdict.exit_code if found.kept else ExitCode.VIOLATED
+    """That of a check of the changed case, where every clearance is proven to hold by the margin."""
+    return found.after.verdict.exit_code if found.clearances_kept else ExitCode.VIOLATED
 
 
 def _found(read: Case, file: Path, kind: str, options: dict[str, Any]) -> Gain:
@@ -108,7 +108,7 @@ def _every_kind(
         click.echo(shown(line))
     if all(one.gain is None for one in found):
         return ExitCode.BAD_INPUT
-    codes = [_code(one.gain) for one in found if one.gain is not None and one.kept]
+    codes = [_code(one.gain) for one in found if one.gain is not None and one.gain.clearances_kept]
     return min(codes, default=ExitCode.VIOLATED)
 
 

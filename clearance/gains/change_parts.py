@@ -128,6 +128,6 @@ def proven_bound(run: Run) -> float | None:
 def proven_after(gain: Gain) -> float | None:
     """The same of the changed case, which is proven once more against its limits and the margin."""
     found, limits = proven_bound(gain.after), gain.case.limits
-    if found is None or not gain.kept or limits.rules:
+    if found is None or not gain.clearances_kept or limits.rules:
         return found
     return max(found, limits.fail + gain.request.margin)

@@ -14,7 +14,7 @@ from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.request import kinds_of
 from clearance.gains.result import Gain
-from clearance.gains.sentences import bound_text, size_text
+from clearance.gains.sentences import bound_text, not_passed_text, size_text
 from clearance.run import Question, answer
 from clearance.world.case import Case
 from clearance.world.placed_robot import PlacedRobot
@@ -38,7 +38,7 @@ class Trial:
 
     @property
     def kept(self) -> bool:
-        """True if every rule is proven to hold with it."""
+        """True if every rule is proven to hold with it, and the changed case is passed."""
         return self.gain is not None and self.gain.kept
 
 
@@ -115,6 +115,9 @@ def table_lines(tried: Sequence[Trial]) -> list[str]:
             cells = ("yes", "none", f"{one.gain.who}; nothing had to be changed")
         elif one.kept:
             cells = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
+        elif one.gain.clearances_kept:
+            change = size_text(one.gain) if one.gain.size > 0.0 else "none"
+            cells = ("no", change, f"{one.gain.who}; {not_passed_text(one.gain)}")
         else:
             cells = ("no", "-", f"{one.gain.who}; {one.gain.blocked}")
         rows.append((one.name, *cells))

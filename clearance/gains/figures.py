@@ -61,6 +61,7 @@ class RunRow(Keys):
     verdict: str
     verdict_text: str
     passed: bool
+    reasons: list[str]
     fail: float
     worst: MomentRow
     proven: float | None
@@ -75,6 +76,7 @@ class Figures(Keys):
     kind: Literal["waypoints", "obstacle", "base", "timing"]
     who: str
     kept: bool
+    clearances_kept: bool
     margin: float
     keep: list[Span]
     keep_ends: bool
@@ -111,6 +113,7 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "kind": request.kind,
         "who": gain.who,
         "kept": gain.kept,
+        "clearances_kept": gain.clearances_kept,
         "margin": request.margin,
         "keep": [list(window) for window in request.keep],
         "keep_ends": request.keep_ends,
@@ -148,6 +151,7 @@ def _of_run(run: Run, proven: float | None) -> dict[str, Any]:
         "verdict": run.status,
         "verdict_text": run.verdict.headline(),
         "passed": run.passed,
+        "reasons": list(run.verdict.reasons),
         "fail": run.record.rule(run.verdict.worst.rule).limits.fail,
         "worst": _moment(run.verdict.worst),
         "proven": proven,

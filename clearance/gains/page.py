@@ -183,18 +183,16 @@ _NO_REPORTS = "The reports with the replays are left out: what draws them is not
 def _of_bound(gain: Gain) -> str:
     if is_hopeless(gain):
         return "Proven: no change of this kind is enough."
-    if gain.kept and gain.size == 0.0:
-        return "Proven: every rule holds without a change."
+    if gain.clearances_kept and gain.size == 0.0:
+        return f"Proven: every {'rule' if gain.kept else 'clearance'} holds without a change."
     if gain.lower_bound <= 0.0:
         return "The search is local: smaller changes are not excluded."
     return "The bound is proven. The search is local: smaller changes, down to the bound, are not excluded."
 
 
 def _notes(gain: Gain, notes: Sequence[str]) -> list[str]:
-    named = (
-        "the changed case"
-        if gain.kept
-        else "the best that was reached, which does not keep every rule"
-    )
+    named = "the best that was reached, which does not keep every rule"
+    if gain.clearances_kept:
+        named = "the changed case" if gain.kept else "the changed case, which is not passed"
     files = f"case.yaml is {named}, with the limits of the one that it is from; gain.json has all figures."
     return [_of_bound(gain), files, *notes]

@@ -22,16 +22,17 @@ class Gain:
     """The result of a search for the least change.
 
     Attributes:
-        request: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
-        case: the changed case; the best that was reached where it is not kept.
+        request: what was to be changed.
+        clearances_kept: every limit of clearance is proven to hold by the margin, in the changed case.
+        case: the changed case; the best that was reached where its clearances are not kept.
         change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
             samples of a path, one such array for each of several robots; (1,) [s] of a delay, or the share
             by which a path takes longer.
         size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
             kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
         before, after: certified runs of both cases, by their own limits.
-        blocked: what stays too near, where it is not kept. binding: what the best that was reached is up against,
-            a line each.
+        blocked: what stays too near, where clearances are not kept. binding: what the best that was reached is
+            up against, a line each.
         n_measured: how many cases were measured.
         tool_moves: how far the tool is moved where it is to stay about where it is.
         tool_path: how far it is off where its path is kept; else None.
@@ -39,7 +40,7 @@ class Gain:
     """
 
     request: Request
-    kept: bool
+    clearances_kept: bool
     case: Case
     change: np.ndarray | tuple[np.ndarray, ...]
     size: float
@@ -61,6 +62,11 @@ class Gain:
     def __repr__(self) -> str:
         kept = "kept" if self.kept else "not kept"
         return f"<Gain of {self.case!r}: {self.request.kind} of {self.who}, {kept}, {self.size:.4g} {self.unit}>"
+
+    @property
+    def kept(self) -> bool:
+        """True if every clearance is proven to hold by the margin, and a check passes the changed case."""
+        return self.clearances_kept and self.after.passed
 
     @property
     def unit(self) -> str:

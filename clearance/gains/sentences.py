@@ -52,11 +52,10 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
             "waivers",
             "not counted: a change is sought with which waived pairs keep their limits, too",
         )
-    if gain.kept and gain.size == 0.0:
-        yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
-        yield from _not_passed(gain)
+    if gain.clearances_kept and gain.size == 0.0:
+        yield from _kept_as_it_is(gain)
         return
-    yield from _kept(gain) if gain.kept else _not_kept(gain)
+    yield from _kept(gain) if gain.clearances_kept else _not_kept(gain)
     if gain.request.kind == "obstacle" and gain.size > 0.0:
         yield from (("warning", line) for line in _obstacles_met(gain))
         yield from (("note", line) for line in _programs_left(gain))
@@ -108,20 +107,38 @@ def _too_fast(gain: Gain) -> str:
 
 
 def _kept(gain: Gain) -> Iterator[Line]:
-    """A change with which every rule holds, and what else the verdict of the changed case says."""
+    """A change with which every clearance holds, after what else fails the changed case."""
+    yield from _not_passed(gain)
     yield from (("changed", line) for line in changed_lines(gain))
     yield from (("tool", line) for line in tool_lines(gain))
     yield "after", _worst(gain.after)
-    yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
+    held = "rule" if gain.kept else "clearance"
+    yield "proven", f"every {held} holds at every moment{_by_margin(gain)}"
+
+
+def _kept_as_it_is(gain: Gain) -> Iterator[Line]:
+    """A case whose clearances all hold without a change, and what else fails it."""
+    if gain.kept:
+        yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
+        return
     yield from _not_passed(gain)
+    yield "proven", f"every clearance holds without a change{_by_margin(gain)}"
 
 
 def _not_passed(gain: Gain) -> Iterator[Line]:
-    """That the case fails though every rule holds, and by what beside its clearances: those alone are sought."""
-    if not gain.after.passed:
-        case = "changed case" if gain.size > 0.0 else "case"
-        yield "but", f"the {case} is not passed: {gain.after.verdict.headline()}"
-        yield from (("but", line) for line in gain.after.verdict.beside)
+    """That the case fails though every clearance holds, and by what: a change is sought for clearances alone."""
+    if gain.kept:
+        return
+    verdict = gain.after.verdict
+    yield "not kept", not_passed_text(gain)
+    suspects = (f"suspect {one.kind}: {one.line}" for one in verdict.suspects)
+    yield from (("because", line) for line in (*verdict.beside, *verdict.waiver_faults, *suspects))
+
+
+def not_passed_text(gain: Gain) -> str:
+    """The verdict of a case that fails though every clearance holds."""
+    case = "changed case" if gain.size > 0.0 else "case"
+    return f"the {case} is not passed: {gain.after.verdict.headline()}"
 
 
 def _not_kept(gain: Gain) -> Iterator[Line]:
@@ -224,10 +241,12 @@ def size_text(gain: Gain) -> str:
 def bound_text(gain: Gain) -> str:
     """What no change of the kind can beat."""
     if gain.lower_bound <= 0.0:
-        return f"not known how little would be enough{f'; {_LOCAL}' if gain.kept else ''}"
+        return (
+            f"not known how little would be enough{f'; {_LOCAL}' if gain.clearances_kept else ''}"
+        )
     factor, unit = size_unit(gain)
     bound = f"{_down(gain.lower_bound * factor)} {unit}{_counted(gain)}"
-    if not gain.kept:
+    if not gain.clearances_kept:
         return f"at least {bound} is needed"
     if gain.lower_bound >= gain.size * (1.0 - TIGHT):
         return f"at least {bound} is needed; this change is within 0.1 % of the least"
@@ -281,14 +300,16 @@ def _by_margin(gain: Gain) -> str:
 
 
 def _worst(run: Run) -> str:
-    """The most critical moment, its limit, and the verdict."""
-    worst = run.verdict.worst
+    """The most critical moment, its limit, and the verdict; its own status too where that is another."""
+    verdict, worst = run.verdict, run.verdict.worst
     fail = run.record.rule(worst.rule).limits.fail
     far = "touch" if worst.touches else f"{mm(worst.clearance)} mm"
     if not worst.touches and worst.clearance < 0.0:
         far = f"{depth_mm(-worst.clearance)} mm too near for their padding"
     text = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(run.record, worst)}"
-    return f"{text}; fail below {limit_mm(fail)} mm: {run.verdict.headline()}"
+    status = run.record.status_of(worst)
+    own = "" if status == verdict.measured else f"{status}, but the case is "
+    return f"{text}; fail below {limit_mm(fail)} mm: {own}{verdict.headline()}"
 
 
 def _joint(part: ChangePart) -> str:

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import pytest
+
 import clearance as cl
-from clearance.gains.sentences import lines_of
+from clearance.gains.every_kind import Trial, table_lines
+from clearance.gains.figures import figures_of
+from clearance.gains.page import page_of
+from clearance.gains.result import Gain
+from clearance.gains.sentences import Line, lines_of
 from tests.gains.making_gain import SLOT, write_cell
 
 ZONE = """
@@ -13,28 +19,92 @@ segments: {{ab: [a, b], bc: [b, c], cd: [c, d], da: [d, a]}}
 PROFILES = "profiles: [{name: lane, plane: xy, sketch: lane.yaml, mode: outside}]\n"
 
 
-def told(tmp_path, low: float, high: float, text: str = SLOT) -> list[str]:
-    """What a gain says of the bar in the slot, which has to move by 20 mm towards y = 0."""
+STILL_CLEAR = SLOT.replace("0.04, warn: 0.04", "0.01, warn: 0.01")
+
+
+def found_for(tmp_path, low: float, high: float, text: str = SLOT) -> Gain:
+    """The gain of the bar in the slot, which has to move by 20 mm towards y = 0."""
     (tmp_path / "lane.yaml").write_text(ZONE.format(low=low, high=high))
-    found = cl.gain(write_cell(tmp_path, text + PROFILES), "base")
-    assert found.kept
-    return [line for label, line in lines_of(found) if label == "but"]
+    return cl.gain(write_cell(tmp_path, text + PROFILES), "base")
+
+
+def told(gain: Gain, *labels: str) -> list[Line]:
+    return [(label, line) for label, line in lines_of(gain) if label in labels]
 
 
 def test_a_profile_that_the_change_breaks_is_named(tmp_path):
     """The bar sweeps y from -20 to 80 mm before, and from -40 to 60 mm after."""
-    verdict, lane = told(tmp_path, -0.03, 0.09)
-    assert verdict == "the changed case is not passed: violated"
-    assert lane.startswith("lane (outside, xy): NOT KEPT, gap -1") and "tool" in lane
+    found = found_for(tmp_path, -0.03, 0.09)
+    not_kept, because, proven = told(found, "kept", "not kept", "because", "proven")
+    assert not_kept == ("not kept", "the changed case is not passed: violated")
+    assert because[0] == "because"
+    assert because[1].startswith("lane (outside, xy): NOT KEPT, gap -1") and "tool" in because[1]
+    assert proven == ("proven", "every clearance holds at every moment")
+
+
+def test_a_change_whose_case_is_not_passed_is_not_kept(tmp_path):
+    found = found_for(tmp_path, -0.03, 0.09)
+    assert found.clearances_kept and not found.kept and "not kept" in repr(found)
+    figures = figures_of(found)
+    assert figures["kept"] is False and figures["clearances_kept"] is True
+    assert [one for one in figures["after"]["reasons"] if one.startswith("lane (outside, xy)")]
+    page = page_of(found, with_reports=False)
+    assert "not kept" in page and "every rule holds" not in page
+    assert "case.yaml is the changed case, which is not passed" in page
+    row = table_lines([Trial("base", found)])[1]
+    assert row.split()[:4] == ["base", "no", "20.00", "mm"]
+    assert row.endswith("; the changed case is not passed: violated")
 
 
 def test_nothing_is_said_of_a_profile_that_is_kept(tmp_path):
-    assert told(tmp_path, -0.09, 0.09) == []
+    found = found_for(tmp_path, -0.09, 0.09)
+    assert found.kept and figures_of(found)["kept"] is True
+    assert told(found, "not kept", "because", "proven") == [
+        ("proven", "every rule holds at every moment")
+    ]
 
 
 def test_a_profile_that_is_not_kept_is_named_where_nothing_had_to_be_changed(tmp_path):
-    verdict, lane = told(
-        tmp_path, -0.01, 0.09, SLOT.replace("0.04, warn: 0.04", "0.01, warn: 0.01")
-    )
-    assert verdict == "the case is not passed: violated"
-    assert lane.startswith("lane (outside, xy): NOT KEPT, gap -1")
+    found = found_for(tmp_path, -0.01, 0.09, STILL_CLEAR)
+    assert found.size == 0.0 and not found.kept
+    not_kept, because, proven = told(found, "kept", "not kept", "because", "proven")
+    assert not_kept == ("not kept", "the case is not passed: violated")
+    assert because[1].startswith("lane (outside, xy): NOT KEPT, gap -1")
+    assert proven == ("proven", "every clearance holds without a change")
+    assert "every rule holds" not in page_of(found, with_reports=False)
+    row = table_lines([Trial("base", found)])[1]
+    assert row.split()[:3] == ["base", "no", "none"]
+    assert row.endswith("; the case is not passed: violated")
+
+
+@pytest.mark.parametrize(
+    ("low", "text", "label"), [(-0.03, SLOT, "after"), (-0.01, STILL_CLEAR, "before")]
+)
+def test_a_clearance_that_is_kept_is_not_called_violated(tmp_path, low, text, label):
+    ((_, line),) = told(found_for(tmp_path, low, 0.09, text), label)
+    assert line.endswith(" mm: clear, but the case is violated")
+
+
+def test_a_clearance_below_its_limit_is_called_violated(tmp_path):
+    ((_, line),) = told(found_for(tmp_path, -0.01, 0.09), "before")
+    assert line.endswith("fail below 40 mm: violated")
+
+
+def test_suspect_input_that_fails_the_changed_case_is_named(tmp_path):
+    far = "  - {name: far, box: {size: [1, 1, 1]}, pose: {xyz: [900, 0, 0]}}\n"
+    found = cl.gain(write_cell(tmp_path, SLOT.replace("trajectory:", f"{far}trajectory:")), "base")
+    assert found.clearances_kept and not found.kept
+    (_, not_kept), (_, because) = told(found, "not kept", "because")
+    assert not_kept == "the changed case is not passed: suspect (would be clear)"
+    assert because.startswith("suspect units: CHECK UNITS: obstacle 'far'")
+
+
+def test_a_waiver_that_the_change_makes_useless_is_named(tmp_path):
+    waiver = "{between: [tool, left], at_least: 0.015, reason: r, by: b, until: 9999-12-31}"
+    (tmp_path / "waivers.yaml").write_text(f"- {waiver}\n")
+    found = cl.gain(write_cell(tmp_path, SLOT + "waivers: [waivers.yaml]\n"), "base")
+    assert found.clearances_kept and not found.kept
+    ((_, because),) = told(found, "because")
+    assert because.startswith("waiver tool - left") and "is not needed" in because
+    ((_, before),) = told(found, "before")
+    assert before.endswith(" mm: violated, but the case is clear with 1 waiver")
