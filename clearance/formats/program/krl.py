@@ -57,6 +57,7 @@ from clearance.formats.program.krl_text import files_of
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import UNSAID
 from clearance.formats.program.statements import Assign
+from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.geometry.pose import inverse
 
@@ -87,11 +88,14 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         run = Execution(language, files.routines, skip)
         run.variables |= first_variables(asked.asked, run)
         run.run(files.declared)
+        places = dict[str, Line]()
         for one in files.declared:
             if isinstance(one, Assign) and isinstance(one.target, Name):
-                run.persistent.put(
-                    one.target.name, f"{one.target.name} ({one.line})", run.variables
-                )
+                name, line = one.target.name, places.setdefault(one.target.name, one.line)
+                run.persistent.put(name, f"{name} ({one.line})", run.variables)
+                if line.file != one.line.file and not name.startswith("$"):
+                    both = f"{name} is declared at {line} and at {one.line}"
+                    run.variables[name] = Unknown(both)
         entry, own = asked.asked.entry, {str(name): name for name in files.public}
         entry = entry_of("procedure", [*own], entry, (entry or "").upper(), files.public[0])
         run.enter(files.routines[own[entry]])

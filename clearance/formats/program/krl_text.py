@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 from typing import Any
 
-from clearance.errors import BadProgram, BadSyntax
+from clearance.errors import BadProgram, BadSyntax, DuplicateName
 from clearance.formats.program.blocks import BlockReader
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.expressions import (
@@ -118,7 +118,7 @@ class _Reader(BlockReader):
                 is_public = self.cursor.next.line in self._public
                 routine = self._routine()
                 name = GRAMMAR.folded(routine.name)
-                routines.setdefault(name, routine)
+                _add(routines, {name: routine})
                 public.update([name] if is_public else [])
         return Module(routines, (*public, *[*routines][:1]), tuple(declared))
 
@@ -329,9 +329,19 @@ def files_of(asked: ProgramRequest) -> Module:
     if not mine[-1].routines:
         raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
     every = (*modules, *mine)
-    routines = {name: one for module in every for name, one in module.routines.items()}
+    routines = dict[str, Routine]()
+    for one in every:
+        _add(routines, one.routines)
     declared = tuple(one for module in every for one in module.declared)
     return Module(routines, tuple(mine[-1].routines), declared)
+
+
+def _add(routines: dict[str, Routine], more: dict[str, Routine]) -> None:
+    for name, one in more.items():
+        if name in routines:
+            first = f"one of them: the other is at {routines[name].line}"
+            raise DuplicateName(f"{name!r} is there twice", where=str(one.line), valid=first)
+        routines[name] = one
 
 
 def _modules(

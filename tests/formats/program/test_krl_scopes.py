@@ -91,3 +91,24 @@ def test_names_in_brackets_within_an_aggregate_are_no_parts_of_it(name):
     b += "DEFFCT INT two(p:IN,q:IN)\nINT p,q\nRETURN q\nENDFCT"
     other = data("$CONFIG", "DECL INT n=1", f"DECL REAL {name}=5.0")
     assert heights(f"{FRAMES}b()", b_src=b, b_dat=own, config_dat=other) == [9]
+
+
+def test_two_subprograms_of_a_name_that_one_file_would_know_are_refused():
+    body = f"{FRAMES}c()"
+    for more, beside, line in (
+        ("", {"c_src": C, "d_src": "DEF d()\nEND\nGLOBAL " + OWN}, "d.src line 3"),
+        (f"{OWN}\n{OWN}", {}, "line 9"),
+        (f"GLOBAL {OWN}", {"c_src": C}, "line 6"),
+    ):
+        with pytest.raises(cl.ClearanceError, match=rf"^a.src: {line}: 'C' is there twice"):
+            heights(body, more, **beside)
+
+
+def test_data_of_a_name_that_two_files_give_to_all_are_not_known():
+    points = (data(name, f"DECL GLOBAL E6POS PT={at(y)}") for name, y in (("b", 7), ("c", 300)))
+    beside = dict(zip(("b_dat", "c_dat"), points, strict=True))
+    told = "line 4: the target is not known: PT is declared at b.dat line 2 and at c.dat line 2"
+    with pytest.raises(cl.ClearanceError, match=told):
+        heights(f"{FRAMES}LIN PT", **beside)
+    assert heights(f"{FRAMES}LIN {at(5)}", **beside) == [5]
+    assert heights(f"{FRAMES}LIN PT", a_dat=data("a", f"DECL E6POS PT={at(3)}"), **beside) == [3]
