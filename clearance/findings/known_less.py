@@ -9,7 +9,7 @@ import itertools
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from clearance.findings.finding import PROFILE
+from clearance.findings.finding import PROFILE, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measurement_conditions import (
     MeasuredPairs,
@@ -22,6 +22,9 @@ from clearance.world.rules import matches
 
 TIME = 1e-6
 """[s] Times that differ by less are the same, summed otherwise."""
+
+NEAREST = "nearest"
+"""The mode of a profile whose limit is the greatest distance, in the text of its finding."""
 
 _Limits = tuple[tuple[str, float], ...]
 """The fail limits [m] of a pair, each with when it holds; the last one holds otherwise."""
@@ -173,20 +176,31 @@ def _present_less(before: FindingList, now: FindingList) -> Iterator[str]:
 
 
 def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:
-    """Outlines that are not checked, and findings that may be missing, where they were not before.
+    """Outlines that are not checked, or otherwise, and findings that may be missing, where they were not before.
 
     A run that passes is missing none that fails it.
     """
-    outlines = {one.rule for one in before.findings if one.kind == PROFILE}
-    lost = sorted(outlines - {one.rule for one in now.findings if one.kind == PROFILE})
+    old, new = _outlines(before), _outlines(now)
+    lost = sorted(old.keys() - new.keys())
     if lost and not now.not_listed:
         yield f"profile not checked as before: {listed(lost)}"
+    for name in sorted(old.keys() & new.keys()):
+        was, is_now = old[name], new[name]
+        if was.text != is_now.text:
+            yield f"profile {name}: {is_now.text}; and was {was.text}"
+        is_softer = was.fail < is_now.fail if NEAREST in was.text else is_now.fail < was.fail
+        if is_softer:
+            yield f"limit of profile {name}: now {limit_mm(is_now.fail)} mm, and was {limit_mm(was.fail)} mm"
     if not any(finding.fails for finding in now.findings):
         return
     if now.incomplete and not before.incomplete:
         yield f"findings may be missing: {now.incomplete}"
     if now.not_listed > before.not_listed:
         yield f"{now.not_listed:,} findings are not listed"
+
+
+def _outlines(listed_in: FindingList) -> dict[str, Finding]:
+    return {one.rule: one for one in listed_in.findings if one.kind == PROFILE}
 
 
 def _bodies(blocks: Iterable[MeasuredPairs]) -> Iterator[str]:

@@ -219,6 +219,35 @@ def test_a_check_that_is_asked_no_more_is_less(lost, tmp_path):
     assert lost in line and line.startswith("less is known")
 
 
+@pytest.mark.parametrize(
+    ("was", "is_now", "line"),
+    [
+        (
+            {"text": "outside, xy"},
+            {"text": "outside, xy, only l1"},
+            "profile door: outside, xy, only l1; and was outside, xy",
+        ),
+        ({"fail": 0.02}, {"fail": 0.01}, "limit of profile door: now 10 mm, and was 20 mm"),
+        (
+            {"text": "nearest, xy", "fail": 0.02},
+            {"text": "nearest, xy", "fail": 0.03},
+            "limit of profile door: now 30 mm, and was 20 mm",
+        ),
+    ],
+)
+def test_a_profile_that_is_judged_by_less_is_known_less(was, is_now, line, tmp_path):
+    now = listed(tmp_path)
+    outline = dataclasses.replace(now.findings[0], kind="profile", rule="door", status="clear")
+    before, after = (
+        dataclasses.replace(now, findings=(*now.findings, dataclasses.replace(outline, **one)))
+        for one in (was, is_now)
+    )
+    assert not compared(before, after).passed
+    assert f"less is known: {line}" in doubt_lines(compared(before, after))
+    if "fail" in was:
+        assert compared(after, before).passed
+
+
 def test_what_is_not_listed_hides_what_is_broken(tmp_path):
     before, now = listed(tmp_path / "a"), listed(tmp_path / "b", BROKEN)
     as_broken = dataclasses.replace(before, findings=now.findings)
