@@ -324,16 +324,16 @@ def files_of(asked: ProgramRequest) -> Module:
         groups.setdefault(stem, []).append([*_rows(data, file)])
     module = PurePosixPath(asked.shown).stem.upper()
     own = groups.pop(module)
-    modules = [one for name, group in groups.items() for one in _modules(name, group, types)]
-    mine = _modules(module, own, types, {*FIRST})
-    if not mine[-1].routines:
+    named = [rows for name, group in groups.items() for rows in _named_rows(name, group, types)]
+    named += _named_rows(module, own, types, {*FIRST})
+    every = [_module_of(rows, types) for rows in named]
+    if not every[-1].routines:
         raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
-    every = (*modules, *mine)
     routines = dict[str, Routine]()
     for one in every:
         _add(routines, one.routines)
     declared = tuple(one for module in every for one in module.declared)
-    return Module(routines, tuple(mine[-1].routines), declared)
+    return Module(routines, tuple(every[-1].routines), declared)
 
 
 def _add(routines: dict[str, Routine], more: dict[str, Routine]) -> None:
@@ -344,24 +344,23 @@ def _add(routines: dict[str, Routine], more: dict[str, Routine]) -> None:
         routines[name] = one
 
 
-def _modules(
-    name: str,
-    group: list[list[list[Token]]],
-    types: dict[str, str],
-    of_all: Collection[str] = (),
-) -> list[Module]:
-    """The files of a module; names that are its own have the module's behind them.
+def _named_rows(
+    name: str, group: list[list[list[Token]]], types: dict[str, str], of_all: Collection[str] = ()
+) -> list[list[list[Token]]]:
+    """The words of a module's files; names that are its own have the module's behind them.
 
     Data without procedures (`$config.dat`) are for all.
 
     Args:
-        of_all: variables of the controller, which the program's own data may give without a file of them.
+        types: as of `_module_of`. of_all: variables of the controller, which the program's own data may give too.
     """
-    plain = [_module_of(rows, {}) for rows in group]
-    own = set[str]()
+    found, own = dict[str, str](), set[str]()
+    plain = [_module_of(rows, found) for rows in group]
     if any(module.routines for module in plain):
         own = {one for module in plain for one in _own_names(module)}.difference(of_all)
-    return [_module_of([_named(row, own, name) for row in rows], types) for rows in group]
+    for one, kind in found.items():
+        types[f"{one}{OF}{name}".upper() if one in own else one] = kind
+    return [[_named(row, own, name) for row in rows] for rows in group]
 
 
 def _own_names(module: Module) -> set[str]:
