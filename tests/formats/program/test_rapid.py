@@ -87,6 +87,13 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert "SetDO (line 27)" in told and "without moves: line 18" in told and "PERS data" in told
 
 
+def test_a_positioner_that_is_activated_or_not_moves_nothing():
+    line = f"MoveL {P},v5,fine,tool0;"
+    plain = moves_of(f"{line}\n{line}")
+    units = moves_of(f"ActUnit STN_1;\n{line}\nDeactUnit STN_1;\n{line}")
+    assert [move.kind for move in units] == [move.kind for move in plain]
+
+
 def test_a_zone_is_that_of_the_point_unless_the_tool_turns():
     _, over, _, over_low, _, _, arc, _ = read("a.mod", CELL).moves
     assert over.zone == 0.075  # how the tool stands before is not known
