@@ -160,6 +160,9 @@ class _Reader(BlockReader):
         read = Expressions(Cursor(row, folds=True), GRAMMAR)
         if word in ("DECL", "GLOBAL", *TYPES):
             return self._declared(read)
+        if word == "IMPORT" and len(row) > 3:  # `IMPORT INT n IS /R1/other..n`
+            unread = Constant(Unknown("IMPORT is not read"))
+            return [Assign(line, Name(GRAMMAR.folded(row[2].text), line), unread)]
         if word in QUIET:
             return [Do(line, Call(word, called_beside(row), {}, line))]
         if word in NOTHING:

@@ -124,3 +124,13 @@ def test_types_hold_in_whatever_order_the_case_has_the_files(order):
     beside = {name: files[name].encode() for name in order}
     found = read("a.src", f"DEF a()\nDECL REAL m\n{FRAMES}b()\nEND\n", beside).moves
     assert [round(move.to.pose[1, 3] * 1e3, 6) for move in found] == [3, 7]
+
+
+def test_a_variable_that_is_imported_is_not_known():
+    of_all, own = data("$CONFIG", "DECL INT m=300"), data("b", "IMPORT INT m IS /R1/c..m", "IMPORT")
+    b = f"DEF b()\nLIN {at('m')}\nEND"
+    with pytest.raises(
+        cl.ClearanceError, match=r"b.src line 2: .* is not known: IMPORT is not read"
+    ):
+        heights(f"{FRAMES}b()", b_src=b, b_dat=own, config_dat=of_all)
+    assert heights(f"{FRAMES}b()\nLIN {at('m')}", b_src=b, config_dat=of_all) == [300, 300]
