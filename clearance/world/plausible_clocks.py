@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ class _Table(NamedTuple):
     """The owner of a table, and its start and end in the run [s]; the end is infinite if it repeats.
 
     Attributes:
-        length: [s] of the run, once through. slide, turn: its greatest speeds [m/s], [rad/s].
+        length: [s] of the run, once through. speeds: what gives its greatest speeds [m/s], [rad/s].
     """
 
     start: float
@@ -40,8 +41,7 @@ class _Table(NamedTuple):
     name: str
     timing: Timing
     length: float
-    slide: float
-    turn: float
+    speeds: Callable[[], Sequence[float]]
 
     @property
     def text(self) -> str:
@@ -51,12 +51,14 @@ class _Table(NamedTuple):
     @property
     def is_slow(self) -> bool:
         """True for what would be as fast as things in cells are, if its times were in milliseconds."""
-        return self.slide <= SLOW_SLIDE and self.turn <= SLOW_TURN
+        slide, turn = self.speeds()
+        return slide <= SLOW_SLIDE and turn <= SLOW_TURN
 
     @property
     def creeps(self) -> bool:
         """True for what is so slow that it is suspect by itself."""
-        return self.slide <= CREEP_SLIDE and self.turn <= CREEP_TURN
+        slide, turn = self.speeds()
+        return slide <= CREEP_SLIDE and turn <= CREEP_TURN
 
 
 def notices_on_clocks(case: Case) -> list[Notice]:
@@ -81,15 +83,16 @@ def notices_on_clocks(case: Case) -> list[Notice]:
 
 def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
     """Notices on slow tables that take many times as long as all that is not slow."""
-    others = [table for table in tables if not table.is_slow]
+    others = [table for table in tables if not table.is_slow] if len(tables) > 1 else []
     if not others:
         return
     usual = max(others, key=lambda table: table.length)
     for table in tables:
         if table.is_slow and not table.creeps and table.length > LONGER * usual.length > 0.0:
+            slide, turn = table.speeds()
             text = (
                 f"CHECK UNITS: {table.name} takes {table.length:g} s, and moves no faster than "
-                f"{table.slide * 1000:.3g} mm/s and {table.turn:.3g} rad/s, while {usual.name} takes "
+                f"{slide * 1000:.3g} mm/s and {turn:.3g} rad/s, while {usual.name} takes "
                 f"{usual.length:g} s; times are in seconds, is this milliseconds?"
             )
             yield Notice(Severity.SUSPECT, "units", text)
@@ -188,15 +191,17 @@ def _tables(case: Case) -> Iterator[_Table]:
     for placed in case.robots:
         if placed.trajectory is not None and np.ptp(placed.trajectory.positions, axis=0).any():
             name = f"robot {placed.robot.name!r}"
-            speeds = greatest_speeds(placed)
+            speeds = partial(greatest_speeds, placed)
             yield _table(name, placed.trajectory.times, placed.timing, speeds)
     for obstacle in case.obstacles:
         if obstacle.moves is not None and changes(obstacle.moves):
             name, moves = f"obstacle {obstacle.name!r}", obstacle.moves
-            yield _table(name, moves.times, moves.timing, greatest_speeds_in(moves))
+            yield _table(name, moves.times, moves.timing, partial(greatest_speeds_in, moves))
 
 
-def _table(name: str, times: np.ndarray, timing: Timing, speeds: Sequence[float]) -> _Table:
+def _table(
+    name: str, times: np.ndarray, timing: Timing, speeds: Callable[[], Sequence[float]]
+) -> _Table:
     start, end = timing.run_times(times)[[0, -1]].tolist()
     until = math.inf if timing.after == "loop" else end
-    return _Table(start, until, name, timing, end - start, *speeds)
+    return _Table(start, until, name, timing, end - start, speeds)
