@@ -24,7 +24,7 @@ TIME = 1e-6
 """[s] Times that differ by less are the same, summed otherwise."""
 
 NEAREST = "nearest"
-"""The mode of a profile whose limit is the greatest distance, in the text of its finding."""
+"""The mode of a profile whose limit is the greatest distance; the text of its finding begins with the mode."""
 
 _Limits = tuple[tuple[str, float], ...]
 """The fail limits [m] of a pair, each with when it holds; the last one holds otherwise."""
@@ -188,8 +188,8 @@ def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:
         was, is_now = old[name], new[name]
         if was.text != is_now.text:
             yield f"profile {name}: {is_now.text}; and was {was.text}"
-        is_softer = was.fail < is_now.fail if NEAREST in was.text else is_now.fail < was.fail
-        if is_softer:
+        greatest = was.text.startswith(NEAREST)
+        if was.fail < is_now.fail if greatest else is_now.fail < was.fail:
             yield f"limit of profile {name}: now {limit_mm(is_now.fail)} mm, and was {limit_mm(was.fail)} mm"
     if not any(finding.fails for finding in now.findings):
         return

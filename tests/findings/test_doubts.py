@@ -229,6 +229,11 @@ def test_a_check_that_is_asked_no_more_is_less(lost, tmp_path):
         ),
         ({"fail": 0.02}, {"fail": 0.01}, "limit of profile door: now 10 mm, and was 20 mm"),
         (
+            {"text": "outside, xy, only nearest_link", "fail": 0.02},
+            {"text": "outside, xy, only nearest_link", "fail": 0.01},
+            "limit of profile door: now 10 mm, and was 20 mm",
+        ),
+        (
             {"text": "nearest, xy", "fail": 0.02},
             {"text": "nearest, xy", "fail": 0.03},
             "limit of profile door: now 30 mm, and was 20 mm",
