@@ -40,13 +40,13 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
     Raises:
         UnknownLink: the frame of the file is neither a link nor the world.
     """
-    on_frames = (
+    found = (
         *_on_frame(case, content.frame),
         *_on_bases(case, content),
         *_on_frames_of_poses(case),
+        *_on_padding_left_out(case, content),
     )
-    case = replace(case, notices=(*case.notices, *on_frames))
-    case = replace(case, notices=(*case.notices, *_on_padding_left_out(case, content)))
+    case = replace(case, notices=(*case.notices, *found))
     if not content.allow and not content.link_padding:
         return case, []
     names = body_names(case)

@@ -193,9 +193,8 @@ def _surely_convex(points: np.ndarray, ring: Ring, normals: np.ndarray) -> np.nd
     at = np.flatnonzero(np.bincount(ring.face)[ring.face] > 3)  # triangles do
     arriving, leaving = points[at] - points[ring.behind[at]], points[ring.ahead[at]] - points[at]
     bends = (np.cross(arriving, leaving) * normals[ring.face[at]]).sum(axis=1)
-    with np.errstate(
-        over="ignore"
-    ):  # a body far beyond reach is refused later; here it is not convex
+    # a body far beyond reach is refused later; here it is not convex
+    with np.errstate(over="ignore"):
         turns = bends > LEAST_TURN * np.sqrt((arriving**2).sum(axis=1) * (leaving**2).sum(axis=1))
     convex = np.ones(len(normals), dtype=bool)
     convex[ring.face[at[~turns]]] = False

@@ -20,7 +20,6 @@ SKEW = 1e-3
 """[s] Recordings that begin within it begin together. Beyond it, and within an interval of theirs, each began with
 its first message: that is a warning."""
 
-
 LONGER = 100.0
 """A table in milliseconds takes at least so many times as long as all else that moves: both are of one work, and
 milliseconds read as seconds are 1000 times as long."""

@@ -104,5 +104,5 @@ def greatest_speeds_in(table: PoseTable) -> tuple[float, float]:
 
 
 def changes(table: PoseTable) -> bool:
-    """True for a table that moves or turns what it is of."""
+    """True if the poses of a table differ."""
     return any(np.ptp(one, axis=0).any() for one in (table.positions, table.quaternions))
