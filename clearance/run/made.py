@@ -112,7 +112,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         run,
         samples,
         _contacts(plan, found, resources),
-        worst_first([*measured, *(notice for one in profiles for notice in one.notices)]),
+        worst_first([*measured, *(one for part in (*plan.own, *profiles) for one in part.notices)]),
         profiles,
         peer,
         budget,

@@ -8,6 +8,7 @@ import numpy as np
 
 from clearance.world.cubic import cubics_of, position_on, velocity_on
 from clearance.world.kinematics import link_poses, moving_positions, moving_velocities
+from clearance.world.notice import Notice
 from clearance.world.placed_robot import PlacedRobot
 
 
@@ -22,6 +23,7 @@ class Motion:
         notes: what had to be assumed to make the motion, one line each, for the report.
         velocities: (n, k) [rad/s] or [m/s]: between steps each joint moves on the cubic that has them at both
             ends; None where the joints move linearly.
+        notices: what is suspect about how the motion was made, and warnings.
     """
 
     placed: PlacedRobot
@@ -30,6 +32,7 @@ class Motion:
     tracking_error: np.ndarray
     notes: tuple[str, ...] = ()
     velocities: np.ndarray | None = None
+    notices: tuple[Notice, ...] = ()
 
     @property
     def n_steps(self) -> int:

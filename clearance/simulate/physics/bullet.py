@@ -1,6 +1,6 @@
 """Motion as a physics engine's controlled robot really makes it: the adapter of pybullet.
 
-The robot's masses, joints, limits and efforts come from its URDF, its shapes from our own loader;
+The robot's masses, inertias, joints, damping, limits and efforts come from its URDF, its shapes from our own loader;
 gravity is on, every moving joint is position-controlled towards the trajectory, and each simulation
 step's state is stored. Not for: clearance (`measure`), computed from those states by our own
 kinematics.
@@ -21,7 +21,12 @@ import numpy as np
 
 from clearance.errors import NotFinite, NotSimulated
 from clearance.extras import importing
-from clearance.simulate.physics.model import notes_on_masses, write_obj, write_physics_urdf
+from clearance.simulate.physics.model import (
+    notes_on_masses,
+    notices_on_model,
+    write_obj,
+    write_physics_urdf,
+)
 from clearance.world.body import Obstacle
 from clearance.world.cubic import positions_along
 from clearance.world.kinematics import moving_positions
@@ -81,7 +86,7 @@ def simulated_motion(
             positions[i_step] = world.step_towards(asked[i_step], rates[i_step])
     _require_finite(times, positions)
     error = np.abs(positions - asked).max(axis=1, initial=0.0)
-    return Motion(placed, times, positions, error, notes)
+    return Motion(placed, times, positions, error, notes, notices=tuple(notices_on_model(placed)))
 
 
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -216,7 +221,13 @@ def _world(placed: PlacedRobot, with_shapes: bool) -> Iterator[_World]:
 def _load(engine: Any, urdf: Path, placed: PlacedRobot) -> int:
     xyz, quat = _position_and_quaternion(placed.world_from_base)
     try:
-        return engine.loadURDF(str(urdf), basePosition=xyz, baseOrientation=quat, useFixedBase=True)
+        return engine.loadURDF(
+            str(urdf),
+            basePosition=xyz,
+            baseOrientation=quat,
+            useFixedBase=True,
+            flags=engine.URDF_USE_INERTIA_FROM_FILE,  # else made of the shapes, which are not there
+        )
     except engine.error as error:
         raise NotSimulated(
             f"the physics engine cannot load the robot {placed.robot.name!r} ({error})",

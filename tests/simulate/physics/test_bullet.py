@@ -214,3 +214,124 @@ def test_a_cloud_of_points_is_nothing_to_bump_into(tmp_path):
     simulated_motion(placed, [scan])  # measured, not pushed against
     with pytest.raises(BadInput, match="contact_response: obstacle 'scan' is a cloud of points"):
         simulated_motion(placed, [scan], contact_response=True)
+
+
+WRIST = """<robot name="wrist" {space}>
+  <link name="base"/>
+  <link name="upper"><inertial><origin xyz="0.1 0.05 0.02" rpy="0.4 -0.3 0.7"/><mass value="6"/>
+    <inertia ixx="0.4" iyy="0.5" izz="0.3" ixy="0.05" ixz="-0.04" iyz="0.03"/></inertial>
+    <collision><geometry><box size="0.4 0.1 0.1"/></geometry></collision></link>
+  <link name="lower">{lower}
+    <collision><geometry><box size="0.3 0.08 0.08"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+    <origin xyz="0 0 1"/><axis xyz="0 1 0"/><dynamics damping="{damping}" friction="{friction}"/>
+    <limit lower="-3" upper="3" effort="60" velocity="90"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
+    <origin xyz="0.4 0 0" rpy="0.2 0.1 0"/><axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="4" velocity="90"/></joint>
+</robot>"""
+LOWER = """<inertial><origin xyz="0.1 0 0" rpy="0 0.5 0.2"/><mass value="2"/>
+    <inertia ixx="0.02" iyy="{iyy}" izz="0.05" ixy="0.004" ixz="0" iyz="0.006"/></inertial>"""
+FRAME = """<inertial><mass value="0"/>
+    <inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial>"""
+
+
+def wrist(
+    tmp_path: Path, lower=LOWER.format(iyy=0.05), damping=0.0, friction=0.0, space=""
+) -> PlacedRobot:
+    path = tmp_path / "wrist.urdf"
+    path.write_text(WRIST.format(lower=lower, damping=damping, friction=friction, space=space))
+    asked = Trajectory(
+        np.array([0.0, 0.4]), ("shoulder", "elbow"), np.array([[0.0, 0.0], [0.6, 1.2]])
+    )
+    return placed_robot(path, asked)
+
+
+def engines_own_motion(placed: PlacedRobot, n_steps: int) -> np.ndarray:
+    """(n, 2) [rad] the whole URDF in an engine of its own, with the inertias of the file."""
+    engine, trajectory = bullet._connect(), placed.given_trajectory
+    flags = engine.URDF_USE_INERTIA_FROM_FILE
+    body = engine.loadURDF(placed.urdf_path, useFixedBase=True, flags=flags)
+    engine.setTimeStep(1.0 / (STEPS_PER_SECOND * bullet.SUBSTEPS))
+    engine.setGravity(0.0, 0.0, -9.81)
+    found, last = [np.zeros(2)], np.zeros(2)
+    for joint in range(2):
+        engine.changeDynamics(body, joint, linearDamping=0.0, angularDamping=0.0)
+        engine.setJointMotorControl2(body, joint, engine.VELOCITY_CONTROL, force=0.0)
+    for step in range(1, n_steps):
+        asked = np.array([
+            np.interp(step / STEPS_PER_SECOND, trajectory.times, column)
+            for column in trajectory.positions.T
+        ])  # fmt: skip
+        for joint, effort in enumerate((60.0, 4.0)):
+            rate = (asked - last)[joint] * STEPS_PER_SECOND
+            engine.setJointMotorControl2(
+                body, joint, engine.POSITION_CONTROL, asked[joint], rate, effort
+            )
+        last = asked
+        for _ in range(bullet.SUBSTEPS):
+            engine.stepSimulation()
+        found.append(np.array([engine.getJointState(body, joint)[0] for joint in range(2)]))
+    engine.disconnect()
+    return np.array(found)
+
+
+@pytest.mark.parametrize("damping", [0.0, 8.0])
+@pytest.mark.parametrize("contact_response", [False, True])
+def test_inertias_and_damping_are_those_of_the_urdf(tmp_path, damping, contact_response):
+    placed = wrist(tmp_path, damping=damping)
+    motion = simulated_motion(placed, contact_response=contact_response)
+    wanted = engines_own_motion(placed, motion.n_steps)
+    assert motion.positions == pytest.approx(wanted, abs=1e-9)
+    assert motion.tracking_error.max() > 0.05
+    assert not motion.notices or "friction" not in motion.notices[0].text
+
+
+@pytest.mark.parametrize("lower", ["", FRAME, FRAME.replace("\n    <inertia", "<ignored")])
+def test_a_link_without_mass_moves_and_is_told(tmp_path, lower):
+    motion = simulated_motion(wrist(tmp_path, lower=lower))
+    assert motion.positions[-1] == pytest.approx([0.6, 1.2], abs=1e-2)
+    assert motion.notes == (
+        "simulated motion: the URDF gives no mass to lower; taken as weightless",
+    )
+
+
+def test_a_mass_without_inertia_is_one_point(tmp_path):
+    point = '<inertial><origin xyz="0.2 0 0"/><mass value="2"/></inertial>'
+    (note,) = simulated_motion(wrist(tmp_path, lower=point)).notes
+    assert note == "simulated motion: the URDF gives no inertia to lower; taken as one point"
+
+
+def test_friction_that_the_engine_does_not_know_is_a_warning(tmp_path):
+    (notice,) = simulated_motion(wrist(tmp_path, friction=0.5)).notices
+    assert notice.severity == "warning" and notice.kind == "simulated"
+    assert "friction" in notice.text and "'shoulder' 0.5 of 60 N m" in notice.text
+
+
+def test_an_inertia_that_no_body_has_is_made_possible_and_is_a_warning(tmp_path):
+    """The engine would take it as none: its greatest moment may not exceed the two others together."""
+    placed = wrist(tmp_path, lower=LOWER.format(iyy=0.2))
+    (notice,) = simulated_motion(placed).notices
+    assert notice.severity == "warning" and "'lower'" in notice.text
+    with bullet._world(placed, with_shapes=False) as world:
+        moments = sorted(world._engine.getDynamicsInfo(world._body, 1)[2])
+    given = np.array([[0.02, 0.004, 0.0], [0.004, 0.2, 0.006], [0.0, 0.006, 0.05]])
+    added = np.diff(sorted(np.linalg.eigvalsh(given)))
+    assert np.diff(moments) == pytest.approx(added, rel=1e-5)
+    assert moments[2] == pytest.approx(moments[0] + moments[1], rel=1e-4)
+
+
+@pytest.mark.parametrize("value", ["much", "nan"])
+def test_an_inertia_that_is_no_number_is_refused_by_name(tmp_path, value):
+    placed = wrist(tmp_path, lower=LOWER.format(iyy=0.05))
+    path = Path(placed.urdf_path)
+    path.write_text(path.read_text().replace('izz="0.05"', f'izz="{value}"'))
+    with pytest.raises(BadInput, match=f"link 'lower': izz is '{value}'"):
+        simulated_motion(placed)
+
+
+def test_a_default_namespace_is_read(tmp_path):
+    placed = wrist(tmp_path)
+    plain = simulated_motion(placed).positions
+    named = wrist(tmp_path, space='xmlns="http://www.ros.org"')
+    assert np.array_equal(simulated_motion(named).positions, plain)
