@@ -84,6 +84,7 @@ class Verdict:
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
         self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
+        simulated: the motion is that of a simulated robot, not the trajectory.
         excused: links that are excluded, and pairs that are allowed, one line each.
         broken: rules of the case that are broken, beside its limits of clearance. beside: these and the profiles
             that are not kept.
@@ -129,6 +130,7 @@ class Verdict:
     beyond: str = ""
     excused: tuple[str, ...] = ()
     warned: tuple[str, ...] = ()
+    simulated: bool = False
 
     @property
     def scope(self) -> tuple[str, ...]:
@@ -200,6 +202,8 @@ class Verdict:
             text += " at the samples only" if passing else ", measured at the samples only"
         elif self.basis == POSE:
             text += " at a single pose"
+        if self.simulated:
+            text += ", in simulated motion"
         if self.clocks:
             text += f", {self.clocks}"
         if self.beyond:
@@ -288,6 +292,7 @@ def verdict_of(
         remaining=_remaining(of_tolerances),
         with_tolerances=tolerance_lines(record),
         at_level=at_level_line(judging),
+        simulated=record.motion_kind == "simulated",
     )
 
 

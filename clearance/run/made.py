@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     from clearance.simulate.answers.contact.rows import FoundContacts
 
 
+_NO_RESPONSE = "contact_response has no effect: the motion is not simulated"
+
+
 @dataclass(frozen=True, eq=False)
 class Answers:
     """All that was found.
@@ -112,7 +115,13 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         run,
         samples,
         _contacts(plan, found, resources),
-        worst_first([*measured, *(one for part in (*plan.own, *profiles) for one in part.notices)]),
+        worst_first(
+            [
+                *measured,
+                *(notice for made in plan.own for notice in made.notices),
+                *(notice for one in profiles for notice in one.notices),
+            ]
+        ),
         profiles,
         peer,
         budget,
@@ -227,6 +236,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
             *case.notes,
             *(note for made in motions for note in made.notes),
             *notes_on_drawing(case),
+            *([_NO_RESPONSE] if case.contact_response and question.motion != "simulated" else []),
         ),
         notices=answers.notices,
         contacts=contacts,

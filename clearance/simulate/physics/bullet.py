@@ -1,9 +1,9 @@
 """Motion as a physics engine's controlled robot really makes it: the adapter of pybullet.
 
-The robot's masses, inertias, joints, damping, limits and efforts come from its URDF, its shapes from our own loader;
-gravity is on, every moving joint is position-controlled towards the trajectory, and each simulation
-step's state is stored. Not for: clearance (`measure`), computed from those states by our own
-kinematics.
+The robot's masses, inertias, joints, damping, limits and efforts come from its URDF, its shapes from
+our own loader. Gravity is on, every moving joint is position-controlled towards the trajectory, and
+each simulation step's state is stored. Not for: clearance (`measure`), computed from those states by
+our own kinematics; what is suspect about the motion (`course`).
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 
 from clearance.errors import NotFinite, NotSimulated
 from clearance.extras import importing
+from clearance.simulate.physics.course import HULLS, Pushes, notices_on_course
 from clearance.simulate.physics.model import (
     notes_on_masses,
     notices_on_model,
@@ -29,6 +30,7 @@ from clearance.simulate.physics.model import (
 )
 from clearance.world.body import Obstacle
 from clearance.world.cubic import positions_along
+from clearance.world.joint_speeds import motion_limit
 from clearance.world.kinematics import moving_positions
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
@@ -39,7 +41,11 @@ SUBSTEPS = 16
 """Solver steps inside each step: the engine integrates joint damping explicitly; at 240 Hz alone a
 Fetch's wrist (5 N m s/rad) diverges: tracking error 2.2 rad; 0.007 with 4, 0.005 with 16. They are
 our own loop: with the engine's `numSubSteps` a motor pushes 16 times as hard as it may."""
-SETTLE_TIME = 0.25  # [s] recorded after the trajectory's end: the robot arrives late
+SETTLE_TIME = 0.25  # [s] recorded at least after the trajectory's end: the robot arrives late
+LONGEST_SETTLING = 10.0  # [s] after which a robot that has not arrived does not
+ARRIVED = (
+    1e-3  # [rad or m] from the last sample; joints then move at most ten times as much a second
+)
 GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
 _UNLIMITED = 1e6  # [N] or [N m] where the URDF states no effort
 
@@ -53,8 +59,9 @@ def simulated_motion(
 ) -> Motion:
     """The motion of the position-controlled robot at 240 Hz, starting at rest at the first sample.
 
-    The states are those after each simulation step, the first one included; they go on for
-    `settle_time` after the last sample, while the robot arrives. Asked positions between samples
+    The states are those after each simulation step, the first one included. They go on for
+    `settle_time` after the last sample and, unless that is 0, until the robot has arrived, for at most
+    `LONGEST_SETTLING`. Asked positions between samples
     are linear, or on cubics where the trajectory has velocities. Where the trajectory is followed at
     another rate, the physics are those of the robot that is so fast; times are the trajectory's.
 
@@ -63,7 +70,7 @@ def simulated_motion(
         value. obstacles: push back only if `contact_response`; then the links' shapes count as
         their convex
             hulls by the engine (obstacles stay as they are). The robot does not push itself.
-        settle_time: [s] of the run.
+        settle_time: [s] of the run at least after the last sample.
         gravity_at: (n, 3) [m/s^2] at (n,) times of the trajectory, as the base sees it; `GRAVITY` in
             the world if it is not given.
 
@@ -71,7 +78,8 @@ def simulated_motion(
         BadInput: the engine cannot load the robot. NotFinite: the simulation diverged.
         Unavailable: pybullet cannot be imported.
     """
-    times, asked, rates = _asked(placed, settle_time)
+    n_least = len(_asked(placed, settle_time)[0])
+    times, asked, rates = _asked(placed, LONGEST_SETTLING if settle_time else 0.0)
     with _world(placed, with_shapes=contact_response) as world:
         if contact_response:
             world.add(obstacles)
@@ -84,9 +92,25 @@ def simulated_motion(
             if pulls is not None:
                 world.pull(pulls[i_step])
             positions[i_step] = world.step_towards(asked[i_step], rates[i_step])
+            if i_step + 1 >= n_least and _has_arrived(positions[: i_step + 1], asked[i_step]):
+                made = slice(i_step + 1)
+                times, asked, positions = times[made], asked[made], positions[made]
+                break
     _require_finite(times, positions)
-    error = np.abs(positions - asked).max(axis=1, initial=0.0)
-    return Motion(placed, times, positions, error, notes, notices=tuple(notices_on_model(placed)))
+    off = np.abs(positions - asked)
+    notices = [*notices_on_model(placed), *world.pushes.notices(times)]
+    notices += notices_on_course(placed, times, positions, off)
+    if contact_response:
+        notes = (*notes, HULLS)
+    error = off.max(axis=1, initial=0.0)
+    return Motion(placed, times, positions, error, notes, notices=tuple(notices))
+
+
+def _has_arrived(positions: np.ndarray, asked: np.ndarray) -> bool:
+    """True if every joint is where it is asked to be, and rests."""
+    off = np.abs(positions[-1] - asked).max(initial=0.0)
+    rate = np.abs(positions[-1] - positions[-2]).max(initial=0.0) * STEPS_PER_SECOND
+    return bool(off <= ARRIVED and rate <= 10.0 * ARRIVED)
 
 
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -122,6 +146,9 @@ class _World:
         self._without_effort = [
             joint.name for joint, effort in zip(moving, efforts, strict=True) if effort <= 0.0
         ]
+        self._speeds = [motion_limit(placed, joint).velocity for joint in moving]
+        root, names = placed.robot.link_names[0], {joint[0]: joint[12].decode() for joint in joints}
+        self.pushes = Pushes({-1: root, **names})
         self._efforts = [effort if effort > 0.0 else _UNLIMITED for effort in efforts]
         columns = {joint.name: i for i, joint in enumerate(moving)}
         self._followers = [  # engine index, column of the master, factor and offset along all masters
@@ -155,7 +182,8 @@ class _World:
                 flags=self._engine.GEOM_FORCE_CONCAVE_TRIMESH,
             )
             xyz, quat = _position_and_quaternion(obstacle.world_from_body)
-            self._engine.createMultiBody(0.0, shape, basePosition=xyz, baseOrientation=quat)
+            fixed = self._engine.createMultiBody(0.0, shape, basePosition=xyz, baseOrientation=quat)
+            self.pushes.obstacles[fixed] = obstacle.name
 
     def start(self, positions: np.ndarray) -> None:
         """Puts the robot at rest at (k,) positions, under gravity, its motors ready."""
@@ -176,17 +204,24 @@ class _World:
 
     def step_towards(self, asked: np.ndarray, rates: np.ndarray) -> np.ndarray:
         """The (k,) positions after one simulation step with the motors set to what is asked."""
-        if self._indices:
-            self._engine.setJointMotorControlArray(
+        for index, position, rate, effort, speed in zip(
+            self._indices, asked, rates, self._efforts, self._speeds, strict=True
+        ):
+            limit = {"maxVelocity": speed} if np.isfinite(speed) else {}
+            self._engine.setJointMotorControl2(
                 self._body,
-                self._indices,
+                index,
                 controlMode=self._engine.POSITION_CONTROL,
-                targetPositions=asked.tolist(),
-                targetVelocities=rates.tolist(),
-                forces=self._efforts,
+                targetPosition=float(position),
+                targetVelocity=float(rate),
+                force=effort,
+                **limit,
             )
         for _ in range(SUBSTEPS):
             self._engine.stepSimulation()
+            if self.pushes.obstacles:
+                self.pushes.add(self._engine.getContactPoints(bodyA=self._body))
+        self.pushes.n_steps += 1
         states = self._engine.getJointStates(self._body, self._indices) if self._indices else ()
         positions = np.array([state[0] for state in states])
         self._place_followers(positions, np.array([state[1] for state in states]))

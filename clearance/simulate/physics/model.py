@@ -106,7 +106,7 @@ def _inertia(link: ET.Element) -> np.ndarray:
 
 
 def _least_to_add(tensor: np.ndarray) -> float:
-    """[kg m^2] by how much to raise each moment until a body can have them: none exceeds the two others together."""
+    """[kg m^2] by how much to raise each moment until none exceeds the two others together, as in a body."""
     least, middle, most = np.linalg.eigvalsh(tensor).tolist()
     if least == most == 0.0:
         return _FRAME_INERTIA

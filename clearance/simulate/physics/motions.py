@@ -13,6 +13,7 @@ import numpy as np
 
 from clearance.errors import NotSimulated
 from clearance.simulate.physics.bullet import GRAVITY, SETTLE_TIME, simulated_motion
+from clearance.simulate.physics.course import notices_on_limits
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
 from clearance.world.holders import link_below, robots_below
@@ -33,7 +34,7 @@ def simulated_motions(case: Case) -> tuple[Motion, ...]:
     made = [_simulated(case, asked, i) for i in range(len(case.robots))]
     weights = _weights(asked)
     return tuple(
-        _with_notes(motion, [*motion.notes, *weights[i]], several=len(made) > 1)
+        _judged(case, _with_notes(motion, [*motion.notes, *weights[i]], several=len(made) > 1))
         for i, motion in enumerate(made)
     )
 
@@ -146,6 +147,15 @@ def _loads(asked: Timeline) -> Iterator[tuple[int, str]]:
             below_it = link_below(phase, i)
             if below_it is not None:
                 yield below_it[0], obstacle.name
+
+
+def _judged(case: Case, motion: Motion) -> Motion:
+    """The motion with notices where it takes joints beyond their limits."""
+    if motion.n_steps == 1:
+        return motion
+    placed, rule = motion.placed, case.limits.joints
+    found = notices_on_limits(placed, motion.times, motion.positions, rule, case.prefix_of(placed))
+    return replace(motion, notices=(*motion.notices, *found))
 
 
 def _with_notes(motion: Motion, notes: list[str], *, several: bool) -> Motion:

@@ -232,13 +232,12 @@ WRIST = """<robot name="wrist" {space}>
 </robot>"""
 LOWER = """<inertial><origin xyz="0.1 0 0" rpy="0 0.5 0.2"/><mass value="2"/>
     <inertia ixx="0.02" iyy="{iyy}" izz="0.05" ixy="0.004" ixz="0" iyz="0.006"/></inertial>"""
+USUAL = LOWER.format(iyy=0.05)
 FRAME = """<inertial><mass value="0"/>
     <inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial>"""
 
 
-def wrist(
-    tmp_path: Path, lower=LOWER.format(iyy=0.05), damping=0.0, friction=0.0, space=""
-) -> PlacedRobot:
+def wrist(tmp_path: Path, lower=USUAL, damping=0.0, friction=0.0, space="") -> PlacedRobot:
     path = tmp_path / "wrist.urdf"
     path.write_text(WRIST.format(lower=lower, damping=damping, friction=friction, space=space))
     asked = Trajectory(
@@ -311,7 +310,7 @@ def test_friction_that_the_engine_does_not_know_is_a_warning(tmp_path):
 def test_an_inertia_that_no_body_has_is_made_possible_and_is_a_warning(tmp_path):
     """The engine would take it as none: its greatest moment may not exceed the two others together."""
     placed = wrist(tmp_path, lower=LOWER.format(iyy=0.2))
-    (notice,) = simulated_motion(placed).notices
+    notice = simulated_motion(placed).notices[0]
     assert notice.severity == "warning" and "'lower'" in notice.text
     with bullet._world(placed, with_shapes=False) as world:
         moments = sorted(world._engine.getDynamicsInfo(world._body, 1)[2])
@@ -335,3 +334,38 @@ def test_a_default_namespace_is_read(tmp_path):
     plain = simulated_motion(placed).positions
     named = wrist(tmp_path, space='xmlns="http://www.ros.org"')
     assert np.array_equal(simulated_motion(named).positions, plain)
+
+
+def test_a_robot_that_arrives_late_is_simulated_until_it_rests(tmp_path):
+    placed = cart(tmp_path, effort=60.0)
+    quick = Trajectory(np.array([0.0, 0.2]), ("rail",), np.array([[0.0], [0.5]]))
+    motion = simulated_motion(replace(placed, trajectory=quick, world_from_base=tilted_base()))
+    assert motion.positions[-1, 0] == pytest.approx(0.5, abs=1e-3)
+    assert 0.45 + 1e-6 < motion.times[-1] < 10.2
+
+
+def test_a_robot_that_does_not_arrive_is_suspect(tmp_path):
+    motion = simulated_motion(cart(tmp_path, effort=1e-3))
+    assert motion.times[-1] == pytest.approx(11.0)
+    (notice,) = motion.notices
+    assert notice.severity == "suspect" and notice.kind == "simulated"
+    assert "joint 'rail' leaves the trajectory by up to" in notice.text
+    assert "from its last sample 10 s after it" in notice.text
+
+
+def test_a_robot_that_an_obstacle_stops_is_suspect(tmp_path):
+    placed, in_the_way = cart(tmp_path, effort=50.0), np.eye(4)
+    in_the_way[0, 3] = 0.4
+    at = link_poses(placed, np.zeros((1, 1)))[0, 1] @ in_the_way
+    motion = simulated_motion(placed, (Obstacle(read_box(tmp_path), at),), contact_response=True)
+    pushed, course = motion.notices
+    assert pushed.severity == course.severity == "suspect"
+    assert "obstacles push the simulated robot: 'slider' and " in pushed.text
+    assert bullet.HULLS in motion.notes
+
+
+def test_joints_are_no_faster_than_they_may_be(tmp_path):
+    placed = cart(tmp_path)  # 2 m/s
+    quick = Trajectory(np.array([0.0, 0.1]), ("rail",), np.array([[0.0], [0.5]]))
+    motion = simulated_motion(replace(placed, trajectory=quick))
+    assert np.abs(np.diff(motion.positions[:, 0])).max() * STEPS_PER_SECOND < 2.0 + 1e-6

@@ -168,3 +168,29 @@ def test_a_whole_run_of_two_robots_and_a_part_in_hand(tmp_path):
     assert record.timeline.times[-1] == pytest.approx(1.75)
     assert any("of two: the weight of post" in note for note in record.notes)
     assert record.steps["tracking_error"].to_numpy().max() > 0.0
+
+
+def test_joint_limits_are_those_of_the_simulated_motion(tmp_path):
+    """A rail that gravity pulls, whose motor is too weak to brake: faster than its 2 m/s."""
+    fast = cart(tmp_path, effort=1e-6)
+    rail_up = np.eye(4)
+    joint = fast.robot.moving_joints[0].parent_from_joint[:3, :3]
+    turn = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    rail_up[:3, :3] = turn @ joint.T
+    case = Case("falls", (replace(fast, world_from_base=rail_up),), (post(),))
+    (motion,) = simulated_motions(case)
+    texts = [one.text for one in motion.notices if one.kind == "limits"]
+    assert all(text.startswith("simulated motion: ") for text in texts)
+    assert any("joint 'rail' moves at up to" in text for text in texts)
+    record = cl.answer(cl.Question(case, motion="simulated", certify=False))
+    record = getattr(record, "record", record)
+    assert {*motion.notices} <= {*record.notices}
+
+
+def test_the_headline_says_that_the_motion_is_simulated(tmp_path):
+    case = Case("made", (cart(tmp_path),), (post(),), contact_response=True)
+    run = cl.check(case, motion="simulated")
+    assert "in simulated motion" in run.verdict.headline() and run.passed
+    plain = cl.check(case)
+    assert "simulated" not in plain.verdict.headline()
+    assert any("contact_response has no effect" in note for note in plain.record.notes)
