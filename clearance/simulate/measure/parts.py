@@ -40,23 +40,24 @@ def parts(n_rows: int, *, sparse: bool = False) -> list[slice]:
 def in_order(
     work: Callable[[slice], Result], spans: Sequence[slice], jobs: int
 ) -> Iterator[Result]:
-    """The results of `work` for each span, in order, from so many threads."""
+    """The results of `work` for each span, in order, from so many threads; this one does what none has begun."""
     if jobs == 1 or len(spans) <= 1:
         yield from map(work, spans)
         return
-    pool, waiting = _threads(jobs), iter(spans)
-    ahead: deque[Future[Result]] = deque()
+    pool, waiting = _threads(jobs - 1), iter(spans)
+    ahead: deque[tuple[slice, Future[Result]]] = deque()
     try:
         while True:
             room = WAITING * jobs - len(ahead)
-            ahead += [pool.submit(work, span) for span in itertools.islice(waiting, room)]
+            ahead += [(span, pool.submit(work, span)) for span in itertools.islice(waiting, room)]
             if not ahead:
                 return
-            yield ahead.popleft().result()
+            span, result = ahead.popleft()
+            yield work(span) if result.cancel() else result.result()
     finally:  # also where the caller wants no more: then no thread writes any more
-        for result in ahead:
+        for _, result in ahead:
             result.cancel()
-        wait(ahead)
+        wait([result for _, result in ahead])
 
 
 @functools.lru_cache(maxsize=1)
