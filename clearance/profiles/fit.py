@@ -124,6 +124,10 @@ def fit(
     drawn = shape.at(shape.start)
     if drawn is None:
         raise BadShape("the sketch cannot be drawn", where="sketch")
+    if drawn.crosses_itself:
+        raise BadShape(
+            "the sketch crosses itself", where="sketch", valid="contours that enclose an area each"
+        )
     target = FitTarget(outline, shape, drawn, mode, margin)
     search = (NearestFit if mode == "nearest" else BoundedFit)(shape, target, drawn)
     best, tried = _best(search, starts_of(shape, outline, mode, starts))

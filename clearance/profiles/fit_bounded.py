@@ -36,7 +36,7 @@ class BoundedFit(FitSearch):
         """The shape that the search ends with; None where it does not meet the request, or is no better than the
         score `beat` once it has come near.
         """
-        here = self.shape.at(start)
+        here = self.shape_at(start)
         return None if here is None else self._certified(here, beat)
 
     def _certified(self, here: PlacedShape, beat: float) -> FitCandidate | None:
@@ -77,7 +77,7 @@ class BoundedFit(FitSearch):
             found = least_area(rows, goal, size, reach, self.shape.scale, *bounds)
             if found.value <= 1e-10 * size**2 or reach < 1e-10:
                 break
-            moved, gained = self.shape.at(here.numbers + found.step), -np.inf
+            moved, gained = self.shape_at(here.numbers + found.step), -np.inf
             if moved is not None:
                 fresh = target.gaps(moved.pieces, samples, given)
                 missing = max(0.0, wanted - float(fresh.distance.min()))

@@ -15,8 +15,8 @@ class NearestFit(FitSearch):
     """The search for the least Hausdorff distance."""
 
     def run(self, start: np.ndarray, beat: float = np.inf) -> FitCandidate | None:
-        """The shape that the search ends with; None where the sketch cannot be drawn at its start."""
-        here = self.shape.at(start)
+        """The shape that the search ends with; None where it cannot be drawn at its start."""
+        here = self.shape_at(start)
         return None if here is None else self._minimax(self._least_squares(here))
 
     def _least_squares(self, here: PlacedShape) -> PlacedShape:
@@ -28,7 +28,7 @@ class NearestFit(FitSearch):
             ridge = damping * np.diag(np.diag(normal) + 1e-12 * np.trace(normal) + 1e-300)
             step = np.linalg.lstsq(normal + ridge, -scaled.T @ rows.distance, rcond=None)[0]
             step = np.clip(step, *self.bounds(here, np.inf))
-            moved = self.shape.at(here.numbers + step * self.shape.scale)
+            moved = self.shape_at(here.numbers + step * self.shape.scale)
             fresh = rows.distance if moved is None else self._gaps(moved).distance
             if moved is not None and fresh @ fresh < rows.distance @ rows.distance:
                 before = rows.distance @ rows.distance
@@ -54,7 +54,7 @@ class NearestFit(FitSearch):
             hoped = whole.distance - predicted
             if hoped <= 1e-9 * whole.distance + self.tiny:
                 break
-            moved = self.shape.at(here.numbers + step)
+            moved = self.shape_at(here.numbers + step)
             gained, there = -1.0, whole
             if moved is not None:
                 there = self._distance(moved)

@@ -142,6 +142,11 @@ class FitSearch:
         self.samples = drawn.pieces.spread(SAMPLES)
         self.tiny = 1e-12 * shape.size
 
+    def shape_at(self, numbers: np.ndarray) -> PlacedShape | None:
+        """The shape of these numbers; None where it cannot be drawn so, or crosses itself."""
+        here = self.shape.at(numbers)
+        return None if here is None or here.crosses_itself else here
+
     def bounds(self, here: PlacedShape, reach: float) -> tuple[np.ndarray, np.ndarray]:
         """(n,) each: least and greatest step, in units of the shape's scale, within `reach`."""
         shape, numbers = self.shape, here.numbers

@@ -12,7 +12,7 @@ from clearance.planar.curve import Curve
 from clearance.planar.minimum import Minimum, minimum_distance
 from clearance.profiles.contour import Contour, joined
 from clearance.profiles.pieces import FINE, ContourPieces, contours_of
-from clearance.profiles.region import Region, contains, overlap_of, region_of
+from clearance.profiles.region import Region, contains, crosses_itself, overlap_of, region_of
 
 CHORD = 1e-7
 """[-] How far chords may stray from arcs where sides are decided, relative to the size."""
@@ -70,6 +70,11 @@ class ClosedContours:
                 where=name,
                 valid="contours beside one another, or one within another as a hole",
             )
+
+    @cached_property
+    def crosses_itself(self) -> bool:
+        """True if one of the contours crosses itself, or laps over itself: its signed area is no area then."""
+        return any(crosses_itself(ring, 2.0 * CHORD * self.curve.size) for ring in self._rings)
 
     @property
     def starts(self) -> np.ndarray:

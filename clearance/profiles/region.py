@@ -154,6 +154,18 @@ def overlap_of(rings: Sequence[np.ndarray], width: float) -> Overlap | None:
     return None
 
 
+def crosses_itself(ring: np.ndarray, width: float) -> bool:
+    """True if a closed ring encloses another area than its corners say with their signs.
+
+    Args:
+        width: [m] a difference no wider along the whole ring is none: the ring touches itself, at most.
+    """
+    drawn = shapely.Polygon(ring)
+    if drawn.is_valid:
+        return False
+    return bool(abs(shapely.make_valid(drawn).area - drawn.area) > width * drawn.length)
+
+
 def _inner_point(region: Region) -> tuple[float, float]:
     x, y = region.representative_point().coords[0]
     return x, y

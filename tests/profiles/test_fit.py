@@ -11,6 +11,7 @@ from clearance.errors import BadInput, BadShape
 from clearance.profiles.contour import Contour
 from clearance.profiles.fit import NoFit
 from clearance.profiles.fit_shape import NoFreeDimension, SketchShape
+from clearance.profiles.gap import ClosedContours
 from clearance.profiles.outline_file import read_outline
 from clearance.profiles.profile import Profile
 from tests.oracle.outlines import inside
@@ -190,3 +191,38 @@ def test_a_sketch_far_smaller_than_the_outline_about_it_grows_to_fill_it():
     found = cl.fit(rectangle(0.1, 0.1), outline, "inside", margin=0.005)
     assert found.dimensions == pytest.approx({"width": 0.99, "depth": 0.99}, abs=1e-6)
     assert found.clearance >= 0.005
+
+
+TWELVE_CORNERS = cl.Curve.polyline(
+    [
+        [0.591, 0.050], [0.025, 0.285], [-0.213, 0.803], [-0.542, 0.082], [-1.110, 0.019], [-0.589, -0.300],
+        [-0.538, -0.555], [-0.479, -0.541], [0.126, -0.773], [0.082, -0.359], [0.218, -0.434], [0.028, -0.227],
+    ],
+    closed=True,
+)  # fmt: skip
+TWELVE_CORNERS_AREA = 0.939
+
+
+def corner_of_six(corners=((0, 0), (1, 0), (1, 0.4), (0.5, 0.4), (0.5, 1), (0, 1))):
+    """An L of level and upright sides; the lengths of four are free."""
+    s = cl.Sketch()
+    points = [s.point(*corner) for corner in corners]
+    sides = [s.segment(points[i], points[(i + 1) % 6]) for i in range(6)]
+    for i, side in enumerate(sides):
+        (s.vertical if i % 2 else s.horizontal)(side)
+    for i in range(4):
+        s.distance(points[i], points[i + 1], math.dist(corners[i], corners[i + 1]), driven=True)
+    return s
+
+
+def test_a_fit_does_not_cross_itself_so_that_its_lobes_cancel_each_other():
+    found = cl.fit(corner_of_six(), TWELVE_CORNERS, "outside", margin=0.0152)
+    assert found.area > TWELVE_CORNERS_AREA
+    assert not ClosedContours.of_curve(found.curve).crosses_itself
+
+
+@pytest.mark.parametrize("mode", ["nearest", "outside"])
+def test_a_sketch_that_crosses_itself_as_drawn_is_not_fitted(mode):
+    crossed = corner_of_six(((0, 0), (1, 0), (1, 0.4), (-0.5, 0.4), (-0.5, 1), (0, 1)))
+    with pytest.raises(BadShape, match="sketch: the sketch crosses itself"):
+        cl.fit(crossed, TWELVE_CORNERS, mode)
