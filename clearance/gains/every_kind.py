@@ -114,7 +114,8 @@ def table_lines(tried: Sequence[Trial]) -> list[str]:
         if one.kept and one.gain.size == 0.0:
             cells = ("yes", "none", f"{one.gain.who}; nothing had to be changed")
         elif one.kept:
-            cells = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
+            warned = "".join(f"; warning: {line}" for line in one.gain.unjudged)
+            cells = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}{warned}")
         elif one.gain.clearances_kept:
             change = size_text(one.gain) if one.gain.size > 0.0 else "none"
             cells = ("no", change, f"{one.gain.who}; {not_passed_text(one.gain)}")

@@ -17,6 +17,7 @@ from clearance.gains.change_parts import (
 )
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.result import Gain
+from clearance.gains.sentences import lines_of
 from clearance.gains.tool_path_error import ToolPathError
 from clearance.gains.turn import Turn
 from clearance.record.moment import Moment
@@ -94,6 +95,7 @@ class Figures(Keys):
     after: RunRow
     blocked: Obstruction | None
     binding: list[str]
+    warnings: list[str]
     n_measured: int
     notes: list[str]
 
@@ -141,6 +143,7 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "after": _of_run(gain.after, proven_after(gain)),
         "blocked": None if blocked is None else asdict(blocked) | {"text": str(blocked)},
         "binding": list(gain.binding),
+        "warnings": [line for label, line in lines_of(gain) if label == "warning"],
         "n_measured": gain.n_measured,
         "notes": list(notes),
     }

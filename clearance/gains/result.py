@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import NoReturn
 
@@ -13,6 +14,7 @@ from clearance.gains.obstruction import Obstruction
 from clearance.gains.request import Request
 from clearance.gains.tool_path_error import ToolPathError
 from clearance.gains.tool_poses import ToolMove
+from clearance.gains.unjudged import unjudged_effects
 from clearance.run import Run
 from clearance.world.case import Case
 
@@ -62,6 +64,13 @@ class Gain:
     def __repr__(self) -> str:
         kept = "kept" if self.kept else "not kept"
         return f"<Gain of {self.case!r}: {self.request.kind} of {self.who}, {kept}, {self.size:.4g} {self.unit}>"
+
+    @cached_property
+    def unjudged(self) -> tuple[str, ...]:
+        """The effects of the change that no rule sees, a line each."""
+        if self.size == 0.0:
+            return ()
+        return tuple(unjudged_effects(self.before.record, self.after.record))
 
     @property
     def kept(self) -> bool:

@@ -20,7 +20,6 @@ from clearance.gains.change_parts import (
 from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
 from clearance.gains.moved_windows import windows_that_stay
-from clearance.gains.obstacles_met import obstacles_met
 from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
 from clearance.gains.result import Gain
@@ -56,8 +55,8 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
         yield from _kept_as_it_is(gain)
         return
     yield from _kept(gain) if gain.clearances_kept else _not_kept(gain)
+    yield from (("warning", line) for line in gain.unjudged)
     if gain.request.kind == "obstacle" and gain.size > 0.0:
-        yield from (("warning", line) for line in _obstacles_met(gain))
         yield from (("note", line) for line in _programs_left(gain))
     if gain.request.kind == "timing" and gain.size > 0.0:
         yield from (("warning", line) for line in _windows_left(gain))
@@ -71,11 +70,6 @@ def _lines_of(gain: Gain) -> Iterator[Line]:
         )
     if gain.request.margin:
         yield "margin", "it is not written into the changed case, whose limits are as they were"
-
-
-def _obstacles_met(gain: Gain) -> Iterator[str]:
-    for moved, other in obstacles_met(gain.before.record, gain.after.record):
-        yield f"{moved!r} stands in {other!r} after the change: obstacles are not measured against each other"
 
 
 def _windows_left(gain: Gain) -> Iterator[str]:

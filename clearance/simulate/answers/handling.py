@@ -244,15 +244,7 @@ class _Placed:
 
     @cached_property
     def _depth(self) -> float:
-        """[m] An upper bound; NaN for bodies without an inside."""
-        from clearance.query.contact import contact
-
-        try:
-            found = contact(self.a, self.b, pose_a=self.world_from_a, pose_b=self.world_from_b,
-                            rough=True, bounded=False)  # fmt: skip
-        except BadInput:
-            return np.nan
-        return 0.0 if found is None else found.penetration
+        return depth_between(self.a, self.world_from_a, self.b, self.world_from_b)
 
 
 def _time(here: float, there: float, share: float) -> float:
@@ -261,6 +253,19 @@ def _time(here: float, there: float, share: float) -> float:
         return float(there)
     outwards = math.ceil if there > here else math.floor
     return outwards(round((here + share * (there - here)) * 1e6, 3)) / 1e6
+
+
+def depth_between(
+    a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray
+) -> float:
+    """[m] An upper bound of how deep two bodies are in each other; NaN for bodies without an inside."""
+    from clearance.query.contact import contact
+
+    try:
+        found = contact(a, b, pose_a=world_from_a, pose_b=world_from_b, rough=True, bounded=False)
+    except BadInput:
+        return np.nan
+    return 0.0 if found is None else found.penetration
 
 
 def gap_between(
