@@ -274,7 +274,7 @@ def _not_in_time(gain: Gain) -> str:
     searched = max(gain.size, gain.lower_bound)
     slow = gain.request.slow_down
     finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.request.most_delay)
-    more = "; longer ones were not tried"
+    more = f"; the search ended after {gain.n_measured} tries, and longer ones were not tried"
     if searched + finest >= most:
         searched, more = most, ""
     how = (
