@@ -29,13 +29,16 @@ STEP_TURN, STEP_SLIDE = 0.05, 5e-3
 """[rad], [m] A shorter way in an interval is no jump: stamps of recordings that lie close make it fast."""
 
 
-def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
+def notices_on_speed(
+    placed: PlacedRobot, rule: str, before: str = "", rounding: float = ROUNDING
+) -> list[Notice]:
     """Joints that are faster, or accelerate more, than they may; one notice, and one on jumps, which are suspect.
 
     If the robot's own file and another one limit a speed, the lower limit counts.
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
+        rounding: [-] of a limit; a joint that exceeds it by less is at it.
     """
     asked = placed.trajectory
     if asked is None or asked.n_steps < 2:
@@ -44,7 +47,7 @@ def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[N
         excess
         for course in joint_courses(placed)
         if course.i_column is not None
-        for excess in _excesses(placed, course, asked, before)
+        for excess in _excesses(placed, course, asked, before, rounding)
     ]
     notices = []
     jumps = [text for is_jump, text in found if is_jump]
@@ -76,7 +79,7 @@ def _jumps_of_loop(placed: PlacedRobot, before: str) -> Iterator[str]:
 
 
 def _excesses(
-    placed: PlacedRobot, course: JointCourse, asked: Trajectory, before: str
+    placed: PlacedRobot, course: JointCourse, asked: Trajectory, before: str, rounding: float
 ) -> Iterator[tuple[bool, str]]:
     """Whether it is a jump, and what a joint exceeds in words."""
     limit, rate = motion_limit(placed, course.joint), placed.timing.rate
@@ -88,7 +91,7 @@ def _excesses(
         ("moves at", speed * rate, limit.velocity, f"{unit}/s"),
         ("accelerates by", acceleration * rate**2, limit.acceleration, f"{unit}/s²"),
     ):
-        n_beyond = int((given > most * (1.0 + ROUNDING)).sum())
+        n_beyond = int((given > most * (1.0 + rounding)).sum())
         if n_beyond:
             is_jump = what == "moves at" and _jumps(course, given, most, n_beyond)
             yield (

@@ -26,6 +26,9 @@ NOT_ARRIVED = 2e-3
 AT_LIMIT = 1e-4
 """[rad or m] The engine's joints give way at their limits: nearer than that they are at them."""
 
+SPEED_ROUNDING = 1e-3
+"""[-] of a speed limit, which the engine's drives keep to no better: a table at its limit is not beyond it."""
+
 HULLS = (
     "simulated motion: contact_response: the links push as their convex hulls; the clearance is that of "
     "the shapes themselves"
@@ -118,5 +121,8 @@ def notices_on_limits(
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
     """
     made = as_measured(placed, times, positions)
-    found = [*notices_on_joints(made, rule, before), *notices_on_speed(made, rule, before)]
+    found = [
+        *notices_on_joints(made, rule, before),
+        *notices_on_speed(made, rule, before, SPEED_ROUNDING),
+    ]
     yield from (replace(one, text=f"simulated motion: {one.text}") for one in found)

@@ -194,3 +194,13 @@ def test_the_headline_says_that_the_motion_is_simulated(tmp_path):
     plain = cl.check(case)
     assert "simulated" not in plain.verdict.headline()
     assert any("contact_response has no effect" in note for note in plain.record.notes)
+
+
+def test_a_speed_that_drives_keep_but_for_rounding_is_no_warning(tmp_path):
+    from clearance.simulate.physics.course import notices_on_limits
+
+    placed, times = plate(tmp_path, [0.0, 0.0]), np.array([0.0, 0.1, 0.2])  # 2 rad/s
+    for speed, n_notices in ((2.0 * (1.0 + 5e-4), 0), (2.0 * (1.0 + 2e-3), 1)):
+        positions = speed * times[:, None]
+        found = [*notices_on_limits(placed, times, positions, "fail", "")]
+        assert len(found) == n_notices
