@@ -55,7 +55,8 @@ def require_no_shortfall(bodies: Iterable[Body], purpose: str) -> None:
             raise BadInput(
                 f"{body.name!r} may stand {body.shape.shortfall * 1e3:.3g} mm outside its facets, which "
                 f"{purpose} does not count",
-                valid="a mesh file in place of the CAD file, or a check of the case, which counts it",
+                valid="a mesh file in place of a CAD file, double precision in place of single, or a check of "
+                "the case, which counts it",
             )
 
 

@@ -14,7 +14,7 @@ from clearance.errors import BadShape, BadSyntax, EmptyMesh, at
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.formats.mesh.ply_file import elements_of, vertices
-from clearance.formats.mesh.triangles import scaled_points
+from clearance.formats.mesh.triangles import COUNTED, on_rounding, rounded_by, scaled_points
 from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
 
 
@@ -93,12 +93,18 @@ def cloud_from_bytes(
             raise BadSyntax(f"unknown format of points {suffix!r}", valid=valid)
         found: Points = function_at(known.read)(data)
         places, notes = _returned(found.places)
+        rounded, places = rounded_by(places), places.astype(np.float64)
         if len(places) > MOST_POINTS:
             raise BadShape(f"the file has {len(places):,} points", valid=f"{MOST_POINTS:,} at most")
         if in_millimetres and not found.in_metres:
-            places = places / 1000.0
-        shape = PointCloud(scaled_points(places, scale)[0], radius)
-        notes += _on_copies(len(places), shape)
+            places, rounded = places / 1000.0, rounded / 1000.0
+        points, factors = scaled_points(places, scale)
+        rounded *= float(np.abs(factors).max())
+        shape = PointCloud(points, radius + (rounded if rounded > COUNTED else 0.0))
+        notes += [
+            *_on_copies(len(places), shape),
+            *on_rounding(rounded, "is added to the radius of its balls"),
+        ]
         return LoadedCloud(shape, (*found.notes, *notes))
 
 

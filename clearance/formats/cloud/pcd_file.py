@@ -22,6 +22,7 @@ from clearance.errors import (
     nearest_name,
 )
 from clearance.formats.cloud.formats import Points
+from clearance.formats.mesh.triangles import as_points
 from clearance.formats.text.numbers import floats, integers
 
 _KEYS = (
@@ -186,12 +187,11 @@ def _of_rows(
     rows = np.frombuffer(body, np.uint8, n_points * n_bytes).reshape(n_points, n_bytes)
     columns = [rows[:, field.offset : field.offset + field.n_bytes] for field in chosen]
     with np.errstate(invalid="ignore"):  # of a signalling NaN, which becomes one that is quiet
-        return np.stack(
+        return as_points(
             [
-                np.ascontiguousarray(column).view(field.kind)[:, 0].astype(np.float64)
+                np.ascontiguousarray(column).view(field.kind)[:, 0]
                 for column, field in zip(columns, chosen, strict=True)
-            ],
-            axis=1,
+            ]
         )
 
 
@@ -206,12 +206,8 @@ def _of_columns(
         raise BadShape(f"{n_bytes} bytes are compressed", valid=f"{wanted} for {n_points} points")
     _require_length(body[8:], n_compressed)
     columns = decompressed(body[8 : 8 + n_compressed], n_bytes)
-    return np.stack(
-        [
-            np.frombuffer(columns, field.kind, n_points, field.offset * n_points).astype(np.float64)
-            for field in chosen
-        ],
-        axis=1,
+    return as_points(
+        [np.frombuffer(columns, field.kind, n_points, field.offset * n_points) for field in chosen]
     )
 
 

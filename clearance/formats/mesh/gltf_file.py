@@ -19,7 +19,13 @@ from clearance.errors import BadSyntax, EmptyMesh, NotFinite, at
 from clearance.formats.mesh.gltf_buffers import Buffers, GltfObject
 from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined, placed
 from clearance.formats.mesh.polygon_cut import fan, strip
-from clearance.formats.mesh.triangles import MeshRequest, Triangles, refuse_missing_corners
+from clearance.formats.mesh.triangles import (
+    MeshRequest,
+    Triangles,
+    as_points,
+    refuse_missing_corners,
+    rounded_by,
+)
 from clearance.geometry.pose import pose_from_quaternion
 
 _HARMLESS = (
@@ -53,7 +59,7 @@ def read_glb(asked: MeshRequest) -> Triangles:
     notes: tuple[str, ...] = (note,)
     if len(document.items("scenes")) > 1:
         notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
-    return Triangles(vertices, surface.corners, notes)
+    return Triangles(vertices, surface.corners, notes, rounded=surface.rounded)
 
 
 def chunks(data: bytes) -> tuple[GltfObject, bytes]:
@@ -187,8 +193,8 @@ def mesh_pieces(mesh: GltfObject, weights: np.ndarray | None, buffers: Buffers) 
 
 def _piece(primitive: GltfObject, weights: np.ndarray, buffers: Buffers) -> Triangles:
     primitive.refuse_extension("KHR_draco_mesh_compression")
-    vertices = buffers.read(primitive.object("attributes").index("POSITION"), 3).astype(np.float64)
-    vertices = _morphed(vertices, primitive, weights, buffers)
+    stored = buffers.read(primitive.object("attributes").index("POSITION"), 3)
+    vertices = _morphed(stored.astype(np.float64), primitive, weights, buffers)
     if "indices" in primitive.value:
         indices = buffers.read(primitive.index("indices"), 1)[:, 0]
         if indices.dtype.kind != "u":
@@ -197,7 +203,8 @@ def _piece(primitive: GltfObject, weights: np.ndarray, buffers: Buffers) -> Tria
     else:
         corners = np.arange(len(vertices))
     refuse_missing_corners(corners, len(vertices))
-    return Triangles(vertices, _by_mode(primitive.index("mode", _TRIANGLES), corners))
+    by_mode = _by_mode(primitive.index("mode", _TRIANGLES), corners)
+    return Triangles(vertices, by_mode, rounded=rounded_by(as_points([*stored.T])))
 
 
 def _by_mode(mode: int, corners: np.ndarray) -> np.ndarray:

@@ -18,11 +18,13 @@ from clearance.formats.files.input_files import read_bytes
 from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.formats.mesh.placing import Z_FROM_Y_UP
 from clearance.formats.mesh.triangles import (
+    COUNTED,
     MeshRequest,
     Triangles,
     UpAxis,
     checked,
     n_without_area,
+    on_rounding,
     scaled,
     without_copies,
 )
@@ -110,6 +112,7 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
 
 def _solid(triangles: Triangles) -> LoadedMesh:
     single, off = without_copies(triangles), triangles.off
+    off += triangles.rounded if triangles.rounded > COUNTED else 0.0
     given = Polyhedron.from_triangles(single.vertices, single.corners, excess=off, shortfall=off)
     shape = given.outward()
     notes = (*_on_triangles(triangles, single, shape), *_on_parts(given, shape))
@@ -123,6 +126,7 @@ def _on_triangles(triangles: Triangles, single: Triangles, shape: Polyhedron) ->
             f"facets of a CAD file, up to {triangles.off * 1e3:.3g} mm off its surface, which is taken off the "
             "clearance; depths of contact are those of the facets"
         )
+    yield from on_rounding(triangles.rounded, "is taken off the clearance")
     yield from triangles.notes
     n_copies = len(triangles.corners) - len(single.corners)
     if n_copies:

@@ -62,7 +62,12 @@ def placed(piece: Triangles, world_from_piece: np.ndarray) -> Triangles:
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
         vertices = piece.vertices @ world_from_piece[:3, :3].T + world_from_piece[:3, 3]
         mirrored = np.linalg.det(world_from_piece[:3, :3]) < 0
-    return Triangles(vertices, piece.corners[:, ::-1] if mirrored else piece.corners)
+        sums = np.abs(
+            world_from_piece[:3, :3]
+        )  # longest way <= sqrt(greatest row times column sum)
+        rounded = piece.rounded * float(np.sqrt(sums.sum(axis=0).max() * sums.sum(axis=1).max()))
+    corners = piece.corners[:, ::-1] if mirrored else piece.corners
+    return Triangles(vertices, corners, rounded=rounded)
 
 
 def joined(pieces: Iterable[tuple[Hashable, Triangles]]) -> Triangles:
@@ -86,4 +91,5 @@ def joined(pieces: Iterable[tuple[Hashable, Triangles]]) -> Triangles:
     return Triangles(
         np.concatenate([piece.vertices for piece in of_triangles]),
         np.concatenate([p.corners + start for p, start in zip(of_triangles, starts, strict=False)]),
+        rounded=max(piece.rounded for piece in of_triangles),
     )

@@ -14,7 +14,13 @@ import numpy as np
 
 from clearance.errors import BadSyntax, DuplicateName, EmptyMesh, MissingKey, at
 from clearance.formats.mesh.polygon_cut import cut_rings, strip
-from clearance.formats.mesh.triangles import MeshRequest, Triangles, checked, refuse_missing_corners
+from clearance.formats.mesh.triangles import (
+    MeshRequest,
+    Triangles,
+    as_points,
+    checked,
+    refuse_missing_corners,
+)
 from clearance.formats.text.numbers import floats, integers
 
 _CORNERS = ("vertex_indices", "vertex_index")
@@ -28,7 +34,8 @@ def read_ply(asked: MeshRequest) -> Triangles:
     """
     elements = elements_of(asked.data)
     points = vertices(elements)
-    corners = [cut_rings(points, *rings) for rings in _rings(elements, "face", points)]
+    exact = points.astype(np.float64)
+    corners = [cut_rings(exact, *rings) for rings in _rings(elements, "face", points)]
     for flat, counts in _rings(elements, "tristrips", points, ends=True):
         corners += [_strips(ring) for ring in np.split(flat, np.cumsum(counts)[:-1])]
     if not sum(map(len, corners)):
@@ -40,7 +47,7 @@ def read_ply(asked: MeshRequest) -> Triangles:
 
 
 def vertices(elements: dict[str, PlyRows]) -> np.ndarray:
-    """(n, 3) the vertices, in the file's unit.
+    """(n, 3) the vertices, in the file's unit and, where that is one for all, precision.
 
     Raises:
         MissingKey: there are none with x, y and z.
@@ -49,7 +56,7 @@ def vertices(elements: dict[str, PlyRows]) -> np.ndarray:
     missing = [name for name in "xyz" if name not in columns]
     if missing:
         raise MissingKey(f"the PLY file has no vertex property {missing[0]!r}", valid="x, y, z")
-    return np.stack([columns[name].astype(np.float64) for name in "xyz"], axis=1)
+    return as_points([columns[name] for name in "xyz"])
 
 
 def _rings(elements: dict[str, PlyRows], name: str, points: np.ndarray, ends: bool = False):

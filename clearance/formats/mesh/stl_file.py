@@ -46,7 +46,7 @@ def read_stl(asked: MeshRequest) -> Triangles:
 
 def _binary(data: bytes, n_facets: int) -> Triangles:
     facets = np.frombuffer(data, _FACET, count=n_facets, offset=_HEADER_BYTES)
-    vertices = facets["corners"].reshape(-1, 3).astype(np.float64)
+    vertices = facets["corners"].reshape(-1, 3)
     return Triangles(vertices, np.arange(3 * n_facets).reshape(-1, 3))
 
 

@@ -7,7 +7,7 @@ coplanar neighbours (`geometry.coplanar`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -45,12 +45,44 @@ class Triangles(NamedTuple):
         corners: (m, 3) vertex indices, counter-clockwise from outside.
         notes: what reading had to mend or decide, one line each.
         off: [m] how far the triangles may be off the surface that they stand for, either way.
+        rounded: [m] how far rounding to single precision may have moved a vertex.
     """
 
     vertices: np.ndarray
     corners: np.ndarray
     notes: tuple[str, ...] = ()
     off: float = 0.0
+    rounded: float = 0.0
+
+
+COUNTED = 1e-5
+"""[m] Rounding of a file's numbers takes nothing off a clearance up to here: it is less 128 m from the origin."""
+
+
+def as_points(columns: Sequence[np.ndarray]) -> np.ndarray:
+    """(n, 3) columns of numbers as points, of single precision where all of them are, else of double."""
+    points = np.stack(columns, axis=1)
+    is_single = points.dtype.kind == "f" and points.dtype.itemsize == 4
+    return points.astype(np.float32 if is_single else np.float64)
+
+
+def rounded_by(points: np.ndarray) -> float:
+    """How far rounding may have moved points (n, 3) of single precision, in their unit; 0 for all others.
+
+    Values that are not finite do not count.
+    """
+    if points.dtype != np.float32:
+        return 0.0
+    largest = np.abs(points).max(axis=0, initial=0.0, where=np.isfinite(points))
+    return float(np.linalg.norm(0.5 * np.spacing(largest).astype(np.float64)))
+
+
+def on_rounding(rounded: float, taken: str) -> Iterator[str]:
+    """The note on rounding that counts."""
+    if rounded > COUNTED:
+        yield (
+            f"single precision so far from the origin: up to {rounded * 1e3:.3g} mm off, which {taken}"
+        )
 
 
 def checked(triangles: Triangles) -> Triangles:
@@ -61,7 +93,8 @@ def checked(triangles: Triangles) -> Triangles:
         EmptyMesh: no triangle. BadPolygon: a corner that does not exist. NotFinite: NaN or
         infinity.
     """
-    vertices = np.asarray(triangles.vertices, dtype=np.float64).reshape(-1, 3)
+    given = np.asarray(triangles.vertices).reshape(-1, 3)
+    vertices = given.astype(np.float64)
     corners = np.asarray(triangles.corners, dtype=np.int64).reshape(-1, 3)
     if not len(corners):
         raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
@@ -71,7 +104,9 @@ def checked(triangles: Triangles) -> Triangles:
         i_bad = int(np.flatnonzero(broken)[0])
         raise NotFinite(f"face {i_bad} has a coordinate that is not a finite number")
     used, new_index = np.unique(corners, return_inverse=True)
-    return triangles._replace(vertices=vertices[used], corners=new_index.reshape(-1, 3))
+    rounded = max(triangles.rounded, rounded_by(given[used]))
+    corners = new_index.reshape(-1, 3)
+    return triangles._replace(vertices=vertices[used], corners=corners, rounded=rounded)
 
 
 def refuse_missing_corners(corners: np.ndarray, n_vertices: int) -> None:
@@ -97,8 +132,13 @@ def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:
     vertices, factors = scaled_points(triangles.vertices, scale)
     mirrored = np.count_nonzero(factors < 0) % 2 == 1
     corners = triangles.corners[:, :: -1 if mirrored else 1]
-    off = triangles.off * float(np.abs(factors).max())
-    return triangles._replace(vertices=vertices, corners=corners, off=off)
+    most = float(np.abs(factors).max())
+    return triangles._replace(
+        vertices=vertices,
+        corners=corners,
+        off=triangles.off * most,
+        rounded=triangles.rounded * most,
+    )
 
 
 def scaled_points(

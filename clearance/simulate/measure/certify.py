@@ -138,7 +138,7 @@ def no_finer_than_rounding(
     if gap >= finest:
         return gap, ()
     text = (
-        f"certified to {finest * 1000:.2g} mm, not to the {gap * 1000:.2g} mm asked for: no bound is finer than "
+        f"certified to {finest * 1000:.4g} mm, not to the {gap * 1000:.4g} mm asked for: no bound is finer than "
         f"2^-32 of the scene's size ({size:.3g} m from the origin), which is above rounding"
     )
     return finest, (Notice(Severity.WARNING, "certificate", text),)
