@@ -68,7 +68,9 @@ def program_motion(
         moves = tuple(_moves(read, frames))
         carriages = frames.carriages(asked.timing)
         program = Program(
-            *(given.tool.link, given.tool.matrix(), moves, own, given.step), carriages=carriages
+            *(given.tool.link, given.tool.matrix(), moves, own, given.step),
+            carriages=carriages,
+            skips_overlaps=read.skips_overlaps,
         )
         found = motion_of(cell.robot, program)
     made = replace(

@@ -16,6 +16,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadProgram, UnknownLink, at, nearest_name
 from clearance.geometry.pose import inverse
 from clearance.programs.arm import Arm
+from clearance.programs.blends import doubts_on, require_apart
 from clearance.programs.carriage import SMOOTH, Carriage
 from clearance.programs.carriers import arm_of, on_carriers, start_of
 from clearance.programs.corner import PATH_ERROR, corner_of
@@ -77,6 +78,8 @@ def motion_of(robot: Robot, program: Program) -> ProgramMotion:
             carriage = program.carriage_of(run)
             ways = ways_of(arm, run, samples.at, carriage, samples.now)
             samples.note_targets(ways, carriage)
+            if program.skips_overlaps:
+                require_apart(arm, ways)
             for leg in legs_of(arm, ways):
                 with at(leg.move.where):
                     samples.add(leg)
@@ -102,6 +105,7 @@ class _Samples:
     corners: list[CornerZone] = field(default_factory=list)
     unproven: list[UnprovenSpan] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    doubtful: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.laid = LaidSamples(self.at)
@@ -172,7 +176,7 @@ class _Samples:
             unproven=tuple(self.unproven),
         )
         notes = (*self._on_carriages(), *self.notes)
-        return ProgramMotion(trajectory, notes, tuple(self._on_jumps(samples)))
+        return ProgramMotion(trajectory, notes, (*self._on_jumps(samples), *self.doubtful))
 
     def _on_carriages(self) -> Iterator[str]:
         """A line for each thing that moves by itself, on the moves that go with it."""
@@ -278,6 +282,8 @@ class _Samples:
     def _add_corner(self, zone: CornerZone, corner: Corner) -> None:
         self.corners.append(zone)
         self.notes.append(_note_on(zone, corner))
+        if self.program.skips_overlaps:
+            self.doubtful += doubts_on(corner)
 
     def _beside_joints(self, leg: Leg, corner: Corner) -> None:
         """The corner zone between two moves of which one is a joint move."""

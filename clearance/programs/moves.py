@@ -115,6 +115,7 @@ class Program:
         seen_from: the link, or the carriage, that its targets are seen from, which may differ from move to move
             until `parts` are taken; the root if empty.
         carriages: what moves by itself and carries frames, by name.
+        skips_overlaps: its controller skips a move where two corner zones overlap, and cuts none to half.
     """
 
     link: str
@@ -124,6 +125,7 @@ class Program:
     step: float = 0.002
     seen_from: str = ""
     carriages: Mapping[str, Carriage] = field(default_factory=dict)
+    skips_overlaps: bool = False
 
     @property
     def named(self) -> frozenset[str]:

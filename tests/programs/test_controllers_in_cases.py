@@ -124,6 +124,35 @@ def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
     assert "moves[1].lin.to has an angle of 45 rad" in told
 
 
+def blended(first: float, second: float) -> str:
+    """Two lines of 100 mm and one of 50 mm, around corners of such radii [m]."""
+    at = tool_at(START)
+    x, y, z = at[:3, 3].tolist()
+    pose = lambda *xyz: f"p[{', '.join(map(repr, [*xyz, *rotation_vector(at)]))}]"  # noqa: E731
+    return f"""set_tcp(p[0, 0, 0, 0, 0, 0])
+movej({axes_of(START)})
+movel({pose(x, y + 0.1, z)}, r={first})
+movel({pose(x, y + 0.1, z - 0.1)}, r={second})
+movel({pose(x, y + 0.05, z - 0.1)})
+"""
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.06, 0.045), (0.02, 0.06), (0.11, 0.0)])
+def test_a_script_whose_blends_overlap_is_refused_for_the_robot_skips_a_move(
+    tmp_path, first, second
+):
+    path = controller_case(tmp_path, "a.script", blended(first, second), axes=BEND)
+    with pytest.raises(cl.ClearanceError, match=r"line [345]: blends overlap .*skips a move"):
+        cl.load_case(path)
+
+
+@pytest.mark.parametrize(("first", "is_cut"), [(0.07, True), (0.05, False)])
+def test_a_blend_of_more_than_half_of_a_move_stands_in_the_headline(tmp_path, first, is_cut):
+    path = controller_case(tmp_path, "a.script", blended(first, 0.02), axes=BEND)
+    told = [one.text for one in notices_of(cl.load_case(path)) if "half of a move" in one.text]
+    assert len(told) == is_cut and all("LIN 3: a blend of 70 mm" in one for one in told)
+
+
 def test_points_beside_a_program_are_read_along_and_listed(tmp_path):
     at = tool_at(START)
     (x, y, z), turn = (at[:3, 3] * 1e3).tolist(), frame_angles(at)

@@ -140,6 +140,7 @@ class ControllerProgram:
             assumed or passed over. base: why a robot's root link may not be the controller's base; empty where it
             is. doubts: a line each on what the controller may move otherwise, for the headline. maker: the preset
             of `axes_as` that its language has. left_out: what the times of the moves lack, and where.
+        skips_overlaps: the controller skips a move where two corner zones overlap.
     """
 
     moves: tuple[ControllerMove | ControllerWait, ...]
@@ -148,6 +149,7 @@ class ControllerProgram:
     doubts: tuple[str, ...] = ()
     maker: str = "plain"
     left_out: tuple[str, ...] = ()
+    skips_overlaps: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,7 +64,7 @@ class ConvertedProgram:
         starts_anywhere: nobody says where the joints are before its first move, and it begins at that one's end.
         left_out: what its times lack: instructions that the case leaves out, and what no file says.
         is_rough: they rest on accelerations that no file says.
-        own: the program, if it is written in our form.
+        own: the program, if it is written in our form. skips_overlaps: as of a `ControllerProgram`.
     """
 
     program: schema.Program
@@ -77,6 +77,7 @@ class ConvertedProgram:
     contradicted: tuple[str, ...] = ()
     is_rough: bool = False
     own: schema.Program | None = None
+    skips_overlaps: bool = False
 
 
 def converted(
@@ -125,6 +126,7 @@ def converted(
     return ConvertedProgram(
         *(checked, places, names, notes, starts_anywhere, rests_on, left_out, contradicted),
         is_rough=any(one.is_rough for one in moving),
+        skips_overlaps=read.skips_overlaps,
     )
 
 

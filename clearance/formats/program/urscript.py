@@ -203,6 +203,7 @@ class _UrScript(Language):
     timed = BLOCKING
     retiming = ("set_speed",)
     values = _VALUES
+    skips_overlaps = True
 
     @property
     def state(self) -> Any:
