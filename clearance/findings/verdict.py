@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 from clearance.codes import coded, coded_of
+from clearance.errors import refuse_truth
 from clearance.findings.doubts import (
     DISPUTED,
     SUSPECT,
@@ -131,6 +133,9 @@ class Verdict:
     excused: tuple[str, ...] = ()
     warned: tuple[str, ...] = ()
     simulated: bool = False
+
+    def __bool__(self) -> NoReturn:
+        refuse_truth(self, "passed")
 
     @property
     def scope(self) -> tuple[str, ...]:

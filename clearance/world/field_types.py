@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, BadShape
 
 _NAMES: dict[type, str] = {Real: "number", Mapping: "mapping"}
 
@@ -50,6 +50,32 @@ def owned(array: np.ndarray) -> np.ndarray:
         array = array.copy()
         array.flags.writeable = False
     return array
+
+
+def numbers_of(given: object, names: Sequence[str] = (), where: str = "") -> np.ndarray:
+    """What is given as numbers. Where a table names its columns, as one of pandas does, they are `names` in order.
+
+    Raises:
+        BadInput: no numbers, masked ones, times of a calendar, or columns of other names or in another order.
+    """
+    if type(given) is np.ndarray and given.dtype == np.float64:
+        return given
+    columns = [*getattr(given, "columns", ())]
+    if names and any(isinstance(one, str) for one in columns) and columns != [*names]:
+        told = ", ".join(map(str, columns))
+        in_order = f"{', '.join(names)}, in this order"
+        raise BadInput(f"the columns are {told}", where=where, valid=in_order)
+    if np.ma.is_masked(given):
+        raise BadInput("values are masked", where=where, valid="an array without a mask")
+    dtype = getattr(given, "dtype", None)
+    if isinstance(dtype, np.dtype) and dtype.kind in "mMc":
+        raise BadInput(f"values are of {dtype}", where=where, valid="an array of real numbers")
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise BadShape(
+            f"{given!r:.60} is given", where=where, valid="an array of numbers"
+        ) from None
 
 
 def require_two_patterns(made: object, name: str, given: Any) -> tuple[str, str]:

@@ -85,6 +85,8 @@ class PlacedRobot:
             self, robot=Robot, trajectory=(Trajectory, None), self_clearance=(SelfClearance, None),
             mount=(Mount, None), timing=Timing, padding=Mapping, fixed_positions=Mapping, exclude_links=[str],
         )  # fmt: skip
+        for name in ("fixed_positions", "padding", "motion_limits", "path_tolerances", "bases"):
+            object.__setattr__(self, name, dict(getattr(self, name)))  # callers use theirs again
         with at("world_from_base"):
             object.__setattr__(self, "world_from_base", owned(validated_pose(self.world_from_base)))
             if self.mount is not None and not np.array_equal(self.world_from_base, np.eye(4)):

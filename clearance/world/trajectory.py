@@ -11,7 +11,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
 from clearance.world.corner_zone import CornerZone
-from clearance.world.field_types import owned, require_types
+from clearance.world.field_types import numbers_of, owned, require_types
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing
 
@@ -164,7 +164,8 @@ class Trajectory:
         require_types(self, joint_names=[str])
         for name in ("times", "positions", "velocities"):
             if getattr(self, name) is not None or name != "velocities":
-                object.__setattr__(self, name, _numbers(getattr(self, name), name))
+                names = self.joint_names if name != "times" else ()
+                object.__setattr__(self, name, owned(numbers_of(getattr(self, name), names, name)))
         self._refuse_bad_samples()
         if self.wrap not in (None, *WRAPS):
             raise BadInput(f"wrap is {self.wrap!r:.60}", valid=f"one of {', '.join(WRAPS)}")
@@ -273,10 +274,3 @@ Span = TypeVar("Span", Hole, CornerZone, MoveSpan, UnprovenSpan)
 def _shifted(spans: Sequence[Span], seconds: float) -> tuple[Span, ...]:
     """The same, some seconds later."""
     return tuple(replace(one, start=one.start + seconds, end=one.end + seconds) for one in spans)
-
-
-def _numbers(given: object, name: str) -> np.ndarray:
-    try:
-        return owned(np.asarray(given, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise BadShape(f"{given!r:.60} is given", where=name, valid="an array of numbers") from None

@@ -41,3 +41,23 @@ def test_an_array_that_is_used_again_changes_nothing_made_before(kind: str) -> N
     before = made.copy()
     buffer += 0.25
     assert np.array_equal(made, before)
+
+
+def test_a_dict_that_is_used_again_changes_no_robot_made_before() -> None:
+    given = {"s": 0.5}
+    made = cl.PlacedRobot(slider("axis"), fixed_positions=given)
+    given["s"] = 0.9
+    assert made.fixed_positions == {"s": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (np.ma.array([[0.0]], mask=[[True]]), "values are masked"),
+        (np.array([[0]], "timedelta64[ns]"), "values are of timedelta64"),
+        (np.array([[0j]]), "values are of complex128"),
+    ],
+)
+def test_numbers_that_are_not_known_are_refused(given: np.ndarray, told: str) -> None:
+    with pytest.raises(cl.BadInput, match=told):
+        cl.Trajectory([0.0], ["x"], given)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from clearance.simulate.measure.asked_positions import AskedPositions
 from clearance.simulate.measure.inside import DoubtfulPairs
 from clearance.tolerance import REACH
 from clearance.world.case import Case
+from clearance.world.field_types import numbers_of
 from clearance.world.kinematics import moving_positions
 from clearance.world.motion import Motion
 from clearance.world.notice import worst_first
@@ -196,14 +198,9 @@ class Checker:
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
         """The configuration, (k,) or (n, k), as the joints are named."""
-        if not isinstance(configuration, np.ndarray) and isinstance(configuration, Mapping):
+        if not isinstance(configuration, np.ndarray) and _has_names(configuration):
             configuration = self._by_name(configuration)
-        try:
-            given = np.asarray(configuration, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise BadShape(
-                f"{configuration!r:.60} is given", valid=self._wanted(n_dimensions)
-            ) from None
+        given = numbers_of(configuration, self.joint_names, "configuration")
         if given.ndim != n_dimensions or given.shape[-1] != len(self.joint_names):
             raise BadShape(
                 f"the shape is {given.shape}",
@@ -222,10 +219,10 @@ class Checker:
         return given
 
     def _by_name(self, given: Mapping[str, float]) -> list[float]:
-        if set(given) != set(self.joint_names):
+        if set(given.keys()) != set(self.joint_names):
             unknown, missing = (
-                set(given) - set(self.joint_names),
-                set(self.joint_names) - set(given),
+                set(given.keys()) - set(self.joint_names),
+                set(self.joint_names) - set(given.keys()),
             )
             faults = (("unknown", unknown), ("missing", missing))
             raise BadInput(
@@ -238,6 +235,15 @@ class Checker:
     def _wanted(self, n_dimensions: int) -> str:
         rows = "n rows of " if n_dimensions == 2 else ""
         return f"{rows}one number for each of {', '.join(self.joint_names)}"
+
+
+def _has_names(given: Any) -> TypeGuard[Mapping[str, float]]:
+    """True for a mapping, and for a row of a table that names its values, as one of pandas does."""
+    if hasattr(given, "columns"):
+        return False
+    return isinstance(given, Mapping) or (
+        hasattr(given, "keys") and all(isinstance(name, str) for name in given.keys())
+    )
 
 
 def _measured(case: Case, time: float | None) -> tuple[Case, Selection]:

@@ -184,6 +184,45 @@ def test_bad_configurations_are_refused(given, fault, told):
     assert told in str(error.value)
 
 
+class Series:
+    """What names its values and is no `Mapping`, as a row of a table of pandas."""
+
+    def __init__(self, names: list[str], values: list[float]) -> None:
+        self._values = dict(zip(names, values, strict=True))
+
+    def keys(self):
+        return self._values.keys()
+
+    def __getitem__(self, name: str) -> float:
+        return self._values[name]
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array([*self._values.values()])
+
+
+class Table:
+    """What names its columns, as a table of pandas."""
+
+    def __init__(self, columns: list[str], rows: list[list[float]]) -> None:
+        self.columns, self._rows = columns, np.array(rows)
+
+    def __array__(self, dtype=None, copy=None):
+        return self._rows
+
+
+def test_tables_that_name_their_columns_are_read_by_name_or_refused():
+    checker = cl.Checker(swaying())
+    names = [*checker.joint_names]
+    wanted = checker.distance([0.3, 0.1]).distance
+    assert checker.distance(Series(names[::-1], [0.1, 0.3])).distance == wanted
+    assert checker.distances(Table(names, [[0.3, 0.1]])).distances[0] == wanted
+    with pytest.raises(BadInput, match="the columns are j1, j0"):
+        checker.distances(Table(names[::-1], [[0.1, 0.3]]))
+    with pytest.raises(BadInput, match="the columns are j1, j0"):
+        cl.Trajectory([0.0], names, Table(names[::-1], [[0.1, 0.3]]))
+    assert cl.Trajectory([0.0], names, Table(names, [[0.3, 0.1]])).positions[0, 0] == 0.3
+
+
 def test_what_is_no_case_or_leaves_nothing_is_refused():
     with pytest.raises(BadInput, match="a Case"):
         cl.Checker("scenes/box_box/case.yaml")
