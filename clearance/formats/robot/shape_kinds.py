@@ -64,7 +64,7 @@ def notes_on_bare(kinds: Kinds) -> list[str]:
     return [f"{count} without any shape: {listed(bare, 6)}"]
 
 
-PLANE_SIDE, PLANE_DEPTH = 40.0, 1.0
+PLANE_SIDE, PLANE_DEPTH = 40.0, 20.0
 """[m] The box that stands for an infinite plane, below it; arms work within 20 m of their base."""
 
 PLANE_SIZE = (PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH)

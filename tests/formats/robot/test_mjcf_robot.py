@@ -63,13 +63,13 @@ def test_geoms_of_the_world_stand_with_the_robot_planes_among_them(tmp_path):
     loaded = load_mjcf(tmp_path, mjcf(f'<geom type="plane" size="1 1 1" name="floor"/>{BALL}'))
     (world,) = loaded.bodies
     assert world.name == "world" and world.origin == "sphere, box"
-    np.testing.assert_allclose(world.shape.bounds, [[-20, -20, -1], [20, 20, 0.1]], atol=1e-4)
+    np.testing.assert_allclose(world.shape.bounds, [[-20, -20, -20], [20, 20, 0.1]], atol=1e-4)
     stand = "2 geoms of the world itself stand with the robot, as its link 'world'"
     assert (
         f"toy.xml: {stand}; self_clearance: true measures the other links against it"
         in loaded.notes
     )
-    assert "toy.xml: planes are boxes 40 m wide and 1 m deep below them: 'floor'" in loaded.notes
+    assert "toy.xml: planes are boxes 40 m wide and 20 m deep below them: 'floor'" in loaded.notes
     assert loaded.notices == ()
 
 

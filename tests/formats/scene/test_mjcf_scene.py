@@ -46,14 +46,14 @@ def test_each_geom_that_collides_is_an_obstacle_where_it_stands(tmp_path):
     np.testing.assert_allclose(top.min(axis=0), [0.75, -0.5, 0.6], rtol=0, atol=1e-12)
     np.testing.assert_allclose(top.max(axis=0), [1.25, 0.5, 0.8], rtol=0, atol=1e-12)
     assert (
-        corners(found["floor"])[:, 2].max() == 0.0 and corners(found["floor"])[:, 2].min() == -1.0
+        corners(found["floor"])[:, 2].max() == 0.0 and corners(found["floor"])[:, 2].min() == -20.0
     )
     np.testing.assert_allclose(
         corners(found["on/geom0"]).max(axis=0), [1, 0.2, 0.09], rtol=0, atol=1e-6
     )
     assert content.notes == (
         "toy.xml: 1 geoms that collide with nothing (contype, conaffinity) are left out",
-        "toy.xml: planes are boxes 40 m wide and 1 m deep below them: 'floor'",
+        "toy.xml: planes are boxes 40 m wide and 20 m deep below them: 'floor'",
     )
     (notice,) = content.notices
     assert (

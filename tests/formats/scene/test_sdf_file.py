@@ -60,8 +60,8 @@ def test_a_plane_is_a_box_below_it(tmp_path, normal):
     unit = np.array(normal.split(), dtype=float)
     along = (made.body.shape.vertices @ turn[:3, :3].T + turn[:3, 3]) @ unit / np.linalg.norm(unit)
     assert along.max() == pytest.approx(0, abs=1e-13)
-    assert along.min() == pytest.approx(-1, abs=1e-13)
-    assert any("is a box 1 m deep" in note for note in content_of(tmp_path, document).notes)
+    assert along.min() == pytest.approx(-20, abs=1e-12)
+    assert any("is a box 20 m deep" in note for note in content_of(tmp_path, document).notes)
 
 
 def test_poses_are_relative_to_what_they_say(tmp_path):
