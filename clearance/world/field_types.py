@@ -69,7 +69,9 @@ def numbers_of(given: object, names: Sequence[str] = (), where: str = "") -> np.
         raise BadInput("values are masked", where=where, valid="an array without a mask")
     dtype = getattr(given, "dtype", None)
     if isinstance(dtype, np.dtype) and dtype.kind in "mMc":
-        raise BadInput(f"values are of {dtype}", where=where, valid="an array of real numbers")
+        raise BadInput(
+            f"values have the type {dtype}", where=where, valid="an array of real numbers"
+        )
     try:
         return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):

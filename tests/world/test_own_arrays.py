@@ -54,8 +54,8 @@ def test_a_dict_that_is_used_again_changes_no_robot_made_before() -> None:
     ("given", "told"),
     [
         (np.ma.array([[0.0]], mask=[[True]]), "values are masked"),
-        (np.array([[0]], "timedelta64[ns]"), "values are of timedelta64"),
-        (np.array([[0j]]), "values are of complex128"),
+        (np.array([[0]], "timedelta64[ns]"), "values have the type timedelta64"),
+        (np.array([[0j]]), "values have the type complex128"),
     ],
 )
 def test_numbers_that_are_not_known_are_refused(given: np.ndarray, told: str) -> None:

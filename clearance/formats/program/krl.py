@@ -215,6 +215,8 @@ class _Krl(Language):
         via = None
         if kind == "circ":
             point = {**dict.fromkeys("ABC", 0.0), **targets[0]}
+            if call.name == "SCIRC" and settings.orientation(kind) == "to":
+                _doubt_the_way_round(targets[0], targets[1], settings)
             via = self._target("via", point, "", settings)
         move = self._made(call, kind, to, via, settings)
         run.add(move)
@@ -345,6 +347,13 @@ def _configuration(given: Aggregate, settings: Settings) -> dict[str, Any]:
             found["unchecked"] = f"bit 1 of S {status}"
     ends = {True: (-FARTHEST, NEAR_ZERO), False: (-NEAR_ZERO, FARTHEST)}
     return {**found, "ranges": {axis: ends[below] for axis, below in signs.items()}}
+
+
+def _doubt_the_way_round(via: Aggregate, end: Aggregate, settings: Settings) -> None:
+    """Names for the headline a spline circle whose auxiliary point is turned otherwise than its end."""
+    if any(key in via and via[key] != end.get(key) for key in "ABC"):
+        text = "SCIRC turns the tool the shorter way; the auxiliary point's orientation is not read"
+        settings.run.doubts[f"{settings.line}: {text}"] = None
 
 
 def _aggregate(value: Any) -> Aggregate:

@@ -308,7 +308,7 @@ class _UrScript(Language):
             call.line,
             "ptp" if is_joints else "lin" if len(ends) == 1 else "circ",
             targets[-1],
-            self._tool(is_joints and isinstance(targets[-1], AxisTarget)),
+            self._tool(is_joints and isinstance(targets[-1], AxisTarget) and not options.get("r")),
             targets[0] if len(ends) == 2 else None,
             "tangent" if options.get("mode") == 1.0 else "to",
             speed=None if is_joints else speed,

@@ -131,6 +131,15 @@ def test_arcs_turn_as_their_types_say_and_a_line_may_keep_the_tool():
     assert plain.via.pose[:3, 3] == pytest.approx([0.49, 0.01, 0.3])
 
 
+def test_a_spline_circle_whose_auxiliary_point_turns_the_tool_is_in_the_headline():
+    start = f"SLIN {{X 0, Y 0, Z 0, {DOWN}}}\n"
+    circle = "SCIRC {X 10, Y 10, Z 0, %s}, {X 20, Y 0, Z 0, " + DOWN + "}"
+    assert program(FRAMES + start + circle % DOWN).doubts == ()
+    (told,) = program(FRAMES + start + circle % "A -95, B 90, C 0").doubts
+    assert "auxiliary point's orientation is not read" in told
+    assert program(FRAMES + start + "$ORI_TYPE=#CONSTANT\n" + circle % "A -95").doubts == ()
+
+
 def test_a_move_after_a_kept_rotation_counts_from_the_tool_as_it_is():
     body = (
         FRAMES

@@ -114,6 +114,8 @@ def test_the_installations_tool_is_asked_for():
     (move,) = moves_of("movel(p[1,0,0,0,0,0])", tools={"tcp": {"xyz": [0.0, 0.0, 0.2]}})
     assert move.tool[2, 3] == 0.2
     assert moves_of("movej([0,0,0,0,0,0])")[0].tool[2, 3] == 0.0
+    with pytest.raises(cl.ClearanceError, match=r"line 1: no set_tcp"):
+        moves_of("movej([0,0,0,0,0,0], r=0.05)")  # the blend is of the tool
 
 
 def test_encodings_are_read():
