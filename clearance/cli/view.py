@@ -38,10 +38,13 @@ def view(folder: Path, case: str | None) -> None:
 
 
 def _checked(case_file: Path) -> Replay:
-    """The replay of a case, which is checked."""
+    """The replay of a case, which is checked; its verdict and warnings are printed."""
+    from clearance.report.terminal import print_answer
     from clearance.run import check
 
-    return check(case_file).replay()
+    run = check(case_file)
+    print_answer(run.report, None)
+    return run.replay()
 
 
 def _write_case(place: Path, name: str) -> None:
