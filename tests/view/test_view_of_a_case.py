@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from clearance.cli import view
 
+SCENES = Path(__file__).parents[2] / "scenes"
 
-def test_the_verdict_of_a_case_is_printed_before_its_replay_is_shown(monkeypatch, capsys, tmp_path):
-    class Run:
-        report = "report"
 
-        def replay(self):
-            return "replay"
-
-    monkeypatch.setattr("clearance.run.check", lambda file: Run())
-    monkeypatch.setattr("clearance.report.terminal.print_answer", lambda *given: print(*given))
-    assert view._checked(tmp_path / "case.yaml") == "replay"
-    assert capsys.readouterr().out == "report None\n"
+def test_the_verdict_of_a_case_is_printed_before_its_replay_is_shown(capsys):
+    view._checked(SCENES / "box_pipe" / "case.yaml")
+    told = capsys.readouterr().out
+    assert told.startswith("VIOLATED  box_pipe") and "5.123 mm" in told
