@@ -34,7 +34,7 @@ GIVEN = {
     "CL221": "geometry", "CL222": "equality", "CL301": "BadScene", "CL302": "UnknownObstacle",
     "CL303": "EmptyMesh", "CL304": "BadPolygon", "CL305": "BadPose", "CL306": "NotSolid",
     "CL307": "Unbounded", "CL320": "inside", "CL321": "frame", "CL322": "scene", "CL323": "padding",
-    "CL324": "reach", "CL325": "scan",
+    "CL324": "reach", "CL325": "scan", "CL326": "plane",
     "CL401": "NoTrajectory", "CL402": "BadMotion", "CL403": "BadTime", "CL404": "NotSimulated",
     "CL420": "start", "CL421": "gaps", "CL422": "clocks", "CL423": "wrap", "CL424": "limits",
     "CL425": "joint limits", "CL426": "recorded run", "CL427": "program", "CL428": "carry", "CL429": "rest",

@@ -13,6 +13,9 @@ from clearance.world.mimics import followers
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import WORLD_LINK, JointKind, Robot
 
+PLANE_SIZE = 40.0, 40.0, 20.0
+"""[m] The box that stands for an infinite plane, below it: two sides, and how deep it is."""
+
 
 def reach_of(placed: PlacedRobot) -> float:
     """[m] No point of its links gets farther from its root: offsets, slides and the farthest corner of a link."""

@@ -38,7 +38,7 @@ WARNED_TOO = ("units", "limits", "gaps", "clocks", START, "simulated")
 """Those whose lesser cases are warnings: their code accepts the warnings alone, their name suspect input too."""
 
 WARNINGS = (
-    "geometry", "equality", "scene", "padding", "reach", "scan", "program", "carry", "rest", "neighbours",
+    "geometry", "equality", "scene", "padding", "reach", "scan", "plane", "program", "carry", "rest", "neighbours",
     "columns", "recorded run", "pairs", "rules", "profiles", "sketch", "waivers", "paper", "certificate",
     "contact", "cross-check",
 )  # fmt: skip

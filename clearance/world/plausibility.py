@@ -20,7 +20,7 @@ from clearance.world.plausible_motion import (
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_rest import notices_on_bases, notices_on_rest
 from clearance.world.plausible_scans import notices_on_scans
-from clearance.world.plausible_sizes import notices_on_sizes
+from clearance.world.plausible_sizes import notices_on_planes, notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.unproven_motion import notices_on_unproven
@@ -45,6 +45,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     found += _notices_on_padding(case)
     found += notices_on_sizes(case)
     found += notices_on_scans(case)
+    found += notices_on_planes(case)
     found += [one for placed in case.robots for one in notices_on_bases(placed)]
     found += notices_on_tables(case)
     found += notices_on_clocks(case)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,12 +14,14 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.extents import (
+    PLANE_SIZE,
     chain_of,
     farthest_corner,
     greatest,
     length_of,
     metres,
     own_bodies,
+    own_floor,
     reach_of,
     slides_of,
 )
@@ -301,6 +303,28 @@ def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> l
         return [f"{whose} stands {metres(base)} m away, {gap_text}; {hint}"]
     stand = [f"obstacle {name!r} stands {metres(gap)} m away from {whose}" for gap, name in far]
     return [f"{listed(stand)}; {hint}"]
+
+
+def notices_on_planes(case: Case) -> Iterator[Notice]:
+    """A warning on each robot that may get past the end of a box that stands for an infinite plane."""
+    for placed, base in zip(case.robots, _bases(case), strict=True):
+        reach = reach_of(placed)
+        floors = [body for body in placed.robot.bodies if body.name == own_floor(placed)]
+        ends = [(f"link {one.name!r}", reach) for one in floors if length_of(one) >= PLANE_SIZE[0]]
+        for i, obstacle in enumerate(case.obstacles):
+            sides = np.ptp(obstacle.body.shape.bounds, axis=0)
+            if np.allclose(sides[:2], PLANE_SIZE[:2]):
+                place = _obstacle_place(case, i)
+                gets = reach + base.travel + place.travel
+                local = np.abs(place.pose[:3, :3].T @ (base.pose[:3, 3] - place.pose[:3, 3]))
+                ends.append((f"obstacle {obstacle.name!r}", float(local[:2].max()) + gets))
+        for name, farthest in ends:
+            if farthest > 0.5 * PLANE_SIZE[0]:
+                text = (
+                    f"{name} stands for a plane without end, and ends {metres(0.5 * PLANE_SIZE[0])} m from its "
+                    f"middle: robot {placed.robot.name!r} may get {metres(farthest)} m from there"
+                )
+                yield Notice(Severity.WARNING, "plane", text)
 
 
 def _gap(obstacle: Obstacle, place: Place, base: Place) -> float:

@@ -439,3 +439,14 @@ def test_a_pair_that_never_moves_does_not_hide_how_near_the_motion_comes():
     assert ("moving", f"base and table never move; nearest of what moves: {nearest}") in lines(
         run.report
     )
+
+
+@pytest.mark.parametrize(
+    ("x", "depth", "warned"), [(0.0, 20.0, False), (25.0, 20.0, True), (19.5, 1.0, True)]
+)
+def test_a_robot_that_may_get_past_a_box_that_stands_for_a_plane_is_warned_of(x, depth, warned):
+    floor = Obstacle(Body("floor", box((40.0, 40.0, depth)), "box"), at(0.0, 0.0, -0.5 * depth))
+    placed = replace(case_of().robots[0], world_from_base=at(x, 0.0, 0.5))
+    found = notices_of(Case("made", (placed,), (floor,)))
+    told = [notice.text for notice in found if notice.kind == "plane"]
+    assert len(told) == warned and all("robot 'arm' may get" in text for text in told)

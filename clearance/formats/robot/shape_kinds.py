@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.formats.robot.request import Geometry
+from clearance.world.extents import PLANE_SIZE
 from clearance.world.notice import Notice, Severity, listed
 
 Kinds = Mapping[str, frozenset[str]]
@@ -64,20 +65,14 @@ def notes_on_bare(kinds: Kinds) -> list[str]:
     return [f"{count} without any shape: {listed(bare, 6)}"]
 
 
-PLANE_SIDE, PLANE_DEPTH = 40.0, 20.0
-"""[m] The box that stands for an infinite plane, below it; arms work within 20 m of their base."""
-
-PLANE_SIZE = (PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH)
-
-
 def plane_from_box() -> np.ndarray:
     """(4, 4) [m] the pose of the box on a plane, the z axis of which is its normal."""
     pose = np.eye(4)
-    pose[2, 3] = -0.5 * PLANE_DEPTH
+    pose[2, 3] = -0.5 * PLANE_SIZE[2]
     return pose
 
 
 def note_on_planes(names: Sequence[str]) -> str:
     """A note on the boxes that stand for planes."""
-    size = f"{PLANE_SIDE:g} m wide and {PLANE_DEPTH:g} m deep"
+    size = f"{PLANE_SIZE[0]:g} m wide and {PLANE_SIZE[2]:g} m deep"
     return f"planes are boxes {size} below them: {listed(names, 6)}"

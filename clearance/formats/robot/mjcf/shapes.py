@@ -17,12 +17,13 @@ from clearance.formats.files.place import here
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.mjcf.document import MjcfDocument
 from clearance.formats.robot.mjcf.mujoco_adapter import MjcfGeom, MjcfMesh, MjcfModel, MjcfSpec
-from clearance.formats.robot.shape_kinds import PLANE_SIZE, plane_from_box
+from clearance.formats.robot.shape_kinds import plane_from_box
 from clearance.formats.text.notes import grouped
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope_hull import hull_faces
 from clearance.geometry.pose import inverse
 from clearance.geometry.shapes import SHAPES
+from clearance.world.extents import PLANE_SIZE
 
 _UNREAD = {
     "hfield": "its surface is a grid of heights",

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadScene, at, nearest_name
-from clearance.formats.robot.shape_kinds import PLANE_DEPTH, PLANE_SIDE
 from clearance.formats.scene.sdf.document import numbers_of, text_of
 from clearance.formats.text.numbers import is_zero
 from clearance.geometry.shapes import SHAPES, Measure
+from clearance.world.extents import PLANE_SIZE
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -98,8 +98,8 @@ def _plane(element: Element) -> Geometry:
         raise BadDimension(f"<normal> is {normal.tolist()}", valid="a vector that is not zero")
     pose = np.eye(4)
     pose[:3, :3] = _from_z(normal / length)
-    pose[:3, 3] = pose[:3, 2] * (-PLANE_DEPTH / 2)
-    return Geometry({"box": {"size": [PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH]}}, pose)
+    pose[:3, 3] = pose[:3, 2] * (-PLANE_SIZE[2] / 2)
+    return Geometry({"box": {"size": list(PLANE_SIZE)}}, pose)
 
 
 def _mesh(element: Element) -> Geometry:

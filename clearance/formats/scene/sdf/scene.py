@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from clearance.errors import BadScene, at
 from clearance.formats.files.found_files import FoundFiles
 from clearance.formats.plausibility import angle_notices, odd_angles
-from clearance.formats.robot.shape_kinds import PLANE_DEPTH, PLANE_SIDE
 from clearance.formats.scene.request import SceneContent, SceneRequest, pose_row
 from clearance.formats.scene.sdf.document import angles_of, n_rounded
 from clearance.formats.scene.sdf.geometry import has_no_size
@@ -22,6 +21,7 @@ from clearance.formats.scene.sdf.scope import Scope, SdfShape, require_state_as_
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.text.unread import notes_on as notes_on_unread
 from clearance.formats.text.unread import notices_on
+from clearance.world.extents import PLANE_SIZE
 from clearance.world.notice import Notice, Severity, listed
 
 if TYPE_CHECKING:
@@ -141,15 +141,15 @@ def notes_on(
         yield f"joints stand at zero, as the links are placed: {n_moving} that could move"
     if counted["plane"] and any(shape.row.get("box", {}).get("size") == _PLANE for shape in shapes):
         yield (
-            f"a plane, which has no end, is a box {PLANE_DEPTH:g} m deep below it, which ends "
-            f"{PLANE_SIDE / 2:g} m from its origin"
+            f"a plane, which has no end, is a box {PLANE_SIZE[2]:g} m deep below it, which ends "
+            f"{PLANE_SIZE[0] / 2:g} m from its origin"
         )
     yield from note_on_rounded(sum(map(n_rounded, documents)))
     if missing_suns:
         yield "model://sun is not there: taken for the usual light and left out"
 
 
-_PLANE = [PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH]
+_PLANE = list(PLANE_SIZE)
 
 
 def unseen(documents: Sequence[Element]) -> list[Notice]:
