@@ -43,9 +43,7 @@ Fetch's wrist (5 N m s/rad) diverges: tracking error 2.2 rad; 0.007 with 4, 0.00
 our own loop: with the engine's `numSubSteps` a motor pushes 16 times as hard as it may."""
 SETTLE_TIME = 0.25  # [s] recorded at least after the trajectory's end: the robot arrives late
 LONGEST_SETTLING = 10.0  # [s] after which a robot that has not arrived does not
-ARRIVED = (
-    1e-3  # [rad or m] from the last sample; joints then move at most ten times as much a second
-)
+ARRIVED = 1e-3  # [rad or m] from the last sample; ten times as much a second is rest
 GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
 _UNLIMITED = 1e6  # [N] or [N m] where the URDF states no effort
 

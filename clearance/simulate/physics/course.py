@@ -107,8 +107,6 @@ def as_measured(placed: PlacedRobot, times: np.ndarray, positions: np.ndarray) -
     """The robot with its simulated motion as its trajectory, by which its joint limits are judged."""
     names = tuple(joint.name for joint in placed.robot.moving_joints)
     trajectory = Trajectory(times, names, positions, path_error=AT_LIMIT)
-    from dataclasses import replace
-
     return replace(placed, trajectory=trajectory)
 
 
