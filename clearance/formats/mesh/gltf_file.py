@@ -22,7 +22,6 @@ from clearance.formats.mesh.polygon_cut import fan, strip
 from clearance.formats.mesh.triangles import (
     MeshRequest,
     Triangles,
-    as_points,
     refuse_missing_corners,
     rounded_by,
 )
@@ -204,7 +203,7 @@ def _piece(primitive: GltfObject, weights: np.ndarray, buffers: Buffers) -> Tria
         corners = np.arange(len(vertices))
     refuse_missing_corners(corners, len(vertices))
     by_mode = _by_mode(primitive.index("mode", _TRIANGLES), corners)
-    return Triangles(vertices, by_mode, rounded=rounded_by(as_points([*stored.T])))
+    return Triangles(vertices, by_mode, rounded=rounded_by(stored))
 
 
 def _by_mode(mode: int, corners: np.ndarray) -> np.ndarray:

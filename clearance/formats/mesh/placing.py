@@ -62,9 +62,8 @@ def placed(piece: Triangles, world_from_piece: np.ndarray) -> Triangles:
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
         vertices = piece.vertices @ world_from_piece[:3, :3].T + world_from_piece[:3, 3]
         mirrored = np.linalg.det(world_from_piece[:3, :3]) < 0
-        sums = np.abs(
-            world_from_piece[:3, :3]
-        )  # longest way <= sqrt(greatest row times column sum)
+        sums = np.abs(world_from_piece[:3, :3])
+        # it makes no way longer than by the root of the greatest row sum times the greatest column sum
         rounded = piece.rounded * float(np.sqrt(sums.sum(axis=0).max() * sums.sum(axis=1).max()))
     corners = piece.corners[:, ::-1] if mirrored else piece.corners
     return Triangles(vertices, corners, rounded=rounded)
