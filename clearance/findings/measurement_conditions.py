@@ -62,7 +62,8 @@ class MeasurementConditions:
     """How a run was measured.
 
     Attributes:
-        need, method, motion: as in `run.Question`. basis: as `Record.basis`.
+        need, method: as in `run.Question`. basis: as `Record.basis`.
+        motion: as in `run.Question`; "simulated, contact_response" where obstacles push back.
         certify_gap: [m] how far the bound may be below a distance that occurs; None at the samples only.
         clock_slack: [s] how far the actors' clocks may be apart; "not tied" where nothing bounds that.
         pairs: all that were measured at some time. unmeasured: those that were not, or not always; "*" stands for
@@ -110,7 +111,7 @@ def conditions_of(record: Record) -> MeasurementConditions:
     return MeasurementConditions(
         need=record.need,
         method=record.method,
-        motion=record.motion_kind,
+        motion=_motion(record),
         basis=record.basis,
         certify_gap=None if certificate is None else float(certificate.gap),
         clock_slack="not tied" if math.isinf(slack) else float(slack),
@@ -125,6 +126,11 @@ def conditions_of(record: Record) -> MeasurementConditions:
         errors={name: size for name, size in _errors(record.case.tolerance) if size},
         present=_present(record),
     )
+
+
+def _motion(record: Record) -> str:
+    pushed = record.motion_kind == "simulated" and record.case.contact_response
+    return f"{record.motion_kind}, contact_response" if pushed else record.motion_kind
 
 
 def _present(record: Record) -> dict[str, float]:

@@ -131,7 +131,8 @@ _ACCURACY = re.compile(
 )
 _METRE = re.compile(rb"SI_UNIT\s*\(\s*(\$|\.[A-Z]+\.)\s*,\s*\.METRE\.")
 _CONVERSION = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'[^']*'\s*,\s*#(\d+)")
-_LENGTH = re.compile(rb"LENGTH_MEASURE\s*\(\s*([^()\s]+)\s*\)\s*,\s*#(\d+)")
+_LENGTH = re.compile(rb"LENGTH_MEASURE(?:_WITH_UNIT)?\s*\(\s*([^()\s,]+)\s*\)?\s*,\s*#(\d+)")
+"""Open CASCADE 8 writes the number alone, others name its type: LENGTH_MEASURE(25.4)."""
 
 
 class StepFacts(NamedTuple):

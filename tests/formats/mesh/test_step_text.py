@@ -10,12 +10,20 @@ from tests.formats.making_step import HEAD, TAIL, box_step, cylinder_step
 IN_A_COMMENT = "DATA; /* #9=ADVANCED_FACE('',(),#1,.T.);\n#9=TRIANGULATED_FACE('',1); */"
 
 
+def _bare_inches() -> str:
+    """As Open CASCADE 8 writes it: the number without its type."""
+    text = cylinder_step(unit="inch", uncertainty=0.01)
+    assert "LENGTH_MEASURE(25.4)" in text
+    return text.replace("LENGTH_MEASURE(25.4)", "25.4")
+
+
 @pytest.mark.parametrize(
     ("text", "n_faces", "accuracy"),
     [
         (box_step(uncertainty=0.01), 6, 1e-5),
         (box_step(unit="m", uncertainty=0.01), 6, 1e-2),
         (cylinder_step(unit="inch", uncertainty=0.01), 3, 0.01 * 25.4e-3),
+        (_bare_inches(), 3, 0.01 * 25.4e-3),
         (box_step().replace("UNCERTAINTY", "OTHER"), 6, 0.0),
         (box_step(uncertainty=0.01).replace("DATA;", IN_A_COMMENT), 6, 1e-5),
     ],
