@@ -112,12 +112,27 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray, ranges: np.nda
     starts = near + spread * (low + drawn * (high - low) - near)
     all_wanted = np.tile(wanted, (SEEDS, 1, 1))
     found = joints_at(arm.tool, all_wanted, starts, free, MOST_FROM_AFAR)
-    within = (found.positions >= ranges[:, 0]) & (found.positions <= ranges[:, 1])
+    positions = _turned_into(arm, found.positions, ranges)
+    within = (positions >= ranges[:, 0]) & (positions <= ranges[:, 1])
     fits = (found.residual <= 1e-9) & within.all(axis=1)
     if not fits.any():
         raise _unreached(arm, wanted, now, ranges)
-    ways = np.where(fits, np.abs(found.positions - now).max(axis=1), np.inf)
-    return np.asarray(found.positions[int(np.argmin(ways))])
+    ways = np.where(fits, np.abs(positions - now).max(axis=1), np.inf)
+    return np.asarray(positions[int(np.argmin(ways))])
+
+
+def _turned_into(arm: Arm, positions: np.ndarray, ranges: np.ndarray) -> np.ndarray:
+    """(n, k) joints of the same pose: those outside their range by as few whole turns as bring them past its end.
+
+    A joint that another follows by no whole factor stays as it is.
+    """
+    whole = arm.follows.copy()
+    for one in arm.chain.joints:
+        whole[one.column] &= one.turns and float(one.factor).is_integer()
+    low, high = np.where(whole[:, None], ranges, [-np.inf, np.inf]).T
+    below = np.ceil(np.maximum(low - positions, 0.0) / (2.0 * np.pi))
+    above = np.ceil(np.maximum(positions - high, 0.0) / (2.0 * np.pi))
+    return np.asarray(positions + 2.0 * np.pi * (below - above))
 
 
 ANOTHER = (

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.programs.inverse import nearest_joints
 from clearance.programs.joint_way import joint_law, unknown_speeds
 from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program
@@ -89,6 +90,19 @@ def test_a_joint_that_is_at_0_but_for_rounding_is_told_as_0():
     told = dict(one.split() for one in found.notes[0].partition("]: ")[2].split(", "))
     assert abs(found.trajectory.positions[-1, 3]) < 1e-9 and told["joint_4"] == "0"
     assert float(told["joint_1"]) == pytest.approx(START[0], abs=1e-3)
+
+
+def test_a_joint_asked_for_beyond_half_a_turn_is_found_there():
+    """From 0 a search comes to -60 degrees as the nearest, which is 300 where the range asks for that turn."""
+    one, draw = arm("heron6"), np.random.default_rng(11)
+    for _ in range(10):
+        joints = posture(one, draw)
+        joints[5] = draw.uniform(1.1 * np.pi, 1.9 * np.pi)
+        ranges = one.ranges.copy()
+        ranges[5] = 0.0, 2.0 * np.pi
+        ranges[:5] = joints[:5, None] + [-0.2, 0.2]
+        found = nearest_joints(one, one.poses(joints[None])[0], np.zeros(6), ranges)
+        assert np.abs(found - joints).max() < 1e-9
 
 
 def test_a_move_to_where_the_joints_are_is_no_move():

@@ -44,7 +44,8 @@ def turn_on_path(start: np.ndarray, via: np.ndarray, end: np.ndarray) -> Literal
         return "tangent"
     if abs(angle + left @ normal) >= np.pi - TILT:
         raise BadProgram(
-            "seen along the arc, the tool turns by half a turn or more, either way",
-            valid="divide it into two arcs",
+            "seen along the arc, the tool turns by half a turn or more, either way; a tool that keeps its "
+            "orientation in space turns back by as much as the arc goes round",
+            valid="arcs that go round by less, as thirds of a circle",
         )
     return "to"

@@ -234,7 +234,9 @@ class Execution(Remarks):
         assert isinstance(one.target, Part)
         whole = value_of(one.target.of, self)
         by = one.target.by if isinstance(one.target.by, str) else value_of(one.target.by, self)
-        if isinstance(whole, Unknown) or isinstance(by, Unknown):
+        if isinstance(whole, Unknown):
+            return  # it stays so, and why
+        if isinstance(by, Unknown):
             self._forget([(name.name, one.line)])
             return
         try:

@@ -143,10 +143,12 @@ class _Krl(Language):
         return call.args if self.moves(call.name) is None else ()
 
     def value_of(self, name: str, run: Execution) -> Any:
-        """The controller is assumed to run the program by itself."""
+        """The controller is assumed to run the program by itself; where the robot is then is not worked out."""
         if name in ("$T1", "$T2"):
             self.is_automatic = True
             return False
+        if name in STANDS:
+            return Unknown(f"{name}, where the robot is, is not read")
         return None
 
     def part_of(self, value: Any, by: Any) -> Any:
@@ -363,7 +365,7 @@ def _aggregate(value: Any) -> Aggregate:
         BadInput: it is not known, or none.
     """
     if not isinstance(value, Mapping):
-        valid = "the file that declares it beside"
+        valid = "a target that this file, or one beside it, gives as numbers"
         raise BadProgram(f"the target is not known: {why(value)}", valid=valid)
     return value
 

@@ -155,6 +155,12 @@ LIN_REL {{Z 10}} #TOOL"""
         moves_of(body.replace("LIN {X 9, Y 0, Z 0, A 0, B 90, C 0}", circle))
 
 
+def test_where_the_robot_is_is_named_as_what_is_not_read():
+    body = FRAMES + "E6POS p\np = $POS_ACT\np.Z = p.Z + 10\nLIN p\n"
+    with pytest.raises(cl.ClearanceError, match=r"not known: \$POS_ACT, where the robot is"):
+        program(body)
+
+
 def test_whole_numbers_round_and_divide_as_such():
     points = POINTS.replace("ENDDAT", "DECL INT n=7\nDECL REAL half=2.0\nENDDAT")
     body = f"""INT m

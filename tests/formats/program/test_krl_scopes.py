@@ -74,7 +74,9 @@ def test_data_are_known_in_their_own_file_only_unless_they_are_global():
     with pytest.raises(cl.ClearanceError, match=r"b.src line 2: .*'PT' is in no file"):
         heights(body, a_dat=a, b_src=b.replace("PT.Y=PT.Y+1", "LIN PT"))
     far = {"a_dat": a.replace("PT", "PICKPOSITION"), "b_src": "DEF b()\nLIN PICKPOSITION\nEND"}
-    with pytest.raises(cl.ClearanceError, match="'PICKPOSITION' is in no file that is given; the"):
+    with pytest.raises(
+        cl.ClearanceError, match="'PICKPOSITION' is in no file that is given; a target"
+    ):
         heights(f"{FRAMES}b()", **far)
     tool = "DECL FRAME T1={X 0,Y 0,Z %d,A 0,B 0,C 0}"
     more = {"a_dat": data("a", tool % 100), "config_dat": data("$CONFIG", tool % 300)}
