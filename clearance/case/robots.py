@@ -156,11 +156,9 @@ class InMotion(NamedTuple):
     def driving(self, other: PlacedRobot) -> PlacedRobot:
         """Another robot as the program of this one moves it, in time with it."""
         made, timing = self.driven[other.robot.name], self.placed.timing
-        names = {*made.joint_names}
-        resting = {name: at for name, at in other.fixed_positions.items() if name not in names}
         if timing.after == "absent":  # the other robot is there all the time
             timing = replace(timing, after="hold")
-        return replace(other, trajectory=made, timing=timing, fixed_positions=resting)
+        return other.moved_by(made, timing=timing)
 
 
 def in_motion(

@@ -315,7 +315,7 @@ class Case:
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
         trajectory = Trajectory(times, names, positions, velocities, wrap=wrap)
-        moved = replace(placed, trajectory=trajectory, trajectory_path="")
+        moved = placed.moved_by(trajectory, trajectory_path="")
         robots = (*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :])
         in_file = [joint.name for joint in placed.robot.moving_joints if joint.name in names]
         if joint_names is not None or in_file == list(names):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from clearance.errors import Contradiction, NoTrajectory, at
+from clearance.errors import Contradiction, NotFinite, NoTrajectory, at
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import checked_padding
 from clearance.world.collision_matrix import CollisionMatrix
@@ -99,11 +101,30 @@ class PlacedRobot:
         for link, padding in self.padding.items():
             with at(f"padding.{link}"):
                 checked_padding(padding)
+        for joint, position in self.fixed_positions.items():
+            if not math.isfinite(position):
+                raise NotFinite(
+                    "a position is NaN or infinite",
+                    where=f"fixed_positions.{joint}",
+                    valid="finite numbers",
+                )
+            if self.trajectory is not None and joint in self.trajectory.joint_names:
+                raise Contradiction(
+                    f"the trajectory moves joint {joint!r}, which is fixed too",
+                    where=f"fixed_positions.{joint}",
+                    valid="one of them",
+                )
         if self.trajectory is not None:
             require_samples_to_loop(self.trajectory.n_steps, self.timing)
             with at(f"robot {self.robot.name!r}: trajectory"):
                 require_moving_joints(self.robot, self.trajectory.joint_names)
             object.__setattr__(self, "trajectory", meant(self.robot, self.trajectory))
+
+    def moved_by(self, trajectory: Trajectory, **more: Any) -> PlacedRobot:
+        """The robot on another trajectory, with more changes; joints that it moves are fixed no more."""
+        moved = {*trajectory.joint_names}
+        fixed = {name: at for name, at in self.fixed_positions.items() if name not in moved}
+        return replace(self, trajectory=trajectory, fixed_positions=fixed, **more)
 
     @property
     def joints_given(self) -> tuple[str, ...]:

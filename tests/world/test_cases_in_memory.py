@@ -10,6 +10,7 @@ from clearance.errors import (
     BadDimension,
     BadShape,
     BadTime,
+    Contradiction,
     DuplicateName,
     NotFinite,
     NothingToMeasure,
@@ -143,6 +144,19 @@ def test_a_trajectory_is_held_against_its_robot():
         cl.PlacedRobot(kuka(), asked)
     with pytest.raises(DuplicateName, match="joint 'a' is there twice"):
         cl.Trajectory(np.zeros(1), ("a", "a"), np.zeros((1, 2)))
+
+
+def test_a_joint_is_fixed_or_moved_and_not_both():
+    with pytest.raises(NotFinite, match=r"fixed_positions\.lbr_iiwa_joint_1: a position is NaN"):
+        cl.PlacedRobot(kuka(), fixed_positions={"lbr_iiwa_joint_1": np.nan})
+    asked = cl.Trajectory(np.zeros(1), ("lbr_iiwa_joint_1",), np.zeros((1, 1)))
+    with pytest.raises(Contradiction, match="which is fixed too"):
+        cl.PlacedRobot(kuka(), asked, fixed_positions={"lbr_iiwa_joint_1": 1.5})
+    fixed = {"lbr_iiwa_joint_1": 1.5, "lbr_iiwa_joint_2": 0.5}
+    robot = cl.PlacedRobot(kuka(), fixed_positions=fixed)
+    case = cl.Case("one", (robot,), posts("post"))
+    moved = case.with_trajectory([0.0], [[0.0]], joint_names=["lbr_iiwa_joint_1"])
+    assert moved.robots[0].fixed_positions == {"lbr_iiwa_joint_2": 0.5}
 
 
 def test_two_robots_are_measured_against_each_other_and_each_against_itself_where_that_is_asked():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -168,7 +168,7 @@ class AskedPositions:
         for placed, names in zip(self._case.robots, self._names, strict=True):
             positions = given[:, first : first + len(names)]
             first += len(names)
-            asked = replace(placed, trajectory=Trajectory(times, names, positions))
+            asked = placed.moved_by(Trajectory(times, names, positions))
             before = self._case.prefix_of(placed)
             yield from notices_on_positions(joint_extents(asked), before)
             yield from notices_on_joints(asked, rule, before)
