@@ -57,6 +57,14 @@ def test_times_that_are_no_whole_nanoseconds_are_told(tmp_path, capsys):
     assert parse_trajectory(written(near, "b.csv").content, "b.csv").times.tolist() == [0.0, 1e-10]
 
 
+def test_a_name_that_ends_in_a_unit_is_told_where_no_robot_says_whose_it_is(tmp_path, capsys):
+    (tmp_path / "a.csv").write_text("time,a [deg],b_deg\n0,0,0\n1,90,45\n")
+    assert convert(tmp_path / "a.csv", tmp_path / "b.yaml") == 0
+    told = capsys.readouterr().out
+    assert "read in degrees: 'a'" in told
+    assert "read in rad or m, whatever the name ends in: 'b_deg'" in told
+
+
 @pytest.mark.parametrize("name", ["a [deg]", "time", "b/velocity", "x\ty;z"])
 def test_names_that_a_table_would_read_otherwise_are_refused(name):
     trajectory = Trajectory(np.arange(2.0), (name,), np.ones((2, 1)))

@@ -29,6 +29,7 @@ from clearance.formats.table.column_units import (
     chosen_columns,
     columns_in,
     in_own_units,
+    note_on_endings,
     note_on_units,
     notes_on_names,
     odd_degrees,
@@ -74,6 +75,7 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
             times = choice.period * np.arange(len(times), dtype=np.float64)[:, None]
     refuse_standing_time(times[:, 0], table)
     notes = [*_notes(table, choice), *notes_on_names(header, columns), *note_on_units(columns)]
+    notes += note_on_endings([by_name[name] for name in joints], request.turns)
     odd = odd_degrees(moving[0][:, [by_name[name].unit == "deg" for name in joints]])
     if turned:
         moving[0], on_angles = by_angles(moving[0], joints, turned, table)

@@ -176,6 +176,19 @@ def note_on_units(columns: Sequence[Column]) -> list[str]:
     return [f"read {'; '.join(parts)}"] if parts else []
 
 
+def note_on_endings(columns: Sequence[Column], turns: Mapping[str, bool]) -> list[str]:
+    """A line on columns that end as if in another unit and are read as rad or m, as no robot has such a joint."""
+    found = []
+    for column in columns:
+        ending = _ENDING.fullmatch(column.name)
+        if ending and UNITS[ending[2]].word and column.name not in turns and column.name != TIME:
+            found.append(repr(column.name))
+    if not found:
+        return []
+    valid = "write `joint [deg]` or `joint [mm]` if another is meant"
+    return [f"read in rad or m, whatever the name ends in: {listed(found, 8)}; {valid}"]
+
+
 def _column(header: str, turns: Mapping[str, bool]) -> Column:
     if header in turns:
         return Column(header, header)
