@@ -50,6 +50,9 @@ def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[
     if far:
         text = f"CHECK LIMITS: {_in_words(far)}; is this another unit, or another robot?"
         notices.append(Notice(Severity.SUSPECT, "limits", text))
+    if found and placed.self_clearance is not None and placed.self_clearance.trust_never:
+        text = "CHECK LIMITS: trust_never excuses pairs that never meet within the limits of joints"
+        notices.append(Notice(Severity.SUSPECT, "limits", f"{text}, and {_in_words(found)}"))
     if rule == "fail" and found:
         about = placed.robot.name
         notices.append(Notice(Severity.VIOLATED, "joint limits", _in_words(found), about))

@@ -17,7 +17,7 @@ from clearance.world.case import Case, Limits
 from clearance.world.mimics import followers
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
-from clearance.world.placed_robot import PlacedRobot
+from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.plausibility import notices_of
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.pose_table import PoseTable
@@ -236,6 +236,14 @@ def test_joints_beyond_their_limits():
     assert reported(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [
         ("violated", "joint limits")
     ]
+
+
+def test_pairs_that_never_meet_within_limits_are_in_doubt_beyond_them():
+    limited = case_of(arm(lower=-1.0, upper=1.0), positions=(0.0, 1.2))
+    for trusts, found in ((False, []), (True, [("suspect", "limits")])):
+        placed = replace(limited.robots[0], self_clearance=SelfClearance(trust_never=trusts))
+        case = replace(limited, robots=(placed,))
+        assert [one for one in reported(case) if one[0] == "suspect"] == found
 
 
 def test_a_joint_that_jumps_is_suspect_and_not_only_fast():
