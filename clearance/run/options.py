@@ -107,8 +107,8 @@ class QuestionOptions:
         contact: of which overlaps depth, volume and separation vector are computed, once they are looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
             No status depends on it; the worst moment of bodies in contact is the deepest that is worked out.
-        body_gaps: tell which gaps between what moves and what stands are of a width that parts of a person may be
-            caught in; no verdict depends on it.
+        body_gaps: tell which gaps between what moves and what else there is are of a width that parts of a person
+            may be caught in; no verdict depends on it.
         cross_check: also ask FCL at every step.
         method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
