@@ -6,7 +6,7 @@ Not for: comparing (`world.recording`), nor the formats (`timed_files`).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.case import Case, index_of_robot
 from clearance.world.cubic import positions_along
 from clearance.world.joint_positions import turns
-from clearance.world.notice import GAPS, Notice, Severity
+from clearance.world.notice import GAPS, Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.recording import Recording, motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN
@@ -65,7 +65,7 @@ def with_recorded(
         driven = _near_what_was_asked(read.shifted(offset), placed)
         resting = placed.fixed_positions
         found = recording_of(shown, offset, driven, placed.given_trajectory, placed.timing, resting)
-        notices = _of_motion_left_out(placed, found)
+        notices = [*_of_motion_left_out(placed, found), *_of_others(case, placed, found)]
         budget = _with_tracking(case.tolerance or Budget(), placed, found)
     robots = [*case.robots]
     robots[i_robot] = _as_driven(placed, driven, found, str(path))
@@ -172,6 +172,23 @@ def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
         f"{worst.joint!r} was to move by {worst.greatest:.3g} {units[worst.joint]}"
     )
     return [Notice(Severity.WARNING, "recorded run", text, placed.robot.name)]
+
+
+def _of_others(case: Case, placed: PlacedRobot, found: Recording) -> Iterator[Notice]:
+    """A warning where another robot moves too and no tolerance says how far it is off."""
+    robots = {} if case.tolerance is None else case.tolerance.robots
+    names = [
+        other.robot.name
+        for other in case.robots
+        if other is not placed and other.trajectory is not None and other.trajectory.n_steps > 1
+    ]
+    exact = [name for name in names if name not in robots or not robots[name].joints]
+    if exact:
+        text = (
+            f"{found.path} is a run of {placed.robot.name} alone: {listed(exact)} is taken to move exactly as "
+            "commanded; tolerances of tracking say otherwise"
+        )
+        yield Notice(Severity.WARNING, "recorded run", text, placed.robot.name)
 
 
 def _units(placed: PlacedRobot) -> dict[str, str]:

@@ -1,5 +1,7 @@
 """A recorded run in place of what was asked: what it is held against, what becomes of it, what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from clearance.errors import (
     UnknownJoint,
     UnknownRobot,
 )
+from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.recording import motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
@@ -165,6 +168,11 @@ def test_of_several_robots_one_must_be_named(tmp_path):
         with_recorded(cell, tmp_path / "path.csv")
     found = with_recorded(cell, tmp_path / "path.csv", robot="right")
     assert found.robots[0].recording is None and found.robots[1].recording.joints[0].greatest == 0.0
+    (told,) = (one.text for one in found.notices if one.kind == "recorded run")
+    assert told.startswith("path.csv is a run of right alone: left is taken to move exactly")
+    errors = RobotTolerance(joints={"shoulder": JointTolerance(tracking=0.01)})
+    known = replace(cell, tolerance=Budget(robots={"left": errors}))
+    assert not with_recorded(known, tmp_path / "path.csv", robot="right").notices
     standing = load_cell(tmp_path)
     with pytest.raises(UnknownRobot, match="robot 'right' was asked for nothing"):
         with_recorded(standing, tmp_path / "path.csv", robot="right")

@@ -1,4 +1,4 @@
-"""Gaps between what moves and what else there is, held against widths that parts of a person need: information only.
+"""Gaps between what moves and what else there is, held against the widths that parts of a person need: no verdict.
 
 In a gap as wide as its width here a part of a person is not caught, nor in one that it cannot enter. Who can get
 where is not known here, so no verdict follows. Not for: limits of the case (`rules`).
