@@ -199,7 +199,7 @@ def _one_line(excinfo: pytest.ExceptionInfo[BaseException]) -> str | None:
 
 
 def check_case(path: Path, config: pytest.Config) -> Run:
-    """The run of a case; its report is written where `--clearance-out` says.
+    """The run of a case; its report is written where `--clearance-out` says, and an older one there is withdrawn.
 
     Raises:
         BadInput: with the file and the field.
@@ -208,8 +208,12 @@ def check_case(path: Path, config: pytest.Config) -> Run:
 
     given = {name: config.getoption(f"{PREFIX}{name}", None) for name in options_in(CheckOptions)}
     said = {name: one for name, one in given.items() if one is not None}
-    run = check(path, **USUAL | said)
     folder = report_folder(path, config)
+    if folder is not None and folder.is_dir():
+        from clearance.report.withdrawn import withdraw_report
+
+        withdraw_report(folder)
+    run = check(path, **USUAL | said)
     if folder is not None:
         run.save(folder)
     return run

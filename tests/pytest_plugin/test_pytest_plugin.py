@@ -92,6 +92,17 @@ def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester
     assert "--clearance-out DIR writes the page" in inside().stdout.str()
 
 
+def test_a_case_that_is_refused_leaves_no_older_report_green(inside, pytester):
+    file = write_case(pytester.path, CLEAR)
+    inside("--clearance-out", "reports").assert_outcomes(passed=2)
+    folder = pytester.path / "reports" / file.name
+    assert (folder / "summary.json").is_file()
+    file.write_text(file.read_text().replace("trajectory", "trajectori"))
+    inside("--clearance-out", "reports").assert_outcomes(failed=2)
+    assert not (folder / "summary.json").exists()
+    assert "Not finished" in (folder / "report.html").read_text()
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
