@@ -1,10 +1,12 @@
 """`clearance pre-commit`: many case files, checked as far as their limits, one line each that is not passed.
 
-What the hook of `.pre-commit-hooks.yaml` calls with the files of a commit. Not for: a report (`check`).
+What the hook of `.pre-commit-hooks.yaml` calls, without files: a commit may change a motion or a mesh alone. Not
+for: a report (`check`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +15,7 @@ import click
 from clearance.cli import ExitCode
 from clearance.cli.options import asked_options, said, spelled_by
 from clearance.options import made
-from clearance.run.options import USUAL, CheckOptions
+from clearance.run.options import CASE_SUFFIXES, USUAL, CheckOptions
 
 if TYPE_CHECKING:
     from clearance.run import Run
@@ -26,8 +28,9 @@ MOST = 20
 @click.argument("files", metavar="CASE.yaml...", nargs=-1, type=click.Path(path_type=Path))
 @asked_options(CheckOptions, USUAL)
 def pre_commit(files: tuple[Path, ...], **given: Any) -> int:
-    """Checks the cases among the files of a commit.
+    """Checks cases before a commit.
 
+    All *.clearance.yaml below this folder where no file is given.
     Cases that a file lists are checked too, each against its limits.
 
     Prints only what is broken. Exit code: the greatest of `clearance check` on each.
@@ -35,16 +38,27 @@ def pre_commit(files: tuple[Path, ...], **given: Any) -> int:
     asked = USUAL | said(CheckOptions, given)
     options = made(CheckOptions, asked, spelled_by(CheckOptions))
     from clearance.case.case_list import cases_in
-    from clearance.errors import ClearanceError
+    from clearance.errors import ClearanceError, MissingFile
 
-    worst = ExitCode.CLEAR
-    for file in files:
+    worst, found = ExitCode.CLEAR, files or tuple(_below(Path()))
+    if not found:
+        raise MissingFile(f"there is no *{CASE_SUFFIXES[0]} below this folder", valid="a case file")
+    for file in found:
         try:
             worst = max(worst, *(_checked(path, options) for path in cases_in(file)))
         except ClearanceError as error:
             click.echo(f"{file}: {error.line}", err=True)
             worst = max(worst, ExitCode.BAD_INPUT)
     return worst
+
+
+def _below(folder: Path) -> Iterator[Path]:
+    """The files of cases, or lists of them, in a folder and those in it whose names begin with no dot."""
+    for one in sorted(folder.iterdir()):
+        if one.is_dir() and not one.name.startswith("."):
+            yield from _below(one)
+        elif one.name.endswith(CASE_SUFFIXES):
+            yield one
 
 
 def _checked(path: Path, options: CheckOptions) -> ExitCode:

@@ -18,15 +18,13 @@ import pytest
 from clearance.errors import BadInput, ClearanceError
 from clearance.options import SWITCH, Option, flag_of, options_in
 from clearance.pytest_plugin.assertion import assert_clear
-from clearance.run.options import USUAL, CheckOptions
+from clearance.run.options import CASE_SUFFIXES, USUAL, CheckOptions
 
 if TYPE_CHECKING:
     from clearance.pytest_plugin.collected import CaseListFile
     from clearance.run import Run
 
 __all__ = ["assert_clear", "clearance_case"]
-
-SUFFIXES = (".clearance.yaml", ".clearance.yml")
 
 PREFIX = "clearance_"
 """Of an option among all of pytest's."""
@@ -75,7 +73,7 @@ def _read(known: Option, text: str) -> Any:
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> CaseListFile | None:
     """The tests of a file that is called so."""
-    if not file_path.name.endswith(SUFFIXES):
+    if not file_path.name.endswith(CASE_SUFFIXES):
         return None
     from clearance.pytest_plugin.collected import CaseListFile
 

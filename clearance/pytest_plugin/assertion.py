@@ -20,7 +20,8 @@ def assert_clear(
     """Nothing, if bodies keep a clearance over the motion, as far as proven; at the samples where nothing is.
 
     With `between` or `at_least` that is proven, whatever the run is; a warning names pairs that are excluded or
-    excused, and links of one robot that are not measured against one another.
+    excused, and links of one robot that are not measured against one another. Another says what stands in the
+    headline beside the verdict, as time that is not measured, and the warnings of the run.
 
     Args:
         run: of `check`, or of the fixture `clearance_case`.
@@ -41,6 +42,19 @@ def assert_clear(
         raise error.with_traceback(None) from None
     if faults:
         raise AssertionError("\n".join([f"{run.record.case.name} is not clear", *faults]))
+    warn_beside(run)
+
+
+def warn_beside(run: Run) -> None:
+    """Warns of what a reader must know beside a run that passes: words of the headline, and warnings."""
+    verdict = run.verdict
+    headline = verdict.headline()
+    if verdict.warnings or headline not in (
+        verdict.measured,
+        f"{verdict.measured} with tolerances",
+    ):
+        text = "; ".join([f"{run.record.case.name}: {headline}", *verdict.warnings])
+        warnings.warn(text, stacklevel=3)
 
 
 def _faults(run: Run, between: tuple[str, str] | None, at_least: float | None) -> list[str]:

@@ -17,6 +17,7 @@ from clearance.case.case_list import CASES, cases_in, mapping_in
 from clearance.errors import ClearanceError, shown
 from clearance.options import options_in
 from clearance.pytest_plugin import PREFIX
+from clearance.pytest_plugin.assertion import warn_beside
 from clearance.run.options import USUAL, CheckOptions
 
 if TYPE_CHECKING:
@@ -150,11 +151,12 @@ class VerdictItem(_Item):
     """Whether a case is passed as a whole: all rules, profiles, waivers, and input that is not suspect."""
 
     def runtest(self) -> None:
-        """Fails with the reasons."""
+        """Fails with the reasons; warns of what stands beside a verdict that passes."""
         run = self.case_run.run()
         verdict = run.verdict
         if not verdict.passed:
             raise self.failure([f"{run.record.case.name}: {verdict.headline()}", *verdict.reasons])
+        warn_beside(run)
 
 
 def _in_doubt(run: Run) -> list[str]:

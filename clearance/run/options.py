@@ -87,6 +87,9 @@ COLUMNS = Sort("A,B=C,…", "columns such as time,elbow=q3", _columns, _columns_
 
 RECORDED = ("motion", "recorded")
 
+CASE_SUFFIXES = (".clearance.yaml", ".clearance.yml")
+"""Of the files that pytest collects, and that `clearance pre-commit` looks for: cases, or lists of them."""
+
 USUAL = {"need": "limit"}
 """Defaults that are others where many cases are checked."""
 

@@ -180,6 +180,16 @@ def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
     assert "broken/case.yaml: VIOLATED" in out and "no list of cases" in err
 
 
+def test_the_hook_without_files_checks_all_below_the_folder(place, capsys):
+    assert run(["pre-commit"]) == 2
+    assert "there is no *.clearance.yaml below this folder" in capsys.readouterr().err
+    (place / "clear" / "one.clearance.yaml").write_text("cases: [case.yaml]\n")
+    assert run(["pre-commit"]) == 0
+    (place / "broken" / "one.clearance.yaml").write_text("cases: [case.yaml]\n")
+    assert run(["pre-commit"]) == 1
+    assert "broken/case.yaml: VIOLATED" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("rows_are_left", [True, False])
 def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(
     reports, capsys, rows_are_left

@@ -343,12 +343,21 @@ def swaying():
     return cl.check(arm("swaying", links, [(post, at(x=1.9))], np.array([[0.0, 0.1], [0.1, 0.0]])))
 
 
+def test_what_stands_in_the_headline_beside_clear_is_a_warning(inside, pytester):
+    write_case(pytester.path, CLEAR)
+    inside().assert_outcomes(passed=2, warnings=0)
+    result = inside("--clearance-samples-only")
+    result.assert_outcomes(passed=2, warnings=1)
+    assert "gates: clear at the samples only" in result.stdout.str()
+
+
 @pytest.mark.parametrize("between", [None, ("*", "*"), ("l2", "*"), ("o*", "l?")])
 def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_meant(
     swaying, between
 ):
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as found:
         assert_clear(swaying, between=between, at_least=0.001)
+    told = [one for one in found if "not measured are" in str(one.message)]
     meant = between != ("o*", "l?")
     assert len(told) == meant
     for one in told:
