@@ -296,9 +296,10 @@ class _Comparer:
             if not self._same(robot):
                 return f"robot {robot!r} is another"
         old, new = (
-            {rule.name: rule for rule in found.measured.rules} for found in (self.before, self.now)
+            [rule for rule in found.measured.rules_of(finding.status) if rule.name == finding.rule]
+            for found in (self.before, self.now)
         )
-        if old.get(finding.rule) != new.get(finding.rule):
+        if old != new:
             return f"rule {finding.rule!r} is another"
         tolerances = {self.before.measured.tolerances, self.now.measured.tolerances}
         if finding.kind in OF_TOLERANCES and len(tolerances) > 1:
@@ -323,7 +324,8 @@ class _Comparer:
             return other.incomplete
         if other.not_listed:
             return f"{other.not_listed} findings are not listed"
-        if self.before.measured.rules != self.now.measured.rules:
+        old, new = (found.measured.rules_of(finding.status) for found in (self.before, self.now))
+        if old != new:
             return "other rules may have judged it"
         has_pair = finding.body_b and finding.kind not in (UNPROVEN, *OF_TOLERANCES)
         if has_pair and not other.measured.has_pair(finding.body_a, finding.body_b):

@@ -10,13 +10,14 @@ import hashlib
 import itertools
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 from weakref import WeakKeyDictionary
 
 from clearance.record.fingerprint import robot_digest
 from clearance.record.names import pair_names
 from clearance.record.record import Record
+from clearance.record.status import Status
 from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import Case, Limits
 from clearance.world.cell import once_a_cell
@@ -102,6 +103,12 @@ class MeasurementConditions:
     def has_body(self, name: str) -> bool:
         """True if a body was measured against another."""
         return any(name in block.a or name in block.b for block in self.pairs)
+
+    def rules_of(self, status: str) -> tuple[MeasuredRule, ...]:
+        """The rules as far as they decide on a finding: warn limits do not on one that fails."""
+        if status not in (Status.VIOLATED, Status.CONTACT):
+            return self.rules
+        return tuple(replace(rule, warn=0.0) for rule in self.rules)
 
 
 def conditions_of(record: Record) -> MeasurementConditions:

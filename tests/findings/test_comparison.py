@@ -17,6 +17,7 @@ from clearance.report.comparison_text import comparison_cells, gone_text
 from tests.findings.gates import load_gates, write_gates, write_way
 
 A, B = "gate_a", "gate_b"
+CLEAR = {A: (-0.5, 0.05), B: (0.5, 0.1)}
 BEFORE = {A: (-0.5, 0.003), B: (0.5, 0.1)}
 
 
@@ -163,6 +164,20 @@ def test_a_simulation_in_which_obstacles_push_back_is_another_motion(before, tmp
 def test_other_limits_are_not_comparable(before, tmp_path):
     now = found(tmp_path / "now", BEFORE, limits="{fail: 0.006, warn: 0.02}")
     (row,) = compared(before, now).rows
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' is another")
+
+
+def test_another_warn_limit_changes_nothing_of_what_fails(before, tmp_path):
+    now = found(tmp_path / "now", BEFORE, limits="{fail: 0.005, warn: 0.01}")
+    comparison = compared(before, now)
+    (row,) = comparison.rows
+    assert row.change is FindingChange.UNCHANGED and comparison.passed
+    near = found(tmp_path / "near", {A: (-0.5, 0.007), B: (0.5, 0.1)})
+    (row,) = compared(near, now).rows
+    assert (row.change, row.now.status) == (FindingChange.WORSE, "violated")
+    (row,) = compared(
+        near, found(tmp_path / "none", CLEAR, limits="{fail: 0.005, warn: 0.01}")
+    ).rows
     assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' is another")
 
 
