@@ -30,7 +30,7 @@ MOST_LINKS = 8
 @click.option(
     "--within-mm",
     type=SortParamType(LENGTH),
-    help="Size of the pieces of the sweep, at least a step each; smaller is tighter and slower.  [default: 5]",
+    help="Size of the pieces of the sweep; smaller is tighter and slower.  [default: 5]",
 )
 @click.option(
     "--convex-parts",
@@ -127,11 +127,6 @@ def _lines(found: Workspace, out: Path | None) -> list[str]:
         f"an upper bound: convex pieces ({pieces}) hold the sweeps, "
         f"made wider by up to {found.leaves * 1e3:.3g} mm for the motion between the samples"
     )
-    if found.leaves > found.within:
-        lines.append(
-            f"no piece is shorter than a step of its trajectory, so the {found.within * 1e3:.3g} mm asked for "
-            "are not reached: samples nearer to each other make it tighter"
-        )
     if found.uncounted:
         lines[0] += f", without the {found.uncounted} of the cases"
     lines += [

@@ -289,18 +289,24 @@ def finer_path(what: PairsInMotion, step: int, n_parts: int) -> JointPath:
 
     Exactness: where parts meet joints are rounded, by far less than what bounds leave for rounding.
     """
-    motions = what.motions
     shares = np.arange(n_parts + 1) / n_parts
-    positions = positions_along(what.case, motions, step, shares)
-    cubic = cubic_columns(motions, positions.shape[1])
+    positions, rates = columns_along(what.case, what.motions, step, shares)
+    start, end = what.motions[0].times[step : step + 2]
+    times, cubic = start + shares * (end - start), cubic_columns(what.motions, positions.shape[1])
+    return joint_path(what.layout.world.links, times, positions, rates, cubic)
+
+
+def columns_along(
+    case: Case, motions: Sequence[Motion], step: int, shares: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(k, columns) positions and rates of all columns when shares (k,) of the interval after a step have passed;
+    rates are 0 where no cubic is followed."""
+    positions = positions_along(case, motions, step, shares)
     rates = np.zeros_like(positions)
-    if cubic.any():
+    if cubic_columns(motions, positions.shape[1]).any():
         own = [[motion.velocities_after(step, share) for share in shares] for motion in motions]
         rates[:, : sum(motion.positions.shape[1] for motion in motions)] = np.concatenate(own, 1)
-    start, end = motions[0].times[step : step + 2]
-    return joint_path(
-        what.layout.world.links, start + shares * (end - start), positions, rates, cubic
-    )
+    return positions, rates
 
 
 def cubic_columns(motions: Sequence[Motion], n_columns: int) -> np.ndarray:

@@ -135,7 +135,7 @@ def greatest_escape(pieces, motion, n_parts):
         corners += posed[:, None, :3, 3]
         held = np.full(len(fine), np.inf)
         for piece in (p for p in pieces if p.link == body.name):
-            within = (fine >= piece.first) & (fine <= piece.last)
+            within = (dense.times >= piece.start) & (dense.times <= piece.end)
             rows = corners[within] @ piece.body.normals.T + piece.body.half_spaces[:, 3]
             held[within] = np.minimum(held[within], rows.max(axis=(1, 2)))
         worst = max(worst, held.max())
@@ -154,13 +154,15 @@ def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
 
 
 def test_a_slider_on_a_cubic_swings_beyond_its_samples():
-    """Both ends at 0 with velocities 8 and -8: half way it stands at 2, its chord at 0; leaves = 16 / 8."""
+    """Both ends at 0 with velocities 8 and -8: half way it stands at 2; 16 / 8 / 15^2 is below 0.01."""
     case = slider("one", (1, 0, 0), 0.0, 0.0, n_steps=2)
     motion = kinematic_motion(case.robots[0])
     motion = dataclasses.replace(motion, velocities=np.array([[8.0], [-8.0]]))
-    (piece,) = pieces_of(motion, 0.01)
-    assert piece.leaves == pytest.approx(2.0, rel=1e-12)
-    assert greatest_escape([piece], motion, 100) <= 0.0
+    pieces = pieces_of(motion, 0.01)
+    assert len(pieces) == 15
+    assert max(p.leaves for p in pieces) == pytest.approx(2.0 / 15**2, rel=1e-9)
+    assert greatest_escape(pieces, motion, 100) <= 0.0
+    assert max(p.points[:, 0].max() for p in pieces) < 2.1
 
 
 @WITH_MANIFOLD
@@ -204,10 +206,10 @@ def on_the_door(case):
     return replace(case, robots=(replace(left, world_from_base=np.eye(4), mount=there), *others))
 
 
-def escape(pieces, name, corners, pose, step):
-    """[m] how far a corner of a body stands out of the pieces that hold it after a step; below 0 if inside."""
+def escape(pieces, name, corners, pose, time):
+    """[m] how far a corner of a body stands out of the pieces that hold it at a time [s]; below 0 if inside."""
     world = corners @ pose[:3, :3].T + pose[:3, 3]
-    own = [p for p in pieces if p.link == name and p.first <= step < p.last]
+    own = [p for p in pieces if p.link == name and p.start <= time <= p.end]
     return min(
         (world @ p.body.normals.T + p.body.half_spaces[:, 3]).max() for p in own
     )  # fmt: skip
@@ -227,12 +229,13 @@ def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, wi
             names[obstacle.name], shapes[obstacle.name] = obstacle.name, obstacle.body.shape
         for name in {piece.link for piece in pieces}:
             for step in range(len(run.times) - 1):
-                if not any(p.link == name and p.first <= step < p.last for p in pieces):
+                at = run.times[step]
+                if not any(p.link == name and p.start <= at < p.end for p in pieces):
                     assert name in ("part", "lid")
                     continue
                 for t in np.linspace(*run.times[step : step + 2], 9)[1:-1]:
                     pose = cells.pose_at(case, names[name], t)
-                    assert escape(pieces, name, shapes[name].vertices, pose, step) <= 0.0
+                    assert escape(pieces, name, shapes[name].vertices, pose, t) <= 0.0
 
 
 @pytest.mark.slow
@@ -245,7 +248,7 @@ def test_what_is_in_hand_belongs_to_the_robot_that_holds_it(seed):
         windows = [c.window for c in case.carries if c.by == f"{placed.robot.name}/tool"]
         for name in ("part", "lid"):
             own = [p for p in swept_pieces(case, run, i, 0.05) if p.link == name]
-            spans = [(run.times[p.first], run.times[p.last]) for p in own]
+            spans = [(p.start, p.end) for p in own]
             assert all(any(w.holds(*span) for w in windows) for span in spans)
             held = sum(end - start for start, end in spans)
             assert held == pytest.approx(sum(w.end - w.start for w in windows))

@@ -1,8 +1,8 @@
 """What a robot's links and what they carry pass through, as convex pieces that contain all of it.
 
-A piece is the hull of one convex part of a body at the samples of a stretch of a run, made wider by what a point
-can leave its chord between two samples. Not for: distance between the samples (`certify`), which
-is far tighter.
+A piece is the hull of one convex part of a body at moments of a stretch of a run, made wider by what a point can
+leave its chord between two of them. The moments are the samples, and more where the samples are too far apart. Not
+for: distance between the samples (`certify`), which is far tighter.
 """
 
 from __future__ import annotations
@@ -22,7 +22,12 @@ from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import hull_corners
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL, SLIDING, TURNING, Links
-from clearance.simulate.measure.certify import path_of
+from clearance.simulate.measure.certify import (
+    columns_along,
+    cubic_columns,
+    joint_path,
+    path_of,
+)
 from clearance.world.case import Case
 from clearance.world.corner_paddings import corner_off
 from clearance.world.cubic import cubics_of, extremes_between
@@ -33,23 +38,26 @@ from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
 
+MOST_PARTS = 64
+"""Into which an interval between two samples is divided."""
+
 ROUNDING = 1e-9
 """[m] By how much every piece is wider still: far more than poses and hulls are rounded by."""
 
 
 @dataclass(frozen=True, eq=False)
 class SweptPiece:
-    """A convex part of a body over the steps `first` to `last` of a run.
+    """A convex part of a body from `start` to `end` [s] of a run.
 
     Attributes:
         link: the name of a link of the robot, or of an obstacle that it carries.
-        points: (n, 3) [m] the part's corners at those steps, world frame.
-        leaves: [m] how far a point can be from the hull of `points` between two steps, and in a corner zone.
+        points: (n, 3) [m] the part's corners at moments of that time, world frame.
+        leaves: [m] how far a point can be from the hull of `points` between two moments, and in a corner zone.
     """
 
     link: str
-    first: int
-    last: int
+    start: float
+    end: float
     points: np.ndarray
     leaves: float
 
@@ -73,7 +81,8 @@ def swept_pieces(
     """Pieces that together contain every measured link of a robot, and all that it carries, at every moment.
 
     Args:
-        within: [m] a stretch ends before a point of the body can leave the chord over it by more.
+        within: [m] a stretch ends before a point of the body can leave the chord over it by more. An interval over
+            which it can is divided, into `MOST_PARTS` at most.
         cut_links: bodies to take by their convex parts instead of their hull; takes seconds a body.
 
     Exactness: an upper bound, at the steps and between them. Over one interval, of length 1, a point leaves its
@@ -122,22 +131,45 @@ def _swept_bodies(case: Case, phase: Phase, i_robot: int) -> Iterator[_SweptBody
 def _pieces_of_phase(
     phase: Phase, bodies: list[_SweptBody], within: float, cut_links: Collection[str]
 ) -> Iterator[SweptPiece]:
-    case, motions, every = phase.case, phase.motions, slice(None)
+    case = phase.case
     links = forest_of(case).links
-    path = path_of(links, case, motions, every)
-    rates, slides = _Rates.of(path), _farthest(path)
-    poses = link_poses_at(case, motions, every)
-    for body in bodies:
-        bend = _Bend.of(list(carried_by(forest_of(case), body.link)), links, slides, body.shape)
+    path = path_of(links, case, phase.motions, slice(None))
+    slides = _farthest(path)
+    bends = [
+        _Bend.of(list(carried_by(forest_of(case), body.link)), links, slides, body.shape)
+        for body in bodies
+    ]
+    most = np.max([bend.at_most(_Rates.of(path)) for bend in bends], axis=0, initial=0.0)
+    n_parts = np.clip(np.ceil(np.sqrt(most / within)), 1, MOST_PARTS).astype(int)
+    path, poses = _divided(phase, path, n_parts)
+    rates = _Rates.of(path)
+    for body, bend in zip(bodies, bends, strict=True):
         parts = _parts(body.shape, body.name in cut_links)
         for first, last in _stretches(rates, bend, within):
-            leaves = max((bend.at_most(rates.at(i)) for i in range(first, last)), default=0.0)
+            leaves = max(
+                (float(bend.at_most(rates.at(i))) for i in range(first, last)), default=0.0
+            )
             leaves += body.off + case.path_error
             chosen = poses[first : last + 1, body.link]
             for part in parts:
                 points = np.einsum("nij,kj->nki", chosen[:, :3, :3], part) + chosen[:, None, :3, 3]
-                steps = phase.first + first, phase.first + last
-                yield SweptPiece(body.name, *steps, points.reshape(-1, 3), leaves)
+                span = float(path.times[first]), float(path.times[last])
+                yield SweptPiece(body.name, *span, points.reshape(-1, 3), leaves)
+
+
+def _divided(phase: Phase, path: JointPath, n_parts: np.ndarray) -> tuple[JointPath, np.ndarray]:
+    """The motion of the joints with each interval in so many parts, and (k, links, 4, 4) all poses [m] on it."""
+    case, motions, forest = phase.case, phase.motions, forest_of(phase.case)
+    if (n_parts == 1).all():
+        return path, link_poses_at(case, motions, slice(None))
+    shares = [np.arange(n) / n for n in n_parts]
+    found = [columns_along(case, motions, step, share) for step, share in enumerate(shares)]
+    found.append(columns_along(case, motions, len(n_parts) - 1, np.ones(1)))
+    positions, rates = (np.concatenate(rows) for rows in zip(*found, strict=True))
+    steps = np.concatenate([step + share for step, share in enumerate(shares)] + [[len(n_parts)]])
+    times = np.interp(steps, np.arange(len(path.times)), path.times)
+    cubic = cubic_columns(motions, positions.shape[1])
+    return joint_path(forest.links, times, positions, rates, cubic), forest.poses(positions)
 
 
 def _parts(shape: Polyhedron, cut: bool) -> list[np.ndarray]:
@@ -224,14 +256,15 @@ class _Bend:
         found, turning, reaches = zip(*rows[::-1], strict=True) if rows else ((), (), ())
         return cls(np.array(found, dtype=int), np.array(turning, dtype=bool), np.array(reaches))
 
-    def at_most(self, rates: _Rates) -> float:
-        """[m] no point leaves its chord by more when the joints above the links move like this."""
-        most, bend = (part[self.links] for part in rates)
+    def at_most(self, rates: _Rates) -> np.ndarray:
+        """() or (n - 1,) [m] no point leaves its chord by more when the joints above the links move like this."""
+        most, bend = (part[..., self.links] for part in rates)
         turned = np.where(self.turning, most, 0.0)
-        above = np.concatenate([[0.0], np.cumsum(turned)[:-1]]) if len(turned) else turned
+        above = np.zeros_like(turned)
+        above[..., 1:] = np.cumsum(turned, axis=-1)[..., :-1]
         around = self.reach * (turned * (turned + 2.0 * above) + np.where(self.turning, bend, 0.0))
         along = np.where(self.turning, 0.0, bend + 2.0 * most * above)
-        return float((around + along).sum() / 8.0)
+        return np.asarray((around + along).sum(axis=-1) / 8.0)
 
 
 def _farthest(path: JointPath) -> np.ndarray:
