@@ -8,7 +8,7 @@ Source: ISO 13854, minimum gaps, as the page of AUVA (app.auva.at) gives them; t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from clearance.record.record import PairMinimum
@@ -41,23 +41,12 @@ def data(model: ReportModel) -> dict[str, Any]:
 
 
 def _found(model: ReportModel) -> list[dict[str, Any]]:
-    case, session = model.record.case, model.session
-    robots = {
-        case.prefix_of(placed) + link: placed.robot.name
-        for placed in case.robots
-        for link in placed.robot.link_names
-    }
-    return body_gaps_of(session.motion_minima(), session.standing_bodies, robots)
+    return body_gaps_of(model.session.motion_minima(), model.session.standing_bodies)
 
 
-def body_gaps_of(
-    minima: Sequence[PairMinimum], standing: frozenset[str], robots: Mapping[str, str]
-) -> list[dict[str, Any]]:
+def body_gaps_of(minima: Sequence[PairMinimum], standing: frozenset[str]) -> list[dict[str, Any]]:
     """The least gap [m] of each pair that is below the widest of `WIDTHS`, the narrowest first, and which parts it
-    is too narrow for. Pairs of which neither body moves are left out, and links of one robot.
-
-    Args:
-        robots: the robot of each link.
+    is too narrow for. Pairs of which neither body moves are left out.
     """
     return [
         {
@@ -71,7 +60,6 @@ def body_gaps_of(
         for one in minima
         if one.clearance < max(WIDTHS.values())
         and not (one.link in standing and one.obstacle in standing)
-        and robots.get(one.link, "") != robots.get(one.obstacle, one.obstacle)
     ]
 
 
@@ -105,8 +93,7 @@ def sections(content: PageContent) -> Iterator[Section]:
     widths = ", ".join(f"{part} {limit_mm(width)} mm" for part, width in WIDTHS.items())
     note = (
         "Information, no verdict: it is not known who can get there, nor which gaps are too narrow to enter. "
-        "One body of each pair moves at least, and both are no links of one robot. "
-        "The gap is the least at the steps, less padding. "
+        "One body of each pair moves at least. The gap is the least at the steps, less padding. "
         f"Widths by the {SOURCE}: {widths}."
     )
     rows = [_row(one) for one in found[:MOST_ROWS]]
