@@ -6,7 +6,6 @@ Not for: options and fixture (the package itself), nor lists of cases (`case.cas
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -222,12 +221,10 @@ def check_case(path: Path, config: pytest.Config) -> Run:
 
 
 def report_folder(path: Path, config: pytest.Config) -> Path | None:
-    """Where the report of a case goes; None where none is wanted."""
+    """Where the report of a case goes, by the path of its file; None where none is wanted."""
     out = config.getoption("--clearance-out")
     if not out:
         return None
     path = path.absolute()
     known = path.relative_to(config.rootpath) if path.is_relative_to(config.rootpath) else path
-    return (
-        config.invocation_params.dir / out / re.sub(r"[^\w.-]+", "-", known.as_posix().strip("/"))
-    )
+    return config.invocation_params.dir / out / known.relative_to(known.anchor)

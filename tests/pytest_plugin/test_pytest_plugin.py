@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import re
 import shutil
 import subprocess
@@ -90,6 +91,15 @@ def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester
     assert f"page: {page}" in told and page.is_file()
     assert "Traceback" not in told and "collected.py" not in told
     assert "--clearance-out DIR writes the page" in inside().stdout.str()
+
+
+def test_each_case_has_a_report_of_its_own(inside, pytester):
+    for folder, name, gates in (("weld", "a-x", BROKEN), ("weld-a", "x", CLEAR)):
+        (pytester.path / folder).mkdir()
+        write_case(pytester.path / folder, gates, f"{name}.clearance.yaml")
+    inside("--clearance-out", "reports").assert_outcomes(passed=2, failed=2)
+    summary = pytester.path / "reports" / "weld" / "a-x.clearance.yaml" / "summary.json"
+    assert not json.loads(summary.read_text())["passed"]
 
 
 def test_a_case_that_is_refused_leaves_no_older_report_green(inside, pytester):

@@ -21,9 +21,7 @@ def swing() -> Record:
 
 def test_a_gap_may_catch_what_needs_more(tmp_path):
     near = [one for one in run_of(swing()).pair_minima if one.clearance < 0.5]
-    told = body_gaps_of(
-        run_of(swing()).pair_minima, frozenset({"post", "table", "wall </script>"}), {}
-    )
+    told = body_gaps_of(run_of(swing()).pair_minima, frozenset({"post", "table", "wall </script>"}))
     assert len(told) == len(near)
     for one, minimum in zip(told, near, strict=True):
         assert one["gap"] == minimum.clearance
