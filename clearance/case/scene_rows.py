@@ -20,6 +20,7 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_rest import misplaced
+from clearance.world.pose_table import WORLD_FRAMES
 from clearance.world.robot import JointKind
 from clearance.world.rules import Allowance, matches
 from clearance.world.timeline import timeline_of
@@ -27,9 +28,6 @@ from clearance.world.timing import Window
 
 ORIGIN = 1e-9
 """[m] and [-] How far a link's pose may be off the world's and count as the same."""
-
-WORLD_FRAMES = ("world", "map", "odom", "earth")
-"""Names of frames that stand, beside those of links. Source: ROS, REP 105."""
 
 
 def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]:

@@ -12,6 +12,9 @@ from clearance.world.field_types import owned
 from clearance.world.slerp import aligned, slerp
 from clearance.world.timing import AS_GIVEN, Timing, require_increasing
 
+WORLD_FRAMES = ("world", "map", "odom", "earth")
+"""Names of frames that stand, beside those of links. Source: ROS, REP 105."""
+
 
 @dataclass(frozen=True, eq=False)
 class PoseTable:
