@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadChange
+from clearance.formats.motion.trajectory_writer import untold
 from clearance.gains.basis import Basis
 from clearance.gains.between_samples import values_between
 from clearance.gains.grasp import Grasps
@@ -242,7 +243,7 @@ def require_path(placed: PlacedRobot) -> None:
     """Nothing, if a robot has a path that can be written otherwise.
 
     Raises:
-        BadInput: it has none, or a recording with holes, which no table can say.
+        BadInput: it has none, or one of which no table can say all, as a recording with holes.
     """
     if placed.trajectory is None or placed.trajectory.n_steps < 2:
         raise BadChange(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
@@ -250,6 +251,11 @@ def require_path(placed: PlacedRobot) -> None:
         raise BadChange(
             f"the recording of robot {placed.robot.name!r} has holes",
             valid="a path that is known everywhere",
+        )
+    for line in untold(placed.trajectory, "trajectory.csv"):
+        raise BadChange(
+            f"robot {placed.robot.name!r}: {line}",
+            valid="kind timing, obstacle or base, or mend it",
         )
 
 

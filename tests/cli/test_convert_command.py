@@ -65,6 +65,62 @@ def test_a_name_that_ends_in_a_unit_is_told_where_no_robot_says_whose_it_is(tmp_
     assert "read in rad or m, whatever the name ends in: 'b_deg'" in told
 
 
+ATTACHED = """
+trajectory:
+- joint_trajectory:
+    joint_names: [x]
+    points:
+    - {positions: [0.0], time_from_start: {sec: 0, nanosec: 0}}
+    - {positions: [0.2], time_from_start: {sec: 2, nanosec: 0}}
+trajectory_start:
+  joint_state: {name: [x], position: [0.0]}
+  attached_collision_objects: [{link_name: tool, object: {id: part}}]
+"""
+LATE = """
+joint_names: [x]
+points:
+- {positions: [0.0], time_from_start: {sec: 1, nanosec: 0}}
+- {positions: [0.2], time_from_start: {sec: 2, nanosec: 0}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "target", "says"),
+    [
+        ("a.yaml", ATTACHED, "b.csv", "trajectory_start.attached_collision_objects"),
+        ("a.yaml", ATTACHED, "b.json", "trajectory_start.attached_collision_objects"),
+        ("a.yaml", LATE, "b.csv", "how the robot comes to its first point at 1 s"),
+        (
+            "a.yaml",
+            ATTACHED.replace("position: [0.0]", "position: [0.3]"),
+            "b.yaml",
+            "trajectory_start has joint 'x' 0.3 rad or m off it",
+        ),
+        (
+            "a.csv",
+            "time,a [deg],b [deg]\n0,0,0\n1,0.5,1.5\n",
+            "b.csv",
+            "all angles are within 6.28",
+        ),
+    ],
+)
+def test_a_motion_of_which_samples_do_not_say_all_is_refused(
+    tmp_path, monkeypatch, capsys, name, given, target, says
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_text(given)
+    assert convert(name, target) == 2
+    told = capsys.readouterr().err.strip()
+    assert says in told and "name the file itself in a case" in told and told.count("\n") == 0
+    assert not (tmp_path / target).exists()
+
+
+def test_a_late_first_point_stays_one_in_a_message(tmp_path):
+    (tmp_path / "a.yaml").write_text(LATE)
+    assert convert(tmp_path / "a.yaml", tmp_path / "b.json") == 0
+    assert parse_trajectory((tmp_path / "b.json").read_bytes(), "b.json").has_way_in
+
+
 @pytest.mark.parametrize("name", ["a [deg]", "time", "b/velocity", "x\ty;z"])
 def test_names_that_a_table_would_read_otherwise_are_refused(name):
     trajectory = Trajectory(np.arange(2.0), (name,), np.ones((2, 1)))

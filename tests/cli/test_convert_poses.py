@@ -50,9 +50,20 @@ def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):
     assert convert("c.yaml", "d.csv") == 0
     told = capsys.readouterr().out
     assert "in frame 'map', taken for what the poses are seen from" in told
+    assert "d.csv: the poses are in frame 'map', which a table cannot say" in told
     assert "d.csv: the first was stamped 1700000000.100000000 s, which a table cannot say" in told
     assert convert("d.csv", "e.yaml") == 0
     assert "e.yaml: frame_id is empty" in capsys.readouterr().out
+
+
+def test_a_frame_that_may_move_is_not_lost_in_a_table(capsys):
+    Path("a.yaml").write_text(STAMPED.replace("map", "wrist_camera"))
+    assert convert("a.yaml", "b.json") == 0
+    capsys.readouterr()
+    assert convert("b.json", "c.csv") == 2
+    told = capsys.readouterr().err.strip()
+    assert "b.json: the poses are in frame 'wrist_camera', which a table cannot say" in told
+    assert "on: wrist_camera" in told and told.count("\n") == 0 and not Path("c.csv").exists()
 
 
 def test_transforms_stay_transforms(capsys):

@@ -471,3 +471,18 @@ def test_what_no_table_says_of_a_motion_stays_in_a_file_that_does(tmp_path):
     assert run([*args, "cell/bent.yaml", "--force"]) == 0
     points = load_case(Path("made/case.yaml")).robots[0].trajectory.points
     assert points.accelerations.tolist() == [[0.5, 0.0]] * 2
+
+
+def test_a_doubt_about_the_unit_of_a_table_stays_with_its_file(capsys):
+    """Two columns in degrees, with the numbers of radians: written anew, they would look right."""
+    rows = "0,0,0\n1,0.5,1.5\n"
+    Path("cell/two.urdf").write_text(ARM.replace('"prismatic"', '"revolute"'))
+    Path("cell/odd.csv").write_text(f"time,shoulder [deg],lift [deg]\n{rows}")
+    assert (
+        new("--trajectory", "cell/odd.csv", "--scene", "cell/scene.yaml", robot="cell/two.urdf")
+        == 0
+    )
+    assert "trajectory: ../cell/odd.csv" in Path("out/case.yaml").read_text()
+    capsys.readouterr()
+    assert run(["check", "out/case.yaml"]) == 2
+    assert "is the table in radians" in capsys.readouterr().out

@@ -237,3 +237,18 @@ def test_a_recording_with_holes_is_not_changed(tmp_path, kind, how):
     moved = replace(placed, trajectory=replace(placed.given_trajectory, holes=holes))
     with pytest.raises(BadInput, match="the recording of robot 'cart' has holes"):
         cl.gain(replace(case, robots=(moved,)), kind, **how)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"has_way_in": True}, "how the robot comes to its first point"),
+        ({"unread": ("attached_collision_objects",)}, "would not name what is not read"),
+    ],
+)
+def test_a_path_of_which_a_table_does_not_say_all_is_not_changed(tmp_path, more, says):
+    case = there_and_back(tmp_path)
+    (placed,) = case.robots
+    moved = replace(placed, trajectory=replace(placed.given_trajectory, **more))
+    with pytest.raises(BadInput, match=says):
+        cl.gain(replace(case, robots=(moved,)), "waypoints")

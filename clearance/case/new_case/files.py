@@ -21,7 +21,7 @@ from clearance.case.new_case.text import TOUCHING, CaseText, text_of
 from clearance.errors import BadInput, MissingKey, NothingToMeasure, at
 from clearance.formats.files.input_files import InputFiles, path_from, resolved
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.motion.trajectory_writer import written
+from clearance.formats.motion.trajectory_writer import untold, written
 from clearance.formats.robot.srdf import (
     NamedStates,
     bases_in_states,
@@ -225,8 +225,8 @@ def _text(
 
 
 def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path) -> dict[str, Any]:
-    """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes, or
-    that it comes to its first sample from elsewhere, or what is not read. A program stays the file that it is.
+    """The keys of the trajectory: a file of the case's own, or the one given if that says what samples do not. A
+    program stays the file that it is.
     """
     if "program" in (given.trajectory or {}):
         keys = dict(given.trajectory or {})
@@ -234,11 +234,11 @@ def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path
         program |= {"beside": [path_from(folder, one) for one in program.get("beside", ())]}
         program = {key: value for key, value in program.items() if value != []}
         return {**keys, "program": program if len(program) > 1 else program["file"]}
-    warned = trajectory.holes or trajectory.has_way_in or trajectory.unread
-    if warned and given.trajectory is not None:
+    name = TRAJECTORY if trajectory.points is None else MESSAGE
+    if given.trajectory is not None and any(untold(trajectory, name)):
         keys = dict(given.trajectory)
         return {**keys, "file": path_from(folder, keys["file"])}
-    return {"file": TRAJECTORY if trajectory.points is None else MESSAGE}
+    return {"file": name}
 
 
 def _open_keys(robot: NewRobot, trajectory: Trajectory) -> list[tuple[str, str]]:

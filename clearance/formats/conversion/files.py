@@ -17,6 +17,7 @@ from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import FORMATS, WANTED, Kind, foreign, formats_in, written_as
 from clearance.formats.motion import pose_writer, trajectory_writer
 from clearance.formats.motion.trajectory_file import is_bag
+from clearance.formats.motion.trajectory_writer import untold
 from clearance.formats.scene.request import SceneRequest
 from clearance.formats.schema.timed import Choice
 from clearance.formats.text.file_start import LONGEST
@@ -77,7 +78,7 @@ def _refuse_idle(asked: Conversion, kind: Kind) -> None:
 def _trajectory(asked: Conversion) -> ConvertedFiles:
     trajectory, notes = load_trajectory(asked.source, asked.choice, asked.files)
     with at(asked.source.name):
-        _refuse_holes(trajectory)
+        _refuse_untold(trajectory, asked.target.name)
         content, changes = trajectory_writer.written(trajectory, asked.target.name)
     n_joints = counted(len(trajectory.joint_names), "joint")
     samples = trajectory_writer.samples_in(trajectory, asked.target.name)
@@ -87,19 +88,14 @@ def _trajectory(asked: Conversion) -> ConvertedFiles:
     )
 
 
-def _refuse_holes(trajectory: Trajectory) -> None:
-    """Nothing, if a table can say all that is known.
+def _refuse_untold(trajectory: Trajectory, shown: str) -> None:
+    """Nothing, if samples say all that bears on a verdict.
 
     Raises:
-        BadInput: a recording with a hole, which samples alone would bridge.
+        BadInput: a hole of a recording, a start that is not known, or what is not read.
     """
-    for hole in trajectory.holes:
-        if hole.end <= trajectory.times[0] or hole.start >= trajectory.times[-1]:
-            continue  # not in the table
-        raise BadInput(
-            f"{hole.text}; a table would bridge it by a straight line",
-            valid="a recording without holes, or the file itself in a case, with gaps:",
-        )
+    for line in untold(trajectory, shown):
+        raise BadInput(line, valid="mend it, or name the file itself in a case, as trajectory")
 
 
 def _poses(asked: Conversion) -> ConvertedFiles:

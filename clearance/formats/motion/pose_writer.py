@@ -17,6 +17,7 @@ from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_sa
 from clearance.formats.motion.trajectory_writer import WrittenFile, table_text
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.formats.text.yaml_text import flow
+from clearance.world.pose_table import WORLD_FRAMES
 
 Message = dict[str, Any]
 
@@ -30,9 +31,15 @@ def written_poses(samples: PoseSamples, shown: str) -> WrittenFile:
         shown: with one of the suffixes that are written.
 
     Raises:
-        BadInput: too much for the format. BadTime: samples less than a nanosecond apart.
+        BadInput: too much for the format; in a table, poses of a frame that may move. BadTime: samples less than a
+            nanosecond apart.
     """
     known = written_as(Kind.POSES, shown)
+    if samples.frame not in ("", *WORLD_FRAMES) and not known.is_message:
+        raise BadMotion(
+            f"the poses are in frame {samples.frame!r}, which a table cannot say",
+            valid=f"a .yaml or .json file; in a case, with on: {samples.frame} if that is a link",
+        )
     content = function_at(known.write)(samples).encode()
     if known.is_message:
         stamps = whole_times(samples.times.tolist())
@@ -94,11 +101,16 @@ def _header(nanoseconds: int, frame: str) -> Message:
 
 
 def _lost_in_tables(samples: PoseSamples) -> list[str]:
-    """The notes on what a table has no place for; the reader noted frames."""
+    """The notes on what a table has no place for."""
+    seen_from = [f"the poses are in frame {samples.frame!r}, which a table cannot say"]
     of = [f"the poses are those of frame {samples.child!r}, which a table cannot say"]
     seconds, rest = divmod(samples.stamp, NANO)
     since = [f"the first was stamped {seconds}.{rest:09d} s, which a table cannot say"]
-    return [*(of if samples.child else []), *(since if samples.stamp else [])]
+    return [
+        *(seen_from if samples.frame else []),
+        *(of if samples.child else []),
+        *(since if samples.stamp else []),
+    ]
 
 
 def _lost_in_messages(samples: PoseSamples) -> list[str]:

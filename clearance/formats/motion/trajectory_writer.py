@@ -21,6 +21,7 @@ from clearance.formats.motion.trajectory_file import parse_trajectory
 from clearance.formats.table.column_units import VELOCITY
 from clearance.formats.table.csv_table import TIME
 from clearance.formats.text.yaml_text import flow
+from clearance.world.notice import listed
 from clearance.world.trajectory import Points, Trajectory
 
 
@@ -43,6 +44,22 @@ def written(trajectory: Trajectory, shown: str) -> WrittenFile:
     is_rounded = whole is not None and whole.n_rounded > 0
     _refuse_other(trajectory, content, shown, is_rounded)
     return WrittenFile(content, (whole.note(),) if whole and is_rounded else ())
+
+
+def untold(trajectory: Trajectory, shown: str) -> Iterator[str]:
+    """A line on each thing that bears on a verdict and that the file `shown`, of samples alone, cannot say."""
+    yield from trajectory.odd
+    for hole in trajectory.holes:
+        is_within = hole.end > trajectory.times[0] and hole.start < trajectory.times[-1]
+        deed = "bridge it by a straight line" if is_within else "leave it out"
+        yield f"{hole.text}; {shown} would {deed}"
+    is_late_message = written_as(Kind.TRAJECTORY, shown).is_message and not trajectory.start_off
+    if trajectory.has_way_in and not is_late_message:
+        why = trajectory.start_off and f" ({trajectory.start_off})"
+        first = f"{trajectory.times[0]:g} s"
+        yield f"how the robot comes to its first point at {first} is not known{why}; {shown} would begin there"
+    if trajectory.unread:
+        yield f"{shown} would not name what is not read: {listed(trajectory.unread, 6)}"
 
 
 def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:

@@ -217,6 +217,17 @@ def test_positions_that_are_no_numbers_are_left_out_by_message_and_joint(tmp_pat
     assert (hole.joints, hole.start, hole.end) == (("shoulder",), 8.0, 10.0)
 
 
+def test_a_recording_of_which_an_end_is_not_known_is_not_converted(tmp_path, capsys):
+    """The lift's driver stops at 19 s, and the shoulder goes on: a table would end there, as if all did."""
+    states = [state(i, [0.1 * i], ["shoulder"]) for i in range(21)]
+    states += [state(i, [0.01 * i], ["lift"]) for i in range(20)]
+    bag = write_bag(tmp_path, "mcap", {"/joint_states": states})
+    assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 2
+    told = capsys.readouterr().err
+    assert "no position of lift from 19 to 20 s" in told and "out.csv would leave it out" in told
+    assert not (tmp_path / "out.csv").exists()
+
+
 def test_a_joint_without_any_number_is_refused(tmp_path):
     messages = [state(i, [0.1 * i, float("nan")]) for i in range(3)]
     path = write_bag(tmp_path, "mcap", {"/joint_states": messages})
