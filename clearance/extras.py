@@ -26,7 +26,6 @@ LIBRARIES = {
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "tables": ("pyarrow",),
-    "view": ("meshcat",),
 }
 """The modules that each extra of `pyproject.toml` brings."""
 

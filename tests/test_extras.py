@@ -133,12 +133,12 @@ def test_each_door_says_which_extra_it_needs(hidden, tmp_path):
 
 def test_a_library_that_cannot_be_loaded_says_why():
     with pytest.raises(cl.ClearanceError, match=r"cannot be imported \(libGL is missing\)"):
-        with extras.importing("view", "the view"):
+        with extras.importing("report", "the page"):
             raise ImportError("libGL is missing", name="meshcat")
 
 
 def test_a_fault_of_our_own_is_no_missing_library():
-    with pytest.raises(ValueError), extras.importing("view", "the view"):
+    with pytest.raises(ValueError), extras.importing("report", "the page"):
         raise ValueError
 
 

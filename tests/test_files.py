@@ -18,7 +18,7 @@ from tests.report.made import write
 from tests.report.records import record
 
 NAMES = {
-    "report.html", "replay.npz", "steps.csv", "contacts.csv", "steps.parquet", "findings.json",
+    "report.html", "steps.csv", "contacts.csv", "steps.parquet", "findings.json",
     "summary.json", "worst_moments.yaml",
 }  # fmt: skip
 

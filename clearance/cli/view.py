@@ -1,4 +1,4 @@
-"""`clearance view`: a report's replay in the browser, or the report of one case of a batch."""
+"""`clearance view`: a report in the browser, or the report of one case of a batch."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from clearance.record.replay import Replay
+    pass
 
 
 @click.command()
 @click.argument("folder", metavar="DIR|CASE.yaml|ZIP|STORE", type=click.Path(path_type=Path))
 @click.argument("case", metavar="[CASE]", required=False)
 def view(folder: Path, case: str | None) -> None:
-    """Shows the replay of a report in the browser.
+    """Shows a report in the browser.
 
-    It shows robot, scene and the line between the nearest points.
+    It shows the verdict, robot, scene and the line between the nearest points.
 
     DIR is a report that `clearance check --out DIR` has written. A case file is checked first. ZIP
     is what `clearance pack` made of either. With STORE, which `clearance batch` has written, and
@@ -28,23 +28,23 @@ def view(folder: Path, case: str | None) -> None:
         return
     from clearance.case.packed import unpacked
     from clearance.progress import doing
-    from clearance.view import show
+    from clearance.view import page_in, show
 
     with unpacked(folder) as packed:
         place = folder if packed is None else packed.entry
-        shown = _checked(folder) if place.is_file() else place
+        page = _checked(folder).encode() if place.is_file() else page_in(place)
         with doing(lambda: ""):
-            show(shown)
+            show(str(folder), page)
 
 
-def _checked(case_file: Path) -> Replay:
-    """The replay of a case, which is checked; its verdict and warnings are printed."""
+def _checked(case_file: Path) -> str:
+    """The page of a case; its verdict and warnings are printed."""
     from clearance.report.terminal import print_answer
     from clearance.run import check
 
     run = check(case_file)
     print_answer(run.report, None)
-    return run.replay()
+    return run.page()
 
 
 def _write_case(place: Path, name: str) -> None:

@@ -1,24 +1,17 @@
 """The drawing data of a record: shapes, poses frame by frame, and the line between the witness points.
 
-The page in a report and the live viewer both draw from this, so they show the same frames. Geometry
+The page, its picture and its GLB draw from this, so they show the same frames. Geometry
 and poses are float32, which is for the eye only; times, clearances and witness points stay float64.
 """
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadSyntax, MissingFile
 from clearance.world.pairs import OBSTACLE
-
-FILE_NAME = "replay.npz"
-_FORMAT = 6
-
 
 LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
 """Kinds of bodies as they are drawn: links, obstacles that stand (a robot's own floor too), that move, and parts
@@ -160,89 +153,3 @@ class Replay:
     def i_worst(self) -> int:
         """The frame of the most critical moment."""
         return self.worst.frame
-
-    def save(self, path: Path) -> None:
-        """Writes everything into one compressed file; the same replay gives the same bytes."""
-        arrays = {name: getattr(self, name) for name in _FRAME_ARRAYS}
-        for i, (vertices, triangles) in enumerate(self.shapes):
-            arrays[f"vertices_{i}"], arrays[f"triangles_{i}"] = vertices, triangles
-        for i, (poses, shown) in enumerate(zip(self.poses, self.shown, strict=True)):
-            arrays[f"poses_{i}"], arrays[f"shown_{i}"] = poses, shown
-        for i, (vertices, triangles) in enumerate(self.regions):
-            arrays[f"region_vertices_{i}"], arrays[f"region_triangles_{i}"] = vertices, triangles
-        head = {
-            "format": _FORMAT,
-            "name": self.name,
-            "worst": self.worst,
-            "rules": [asdict(rule) for rule in self.rules],
-            "carries": [asdict(carry) for carry in self.carries],
-            "n_steps": self.n_steps,
-            "n_shapes": len(self.shapes),
-            "bodies": [asdict(body) for body in self.bodies],
-            "contacts": [asdict(contact) for contact in self.contacts],
-            "moves": self.moves,
-        }
-        text = json.dumps(head, sort_keys=True).encode()
-        np.savez_compressed(path, head=np.frombuffer(text, dtype=np.uint8), **arrays)
-
-
-_FRAME_ARRAYS = (
-    "steps", "times", "times_b", "clearances", "between", "known", "status", "rule", "lines", "nearest",
-    "move",
-)  # fmt: skip
-
-
-def load_replay(path: Path) -> Replay:
-    """The replay that `Replay.save` wrote.
-
-    Raises:
-        MissingFile: no such file. BadSyntax: it is not a replay of this version.
-    """
-    if not path.is_file():
-        raise MissingFile(
-            "no replay here", where=str(path), valid="a folder that `clearance check --out` wrote"
-        )
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            head = json.loads(stored["head"].tobytes())
-            if head["format"] != _FORMAT:
-                raise ValueError(f"format {head['format']}")
-            return _from_arrays(head, dict(stored))
-    except Exception as error:  # np.load raises many kinds for a damaged archive
-        raise BadSyntax(
-            f"not a replay of this version ({type(error).__name__}: {error})",
-            where=str(path),
-            valid="run `clearance check` again",
-        ) from None
-
-
-def _moment(row: list) -> DrawnMoment:
-    frame, clearance, status, line, bodies = row
-    return DrawnMoment(frame, clearance, status, tuple(line), tuple(bodies))
-
-
-def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
-    n_shapes, n_bodies = head["n_shapes"], len(head["bodies"])
-    return Replay(
-        name=head["name"],
-        worst=_moment(head["worst"]),
-        rules=tuple(DrawnRule(**rule) for rule in head["rules"]),
-        carries=tuple(DrawnCarry(**carry) for carry in head["carries"]),
-        n_steps=head["n_steps"],
-        moves=tuple(head["moves"]),
-        bodies=tuple(DrawnBody(**body) for body in head["bodies"]),
-        shapes=tuple((arrays[f"vertices_{i}"], arrays[f"triangles_{i}"]) for i in range(n_shapes)),
-        poses=tuple(arrays[f"poses_{i}"] for i in range(n_bodies)),
-        shown=tuple(arrays[f"shown_{i}"] for i in range(n_bodies)),
-        contacts=tuple(
-            DrawnContact(
-                **row | {"start": tuple(row["start"]), "direction": tuple(row["direction"])}
-            )
-            for row in head["contacts"]
-        ),
-        regions=tuple(
-            (arrays[f"region_vertices_{i}"], arrays[f"region_triangles_{i}"])
-            for i in range(len(head["contacts"]))
-        ),
-        **{name: arrays[name] for name in _FRAME_ARRAYS},
-    )

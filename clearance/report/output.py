@@ -9,7 +9,7 @@ from typing import NamedTuple
 from clearance.files import LAST, fill_folder
 from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
-from clearance.record.replay import FILE_NAME, EarlierBody, Replay
+from clearance.record.replay import EarlierBody, Replay
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.report.curves import more_curves, pair_curves
 from clearance.report.model import PageContent, ReportModel
@@ -35,15 +35,14 @@ CONTENT = (
     "contacts.csv",
     BUDGET,
     MOMENTS,
-    FILE_NAME,
     findings_file.FILE_NAME,
     "report.html",
     LAST,
 )
 """What a report can consist of."""
 
-OWN = (*CONTENT, "receipt.bin", OLDER_SUMMARY)
-"""All files that a report can have; a receipt, which is of one report, goes with it."""
+OWN = (*CONTENT, "receipt.bin", OLDER_SUMMARY, "replay.npz")
+"""All files that a report can have, or had; a receipt, which is of one report, goes with it."""
 
 
 class Drawings(NamedTuple):
@@ -86,7 +85,7 @@ def write(
     comparison: Comparison | None = None,
 ) -> None:
     """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, where there are tolerances `budget.csv`,
-    `worst_moments.yaml`, `replay.npz`, `findings.json`, `report.html` and, last, `summary.json`.
+    `worst_moments.yaml`, `findings.json`, `report.html` and, last, `summary.json`.
 
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
     there is replaced as a whole, or, if anything goes wrong, kept as it was.
@@ -116,7 +115,6 @@ def write(
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         if record.budget is not None:
             write_csv(lambda: [budget_table(model.least_left)], place / BUDGET)
-        drawn.replay.save(place / FILE_NAME)
         for name, text in texts.items():
             (place / name).write_text(text, encoding="utf-8")
 

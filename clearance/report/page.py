@@ -80,24 +80,6 @@ def page_of(
     )
 
 
-def replay_page(replay: Replay, section: Section) -> str:
-    """A page that plays a replay, with one section below it.
-
-    Raises:
-        Unavailable: meshcat is installed without its viewer.
-    """
-    data = _data(replay) | {"pairs": [], "curves": None}
-    data["intervals"] = {level: [] for level in LEVELS}
-    return render(
-        "view.html",
-        title=replay.name,
-        thinned="",
-        section=section,
-        data=data,
-        meshcat=_meshcat(),
-    )
-
-
 def _sections(topics: Iterable[Topic], content: PageContent) -> list[Section]:
     return [
         section

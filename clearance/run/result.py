@@ -247,6 +247,17 @@ class Run:
         """The drawing data of the run."""
         return self.session.replay(self.rows, self.verdict.worst)
 
+    def page(self) -> str:
+        """`report.html`, the page of the report.
+
+        Raises:
+            Unavailable: a library of the extra `report` is missing.
+        """
+        require("report", "the page")
+        from clearance.report.output import page_text
+
+        return page_text(self.report, self._drawn(), self.rows)
+
     def show(self, height: int = 800) -> ShownPage:
         """The page of the report, with verdict, curve and replay: a notebook shows it, else the browser opens it.
 
@@ -256,11 +267,9 @@ class Run:
         Raises:
             Unavailable: a library of the extra `report` is missing.
         """
-        require("report", "the page")
         from clearance.report.notebook import shown_page
-        from clearance.report.output import page_text
 
-        return shown_page(page_text(self.report, self._drawn(), self.rows), height)
+        return shown_page(self.page(), height)
 
     def to_pandas(self) -> Any:
         """`steps` as a `pandas.DataFrame`.

@@ -28,8 +28,8 @@ GUARDS = {
 class PageServer:
     """Serves a page until it is closed; `url` is its address."""
 
-    def __init__(self, page: str) -> None:
-        self._server = _Server(page.encode())
+    def __init__(self, page: bytes) -> None:
+        self._server = _Server(page)
         self.port: int = self._server.server_port
         self.url = f"http://{self._server.host}{self._server.place}"
         self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)

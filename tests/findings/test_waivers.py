@@ -24,7 +24,6 @@ from clearance.report.terminal import print_answer
 from clearance.report.topics.verdict import header
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
-from clearance.view.playback import moments_of as moments_of_replay
 from clearance.world.case import Limits
 from clearance.world.rules import Rule
 from clearance.world.waiver import Waiver
@@ -270,7 +269,6 @@ def test_every_answer_of_one_moment_is_of_what_fails(tmp_path):
     assert [still.bodies[i].name for i in still.nearest] == ["box", B]
     assert np.linalg.norm(still.line[1] - still.line[0]) == pytest.approx(0.0045)
     assert f'"bodies":["box","{B}"]'.encode() in glb_of(run.record, replay, run.verdict.worst)
-    assert next(text for text, _ in moments_of_replay(replay)).startswith("worst: 4.500 mm")
 
 
 def test_the_nearest_moment_is_the_least_clearance_whatever_judges_or_waives_it(tmp_path):

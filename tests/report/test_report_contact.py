@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from clearance.record.record import Record
-from clearance.record.replay import load_replay
 from clearance.record.wording import contact_text, least_cm3, volume_cm3
 from clearance.report.topics.contact import sections
 from clearance.simulate.replay import replay as replay_contact
@@ -42,16 +41,6 @@ def test_a_volume_lies_between_its_two_wordings(volume):
     more, less = 1 + 1e-11, 1 - 1e-11  # rounding noise does not count
     assert float(least_cm3(volume)) * less <= volume * 1e6 <= float(volume_cm3(volume)) * more
     assert float(volume_cm3(volume)) <= 1.01 * volume * 1e6
-
-
-def test_the_replay_comes_back_with_its_contacts(tmp_path):
-    replay = replay_of(run())
-    assert len(replay.contacts) == len(run().contacts) > 3
-    replay.save(tmp_path / "replay.npz")
-    back = load_replay(tmp_path / "replay.npz")
-    assert back.contacts == replay.contacts
-    for (v, t), (w, u) in zip(back.regions, replay.regions, strict=True):
-        assert np.array_equal(v, w) and np.array_equal(t, u)
 
 
 def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):

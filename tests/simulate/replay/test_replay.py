@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadSyntax, MissingFile
-from clearance.record.replay import load_replay
 from clearance.simulate.replay.replay import frame_steps
 from clearance.world.rules import Rule
 from clearance.world.waiver import Waiver
@@ -53,35 +51,6 @@ def test_poses_put_the_shapes_where_kinematics_puts_them():
         true = expected[:, i, :3, :3] @ body.shape.vertices.T + expected[:, i, :3, 3, None]
         assert np.abs(drawn - true).max() < 1e-6
     assert replay.poses[0].shape == (1, 7), "the base stands still"
-
-
-def test_a_saved_replay_comes_back(tmp_path):
-    replay = replay_of(record())
-    replay.save(tmp_path / "replay.npz")
-    back = load_replay(tmp_path / "replay.npz")
-    assert (back.name, back.rules, back.n_steps) == (replay.name, replay.rules, replay.n_steps)
-    assert back.bodies == replay.bodies
-    for name in ("steps", "times", "clearances", "status", "rule", "lines", "nearest"):
-        assert np.array_equal(getattr(back, name), getattr(replay, name))
-    for mine, theirs in zip(back.poses, replay.poses, strict=True):
-        assert np.array_equal(mine, theirs)
-    assert (back.carries, back.i_worst) == (replay.carries, replay.i_worst)
-    for mine, theirs in zip(back.shown, replay.shown, strict=True):
-        assert np.array_equal(mine, theirs)
-    for mine, theirs in zip(back.shapes, replay.shapes, strict=True):
-        assert np.array_equal(mine[0], theirs[0])
-        assert np.array_equal(mine[1], theirs[1])
-
-
-def test_a_replay_that_is_not_there_or_damaged_is_refused_in_one_line(tmp_path):
-    with pytest.raises(MissingFile, match=r"replay\.npz"):
-        load_replay(tmp_path / "replay.npz")
-    replay_of(record(n_steps=9)).save(tmp_path / "replay.npz")
-    whole = (tmp_path / "replay.npz").read_bytes()
-    for damaged in (b"", b"not a zip", whole[: len(whole) // 2]):
-        (tmp_path / "replay.npz").write_bytes(damaged)
-        with pytest.raises(BadSyntax):
-            load_replay(tmp_path / "replay.npz")
 
 
 @pytest.mark.parametrize("by", ["waiver", "rule"])
