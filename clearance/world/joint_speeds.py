@@ -23,7 +23,8 @@ JUMP = 50.0
 15 times as fast, in a third of their intervals."""
 
 ALONE, RARE = 3.0, 20
-"""[-] So does one that is this many times as fast, if it is too fast in no more than one of so many intervals."""
+"""[-] So does one that is this many times as fast, if it is too fast in no more than one of so many intervals, or
+if it goes back in most of them, as where a table has the rows of two robots."""
 
 STEP_TURN, STEP_SLIDE = 0.05, 5e-3
 """[rad], [m] A shorter way in an interval is no jump: stamps of recordings that lie close make it fast."""
@@ -52,7 +53,7 @@ def notices_on_speed(
     notices = []
     jumps = [text for is_jump, text in found if is_jump]
     if jumps:
-        asks = "does the table jump or lack rows, or are its times in another unit?"
+        asks = "does the table jump, lack rows or hold those of two robots, or are its times in another unit?"
         text = f"CHECK LIMITS: {listed(jumps, 4)}; {asks}"
         notices.append(Notice(Severity.SUSPECT, "limits", text))
     if jumps := [*_jumps_of_loop(placed, before)]:
@@ -105,10 +106,12 @@ def _jumps(course: JointCourse, speeds: np.ndarray, most: float, n_beyond: int) 
     """True if the greatest speed of a joint, in the run's time, is that of a jump."""
     if speeds.max() > JUMP * most:
         return True
-    worst = int(speeds.argmax())
-    way = abs(float(course.at_samples[worst + 1] - course.at_samples[worst]))
-    is_far = way > (STEP_TURN if turns(course.joint) else STEP_SLIDE)
-    return is_far and speeds[worst] > ALONE * most and n_beyond * RARE <= len(speeds)
+    ways, least = np.diff(course.at_samples), STEP_TURN if turns(course.joint) else STEP_SLIDE
+    too_fast = (np.abs(ways) > least) & (speeds > ALONE * most)
+    back = too_fast[1:] & (ways[1:] * ways[:-1] < 0.0)
+    if 2 * int(back.sum()) > len(speeds):
+        return True
+    return bool(too_fast[int(speeds.argmax())]) and n_beyond * RARE <= len(speeds)
 
 
 def motion_limit(placed: PlacedRobot, joint: Joint) -> MotionLimit:

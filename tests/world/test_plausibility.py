@@ -255,6 +255,17 @@ def test_a_joint_that_jumps_is_suspect_and_not_only_fast():
     assert reported(strict) == [("suspect", "limits"), ("violated", "joint limits")]
 
 
+def test_a_joint_that_goes_to_and_fro_all_the_time_is_that_of_two_robots():
+    """The rows of one at 0.2 t and of another at -0.2 t, 5 ms apart."""
+    times = np.arange(40) * 0.005
+    braided = np.where(np.arange(40) % 2, -0.2, 0.2) * (1.0 + times)
+    assert reported(case_of(arm(velocity=2.0), positions=braided, times=times)) == [
+        ("suspect", "limits")
+    ]
+    fast = {"positions": 0.05 * np.arange(40), "times": times}
+    assert reported(case_of(arm(velocity=2.0), **fast)) == [("warning", "limits")]
+
+
 def test_a_joint_that_is_too_fast_once_jumps_and_one_that_often_is_is_fast():
     """1 rad/s of 41 rows at 0.1 s; a step of 0.8 rad in place of 0.1 is at 8 rad/s, of a limit of 2."""
     times, steps = 0.1 * np.arange(41), np.full(41, 0.1)
