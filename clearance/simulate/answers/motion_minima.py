@@ -82,22 +82,27 @@ class _RuleMinima:
                 proven = float(answer.certificate.lower_bound.min())
                 found[pair] = _lesser(known.get(pair), answer.worst, proven)
         found |= self._proven(far, known)
+        looked_at = {*found}
         while most is not None and len(found) >= most:
             level = sorted(one.clearance for one in found.values())[most - 1]
-            new = {p for one in self.rule.pairs.answers for p in near_between(one, level, {*found})}
-            if new <= set(found):
+            near_by = (near_between(one, level, looked_at) for one in self.rule.pairs.answers)
+            new = set[int]().union(*near_by) - looked_at
+            if not new:
                 break
-            found |= self._proven(dict.fromkeys(new - set(found), level), {})
+            looked_at |= new
+            found |= self._proven(dict.fromkeys(new, level), {})
         return list(found.values())
 
     def _proven(
         self, asked: dict[int, float], known: dict[int, PairMinimum]
     ) -> dict[int, PairMinimum]:
-        """The least of some pairs up to a clearance [m] each; `known`: their least at the steps."""
+        """The least of some pairs up to a clearance [m] each, without those that stay above it; `known`: their least
+        at the steps."""
         found = least_between(self.rule, asked) if asked else {}
         return {
             pair: _lesser(known.get(pair), moment, proven)
             for pair, (proven, moment) in found.items()
+            if pair in known or moment is not None
         }
 
     @cached_property

@@ -56,6 +56,14 @@ def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
     assert sampled["other"] > 0.5
 
 
+def test_a_pair_that_comes_near_and_stays_above_is_left_out(monkeypatch):
+    """As the second of two arms that mirror each other: both are near, and one alone is nearer than the samples."""
+    session = cl.check(two_posts()).session
+    every = {place for answer in session.rules[0].pairs.answers for place in answer.section.places}
+    monkeypatch.setattr(room, "near_between", lambda *_: every)
+    assert [one.obstacle for one in session.motion_minima(1)] == ["post"]
+
+
 @pytest.mark.parametrize("fail", [0.0, 0.0029])
 def test_the_least_of_the_nearest_pair_is_that_of_the_run(fail):
     """From samples half a metre away, a hundredth of the samples' clearance is more than the dip is deep."""
