@@ -77,7 +77,12 @@ def notices_on_clocks(case: Case) -> list[Notice]:
                 "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
             )
             found.append(Notice(Severity.SUSPECT, "clocks", text))
-    return [*found, *_a_thousand_times_as_long(tables), *_recordings_begin_unlike(case)]
+    return [
+        *found,
+        *_a_thousand_times_as_long(tables),
+        *_recordings_begin_unlike(case),
+        *_recorded_tables_begin_later(case),
+    ]
 
 
 def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
@@ -134,49 +139,81 @@ def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
 
 
 class _Recording(NamedTuple):
-    """Messages that something follows.
+    """Messages, or a table, that something was recorded to follow.
 
     Attributes:
-        at_start: [s] what their clock showed at the run's time 0. kind: whose they are, and name.
+        at_start: [s] what their clock showed at the run's time 0; NaN for a table, whose own times are the run's.
+        begins: [s] of the run, their first sample. kind: whose they are, and name.
         usual: [s] between two samples, by their clock.
     """
 
     at_start: float
+    begins: float
     kind: str
     name: str
     usual: float
     timing: Timing
 
     @staticmethod
-    def of(kind: str, name: str, began: float, times: np.ndarray, timing: Timing) -> _Recording:
+    def of(
+        kind: str, name: str, began: float | None, times: np.ndarray, timing: Timing
+    ) -> _Recording:
         """That of samples, from what their clock showed at their time 0 [s]."""
         usual = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
-        return _Recording(began - timing.start * timing.rate, kind, name, usual, timing)
+        at_start = math.nan if began is None else began - timing.start * timing.rate
+        begins = float(timing.run_times(times)[0])
+        return _Recording(at_start, begins, kind, name, usual, timing)
+
+    @property
+    def is_table(self) -> bool:
+        """True for what does not count from 0 s."""
+        return math.isnan(self.at_start)
+
+    def after(self, first: _Recording, delay: str, taken: str, keeps: str, drops: str) -> str:
+        """Text: it begins so late after another, how it is taken, and which starts keep and drop the delay."""
+        whose = first.kind if first.kind != self.kind else ""
+        return (
+            f"CHECK CLOCKS: by its stamps the recording of {self.kind}{self.name!r} begins {delay} s after "
+            f"that of {whose}{first.name!r}, {taken}; beside its file, `start: {keeps}` keeps the delay "
+            f"and `start: {drops}` drops it"
+        )
 
 
 def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
     """Notices on recordings that begin together in the case, but not by their stamps."""
-    recorded = sorted(_recordings(case), key=lambda one: one.at_start)
+    recorded = [one for one in _recordings(case) if not one.is_table]
+    recorded.sort(key=lambda one: one.at_start)
     for later in recorded[1:]:
         first = recorded[0]
         delay = later.at_start - first.at_start
         if delay > SKEW and not later.timing.says_start:
             start = f"{delay / later.timing.rate:.6g}"
-            whose = first.kind if first.kind != later.kind else ""
-            text = (
-                f"CHECK CLOCKS: by its stamps the recording of {later.kind}{later.name!r} begins {start} s after "
-                f"that of {whose}{first.name!r}, but it is taken from 0 s; beside its file, "
-                f"`start: {start}` keeps the delay and `start: 0` drops it"
-            )
+            text = later.after(first, start, "but it is taken from 0 s", keeps=start, drops="0")
             by_chance = delay <= max(later.usual, first.usual)
             yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
+
+
+def _recorded_tables_begin_later(case: Case) -> Iterator[Notice]:
+    """Notices on recorded tables that by their own times begin more than an interval after another recording."""
+    recorded = sorted(_recordings(case), key=lambda one: one.begins)
+    for later in recorded[1:]:
+        first = recorded[0]
+        wait = later.begins - first.begins
+        by_chance = wait <= max(later.usual, first.usual)
+        if later.is_table and not by_chance and not later.timing.says_start:
+            delay, lacks = f"{wait:.6g}", "and no sample says where it is until then"
+            text = later.after(first, delay, lacks, keeps="0", drops=f"-{delay}")
+            yield Notice(Severity.SUSPECT, "clocks", text)
 
 
 def _recordings(case: Case) -> Iterator[_Recording]:
     """Of the robots, and of the obstacles that move."""
     for placed in case.robots:
         asked = placed.trajectory and placed.given_trajectory
-        if asked is not None and asked.began is not None:
+        if asked is None:
+            continue
+        is_table = asked.is_recorded and placed.recording is None
+        if asked.began is not None or (is_table and np.ptp(asked.positions, axis=0).any()):
             yield _Recording.of(
                 "robot ", placed.robot.name, asked.began, asked.times, placed.timing
             )

@@ -218,3 +218,34 @@ def test_a_recording_begins_when_the_case_says(tmp_path, start):
         f"trajectory: {{file: path.csv, start: {start}}}}}\nscene",
     )
     assert not reported(two_recordings(tmp_path, 3.25, *said))
+
+
+def recorded_tables(folder, late, says="", *changes, swing=0.5):
+    """Both arms by tables that are recordings; the right one's stamps begin some seconds after the left one's."""
+    files = ("trajectory: path.csv", "trajectory: {file: path.csv, gaps: linear}", "joints: {shoulder: 0.2}",
+             f"trajectory: {{file: right.csv, gaps: linear{says}}}")  # fmt: skip
+    right = f"time,shoulder\n{late},0\n{late + 1.0},{swing}\n"
+    return load_cell(folder, *files, *changes, right__csv=right)
+
+
+def test_a_recorded_table_that_begins_later_than_another_is_suspect(tmp_path):
+    """A second of samples; the left arm moves to 1 s, the door too."""
+    case = recorded_tables(
+        tmp_path, 1.5, "", "moves: door.csv", "moves: {file: door.csv, rate: 0.5}"
+    )
+    assert reported(case) == [
+        "CHECK CLOCKS: by its stamps the recording of robot 'right' begins 1.5 s after that of 'left', "
+        "and no sample says where it is until then; beside its file, `start: 0` keeps the delay and "
+        "`start: -1.5` drops it"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("late", "says", "swing"),
+    [(1.0, "", 0.5), (1.5, ", start: 0", 0.5), (1.5, ", start: -1.5", 0.5), (1.5, "", 0.0)],
+)
+def test_a_recorded_table_begins_later_within_an_interval_or_because_the_case_says_so(
+    tmp_path, late, says, swing
+):
+    slow_door = "moves: door.csv", "moves: {file: door.csv, rate: 0.5}"
+    assert not reported(recorded_tables(tmp_path, late, says, *slow_door, swing=swing))

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.errors import BadMotion
 from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.world.notice import HOLD, NOT_MEASURED
-from clearance.world.trajectory import Hole, Trajectory
+from clearance.world.trajectory import Hole
 
 LONG = 10.0
 """Usual intervals that make a hole. Drivers and recorders lose a few messages in a row; how far a joint can be off
@@ -156,7 +156,7 @@ def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
     Raises:
         BadInput: `gaps: hold` for a table with velocities.
     """
-    given, own = read.trajectory, read.trajectory.written
+    given, own = replace(read.trajectory, is_recorded=True), read.trajectory.written
     columns = zip(given.joint_names, own.positions.T, strict=True)
     tracks = tracks_of({name: (own.times, positions) for name, positions in columns})
     first, last = float(own.times[0]), float(own.times[-1])
@@ -165,7 +165,7 @@ def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
         for hole in holes_of(tracks, gaps, (first, last))
     )
     if not holes:
-        return read
+        return ReadTrajectory(given, read.notes)
     if gaps == HOLD:
         if given.velocities is not None:
             raise BadMotion(
@@ -175,5 +175,5 @@ def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
         tracks = {name: track.held() for name, track in tracks.items()}
         times = next(iter(tracks.values())).times
         positions = np.column_stack([track.positions for track in tracks.values()])
-        given = Trajectory(times, given.joint_names, positions)
+        given = replace(given, times=times, positions=positions, points=None)
     return ReadTrajectory(replace(given, holes=holes), read.notes)

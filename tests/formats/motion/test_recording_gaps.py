@@ -235,3 +235,12 @@ def test_what_a_robot_carries_is_left_out_with_it_and_others_are_measured(tmp_pa
         bodies = [body for pair in selected_pairs(phase).pairs for body in pair]
         measured = {body.name_in(phase.case) for body in bodies}
         assert measured == {"right/base", "right/upper", "door", "post"}
+
+
+@pytest.mark.parametrize("gaps", ["linear", "hold"])
+def test_a_column_that_is_not_read_is_told_whatever_a_hole_means(tmp_path, gaps):
+    chosen = f"file: path.csv, gaps: {gaps}, columns: {{time: time, shoulder: shoulder}}"
+    case = load_case(
+        write_case(tmp_path, changed("file: path.csv", chosen), urdf=TWO_JOINTS, trajectory=LOG)
+    )
+    assert "columns" in {notice.kind for notice in notices_of(case)}
