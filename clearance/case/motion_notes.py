@@ -13,7 +13,7 @@ from clearance.errors import DuplicateName
 from clearance.world.case import Case
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
-from clearance.world.timing import Timing
+from clearance.world.timing import Timing, time_text
 
 MOST_NAMES = 8
 """Of things that do the same, how many a note names."""
@@ -62,7 +62,7 @@ def _deeds(case: Case, start: float, end: float) -> Iterator[tuple[str, str, _De
         for deed in _before_and_after(span, obstacle.moves.timing, start, end, picked_up):
             yield "obstacle", obstacle.name, deed
         if picked_up < span[1]:
-            until = f"picked up at {picked_up:g} s"
+            until = f"picked up at {time_text(picked_up)} s"
             deed = (
                 f"follows its table until it is {until}",
                 f"follow their tables until they are {until}",
@@ -88,18 +88,18 @@ def _before_and_after(
     early, late = start < first, last < min(end, picked_up)
     if timing.after == "absent":
         if early or late:
-            until = "" if early and picked_up < math.inf else f" to {last:g} s only"
-            when = f"in the cell from {first:g} s{until} (after: absent)"
+            until = "" if early and picked_up < math.inf else f" to {time_text(last)} s only"
+            when = f"in the cell from {time_text(first)} s{until} (after: absent)"
             yield f"is {when}", f"are {when}"
         return
     if early:
-        when = f"until {first:g} s"
+        when = f"until {time_text(first)} s"
         yield f"stands at its first sample {when}", f"stand at their first samples {when}"
     if late and timing.after == "loop":
         how = f"again and again, every {last - first:g} s (after: loop)"
         yield f"goes through its table {how}", f"go through their tables {how}"
     elif late:
-        when = f"from {last:g} s"
+        when = f"from {time_text(last)} s"
         yield f"stands at its last sample {when}", f"stand at their last samples {when}"
 
 

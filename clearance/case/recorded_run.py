@@ -25,7 +25,7 @@ from clearance.world.joint_positions import turns
 from clearance.world.notice import GAPS, Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.recording import Recording, motion_left_out, recording_of
-from clearance.world.timing import AS_GIVEN
+from clearance.world.timing import AS_GIVEN, time_text
 from clearance.world.trajectory import Trajectory
 from clearance.world.wrap import wrapping_joints
 
@@ -198,7 +198,7 @@ def _units(placed: PlacedRobot) -> dict[str, str]:
 def _notes(found: Recording) -> list[str]:
     span = f"from {found.start:.3f} to {found.end:.3f} s"
     clock = "its clock is taken as the run's" if found.offset == 0.0 else (
-        f"{found.offset:g} s are added to its times"
+        f"{time_text(found.offset)} s are added to its times"
     )  # fmt: skip
     end = float(found.timing.run_times(found.commanded.times)[-1])
     start = float(found.timing.run_times(found.commanded.times)[0])

@@ -27,6 +27,7 @@ from clearance.formats.schema.timed import TrajectoryFile
 from clearance.world.notice import listed
 from clearance.world.quintic import started
 from clearance.world.robot import Robot, require_moving_joints
+from clearance.world.timing import time_text
 from clearance.world.trajectory import Trajectory
 
 
@@ -124,10 +125,11 @@ def with_start(
     with at(f"{entry.trajectory_field}.start_state"):
         if trajectory.times[0] <= 0.0:
             raise BadTime(
-                f"the trajectory begins at {trajectory.times[0]:g} s itself", valid="no start_state"
+                f"the trajectory begins at {time_text(trajectory.times[0])} s itself",
+                valid="no start_state",
             )
         positions = _positions(entry, asked, trajectory, robot, folder, files)
-    first = f"the first sample at {trajectory.times[0]:g} s"
+    first = f"the first sample at {time_text(trajectory.times[0])} s"
     note = f"joints start from rest in start_state at 0 s and go to {first} as between samples"
     return started(trajectory, np.array(positions)), (note,)
 

@@ -14,6 +14,7 @@ from clearance.gains.request import Request
 from clearance.gains.tool_poses import ToolKeep
 from clearance.world.case import Case
 from clearance.world.placed_robot import PlacedRobot
+from clearance.world.timing import time_text
 
 
 def require_in_run(windows: Sequence[tuple[float, float]], times: np.ndarray) -> None:
@@ -25,8 +26,8 @@ def require_in_run(windows: Sequence[tuple[float, float]], times: np.ndarray) ->
     for start, end in windows:
         if end < times[0] or start > times[-1]:
             raise BadChange(
-                f"from {start:g} s to {end:g} s is to be kept, which is not in the run",
-                valid=f"times from {times[0]:g} s to {times[-1]:g} s",
+                f"from {time_text(start)} s to {time_text(end)} s is to be kept, which is not in the run",
+                valid=f"times from {time_text(times[0])} s to {time_text(times[-1])} s",
             )
 
 
@@ -42,8 +43,8 @@ def require_in_path(placed: PlacedRobot, tool_keeps: Sequence[ToolKeep]) -> None
     for one in tool_keeps:
         if not start <= one.time <= end:
             raise BadChange(
-                f"a tool is to be kept at {one.time:g} s, at which its path is not",
-                valid=f"a time from {start:g} to {end:g} s",
+                f"a tool is to be kept at {time_text(one.time)} s, at which its path is not",
+                valid=f"a time from {time_text(start)} to {time_text(end)} s",
             )
 
 

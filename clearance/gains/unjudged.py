@@ -20,6 +20,7 @@ from clearance.world.carry import Carry
 from clearance.world.forest import WORLD, forest_of, link_poses_at
 from clearance.world.pairs import OBSTACLE, BodyIndex, selected_pairs
 from clearance.world.phase import Phase
+from clearance.world.timing import time_text
 
 DEEPER = 1e-5
 """[m] An allowed pair that is deeper by no more than this is as deep as before."""
@@ -140,10 +141,10 @@ def _grips(before: Record, after: Record) -> Iterator[str]:
         if picked:
             yield (
                 f"part {carry.part!r} is {picked} off its old place on {carry.by} at the pick-up "
-                f"({then.window.start:g} s): nothing says that the grip still holds it"
+                f"({time_text(then.window.start)} s): nothing says that the grip still holds it"
             )
         if put and then.window.end <= end:
-            yield f"part {carry.part!r} is put down {put} off its old place ({then.window.end:g} s)"
+            yield f"part {carry.part!r} is put down {put} off its old place ({time_text(then.window.end)} s)"
 
 
 def _grip(record: Record, carry: Carry) -> tuple[np.ndarray, np.ndarray] | None:

@@ -23,6 +23,7 @@ from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair, selected_pairs
 from clearance.world.phase import Phase
 from clearance.world.timeline import timeline_of
+from clearance.world.timing import time_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +208,7 @@ def _require_one_way(stretch: Stretch) -> None:
     except ValueError as error:
         start = stretch.times[int(error.args[0])]
         raise NoReceipt(
-            f"no receipt where something turns by half a turn from one step to the next, at {start:g} s",
+            f"no receipt where something turns by half a turn from one step to the next, at {time_text(start)} s",
             valid="a sample between",
         ) from None
 

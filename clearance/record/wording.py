@@ -12,6 +12,7 @@ from clearance.record.record import PairMinimum, Record
 from clearance.record.status import Status
 from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
+from clearance.world.timing import time_text
 
 
 def mm(metres: float, levels: Sequence[float] = ()) -> str:
@@ -205,7 +206,7 @@ def not_measured_text(spans: Sequence[tuple[float, float]]) -> str:
     """Which stretches [s] of a run are left out; empty for none."""
     if not spans:
         return ""
-    spelled = [f"from {start:.6g} to {end:.6g} s" for start, end in spans]
+    spelled = [f"from {time_text(start)} to {time_text(end)} s" for start, end in spans]
     return f"not measured {listed(spelled)}"
 
 

@@ -100,7 +100,7 @@ def point_of_file(record: Record, moment: Moment) -> str:
 def sample_at(placed: PlacedRobot, time: float) -> int:
     """The last sample of a robot's table at or before a time of the run [s]; the first before all of them."""
     own = own_time(placed, time)
-    rounding = 1e-9 * max(1.0, abs(own))
+    rounding = max(1e-9, 8.0 * np.spacing(max(abs(own), abs(time) * placed.timing.rate)))
     times = placed.given_trajectory.file_times
     return max(0, int(np.searchsorted(times, own + rounding, side="right")) - 1)
 

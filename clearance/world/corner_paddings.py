@@ -20,7 +20,7 @@ from clearance.world.forest import links_by_name, owner_of, resolved_mount
 from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.timing import Window
+from clearance.world.timing import Window, time_text
 
 
 def corner_windows(case: Case) -> list[tuple[int, CornerZone, Window]]:
@@ -42,7 +42,7 @@ def corner_windows(case: Case) -> list[tuple[int, CornerZone, Window]]:
             for end in carry.window.ends:
                 if window.start < end < window.end:
                     raise BadTime(
-                        f"part {carry.part!r} changes hands at {end:g} s, in a corner zone",
+                        f"part {carry.part!r} changes hands at {time_text(end)} s, in a corner zone",
                         where="carry",
                         valid="a move that stops there (no zone)",
                     )

@@ -15,6 +15,7 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable
 from clearance.world.timeline import timeline_of
+from clearance.world.timing import time_text
 
 
 def phase_at(case: Case, time: float) -> Phase:
@@ -27,7 +28,8 @@ def phase_at(case: Case, time: float) -> Phase:
     start, end = timeline.times[[0, -1]].tolist()
     if not start <= time <= end:
         raise BadTime(
-            f"{time:g} s is outside the run", valid=f"a time from {start:g} s to {end:g} s"
+            f"{time_text(time)} s is outside the run",
+            valid=f"a time from {time_text(start)} s to {time_text(end)} s",
         )
     phase = [one for one in timeline.phases if one.span[0] <= time][-1]
     obstacles = tuple(_obstacle_at(one, time) for one in phase.case.obstacles)

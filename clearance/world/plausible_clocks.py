@@ -13,7 +13,7 @@ from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, greatest_speeds
 from clearance.world.plausible_tables import changes, greatest_speeds_in
-from clearance.world.timing import Timing
+from clearance.world.timing import Timing, time_text
 from clearance.world.trajectory import FURTHER_PASSES, Trajectory
 
 SKEW = 1e-3
@@ -44,8 +44,8 @@ class _Table(NamedTuple):
 
     @property
     def text(self) -> str:
-        until = "on" if self.end == math.inf else f"to {self.end:.12g} s"
-        return f"{self.name} moves from {self.start:.12g} {until}"
+        until = "on" if self.end == math.inf else f"to {time_text(self.end)} s"
+        return f"{self.name} moves from {time_text(self.start)} {until}"
 
     @property
     def is_slow(self) -> bool:
@@ -187,7 +187,7 @@ def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
         first = recorded[0]
         delay = later.at_start - first.at_start
         if delay > SKEW and not later.timing.says_start:
-            start = f"{delay / later.timing.rate:.6g}"
+            start = time_text(delay / later.timing.rate)
             text = later.after(first, start, "but it is taken from 0 s", keeps=start, drops="0")
             by_chance = delay <= max(later.usual, first.usual)
             yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
@@ -201,7 +201,7 @@ def _recorded_tables_begin_later(case: Case) -> Iterator[Notice]:
         wait = later.begins - first.begins
         by_chance = wait <= max(later.usual, first.usual)
         if later.is_table and not by_chance and not later.timing.says_start:
-            delay, lacks = f"{wait:.6g}", "and no sample says where it is until then"
+            delay, lacks = time_text(wait), "and no sample says where it is until then"
             text = later.after(first, delay, lacks, keeps="0", drops=f"-{delay}")
             yield Notice(Severity.SUSPECT, "clocks", text)
 

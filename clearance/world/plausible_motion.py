@@ -10,6 +10,7 @@ from clearance.world.joint_positions import JointExtent, joint_extents, turns
 from clearance.world.notice import START, Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint
+from clearance.world.timing import time_text
 from clearance.world.trajectory import Trajectory
 
 LARGE_TURN = 4 * np.pi
@@ -66,8 +67,8 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
     first = float(asked.times[0])
     if asked.n_steps < 2 and first > 0.0:
         text = (
-            f"the trajectory of robot {about!r} has one sample, at {first:.6g} s: the motion to this goal is "
-            "not measured; give its start at 0 s with trajectory: {start_state: …}, or give the sample the "
+            f"the trajectory of robot {about!r} has one sample, at {time_text(first)} s: the motion to this goal "
+            "is not measured; give its start at 0 s with trajectory: {start_state: …}, or give the sample the "
             "time 0 to check a single pose"
         )
         return [Notice(Severity.SUSPECT, START, text, about)]
@@ -78,7 +79,7 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
         remedy = (
             f": {asked.start_off}; plan from where the robot is, or give the points later times"
         )
-    text = f"not measured: how robot {about!r} comes to its first point at {first:.6g} s{remedy}"
+    text = f"not measured: how robot {about!r} comes to its first point at {time_text(first)} s{remedy}"
     return [Notice(Severity.WARNING, START, text, about)]
 
 

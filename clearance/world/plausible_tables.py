@@ -10,6 +10,7 @@ from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN
 from clearance.world.notice import WRAP, Notice, Severity
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
 from clearance.world.pose_table import PoseTable
+from clearance.world.timing import time_text
 
 LARGE_TRAVEL = 100.0
 """[m] Nothing in a cell goes so far; in millimetres it is usual."""
@@ -41,8 +42,8 @@ def _half_turns(what: str, table: PoseTable) -> list[str]:
         return []
     start, end = table.times[steps[0] : steps[0] + 2].tolist()
     return [
-        f"{what} turns by half a turn in one step, from {start:g} to {end:g} s, and its table does not say which "
-        "way round; give a row between"
+        f"{what} turns by half a turn in one step, from {time_text(start)} to {time_text(end)} s, and its "
+        "table does not say which way round; give a row between"
     ]
 
 
@@ -71,8 +72,8 @@ def _jump(what: str, table: PoseTable) -> list[str]:
         if speeds[step] > fast:
             start, end = table.times[step : step + 2].tolist()
             return [
-                f"{what} goes {ways[step]:.3g} {unit} from {start:g} to {end:g} s of its table, at "
-                f"{metres(speeds[step])} {unit}/s: does it jump, or are its lengths or times in another unit?"
+                f"{what} goes {ways[step]:.3g} {unit} from {time_text(start)} to {time_text(end)} s of its table, "
+                f"at {metres(speeds[step])} {unit}/s: does it jump, or are its lengths or times in another unit?"
             ]
     return []
 

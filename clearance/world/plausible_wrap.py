@@ -9,6 +9,7 @@ import numpy as np
 from clearance.world.case import Case
 from clearance.world.notice import WRAP, Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
+from clearance.world.timing import time_text
 from clearance.world.trajectory import SHORTEST
 from clearance.world.wrap import LongStep, long_steps
 
@@ -26,7 +27,7 @@ def notices_on_wrap(placed: PlacedRobot, before: str = "") -> list[Notice]:
     start, end = placed.timing.run_times(np.array([first.start, first.end])).tolist()
     text = (
         f"joint {before + first.joint!r} turns by more than half a turn in one step, from {first.before:.6g} to "
-        f"{first.after:.6g} rad between {start:.6g} s and {end:.6g} s"
+        f"{first.after:.6g} rad between {time_text(start)} s and {time_text(end)} s"
         f"{f', and in {first.n_steps - 1} more' if first.n_steps > 1 else ''}"
         f"{f' (the same for {others})' if others else ''}: {first.after - first.before:.3g} rad as written, "
         f"{first.shortest:.3g} rad the shortest way; say which with trajectory: {{wrap: as_written}} or "

@@ -21,6 +21,7 @@ from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
 from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.timing import time_text
 from clearance.world.trajectory import Trajectory
 
 ROOT_3 = 3.0**0.5
@@ -133,8 +134,8 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
             turn = abs(factor) * _ways(moves, slice(None))[:, columns[name]]
             i = int(np.argmax(turn))
             raise BadDimension(
-                f"joint {joint.name!r} turns by {turn[i]:g} rad between {moves.times[i]:g} s and "
-                f"{moves.times[i + 1]:g} s",
+                f"joint {joint.name!r} turns by {turn[i]:g} rad between {time_text(moves.times[i])} s and "
+                f"{time_text(moves.times[i + 1])} s",
                 valid=f"{TURNS:g} turns or less from sample to sample; angles are in radians",
             )
 

@@ -10,7 +10,7 @@ import numpy as np
 from clearance.errors import BadMotion, BadTime, MissingKey
 from clearance.world.cubic import positions_along
 from clearance.world.notice import listed
-from clearance.world.timing import Timing
+from clearance.world.timing import Timing, time_text
 from clearance.world.trajectory import Trajectory
 
 SHARE = 99.0
@@ -112,7 +112,10 @@ def _times_of_both(driven: Trajectory, commanded: np.ndarray) -> np.ndarray:
     """(n,) [s] the samples of both, from when both are known until one ends, but for what is not measured."""
     start, end = max(driven.times[0], commanded[0]), min(driven.times[-1], commanded[-1])
     if not start < end:
-        spans = [f"{times[0]:.12g} to {times[-1]:.12g} s" for times in (driven.times, commanded)]
+        spans = [
+            f"{time_text(times[0])} to {time_text(times[-1])} s"
+            for times in (driven.times, commanded)
+        ]
         raise BadTime(
             f"it covers {spans[0]}, and the commanded motion {spans[1]}",
             valid=f"--recorded-offset {commanded[0] - driven.times[0]:.12g} if both begin at one moment",
@@ -122,7 +125,10 @@ def _times_of_both(driven: Trajectory, commanded: np.ndarray) -> np.ndarray:
     for hole in driven.not_measured:
         times = times[(times <= hole.start) | (times >= hole.end)]
     if not len(times):
-        raise BadTime(f"a hole covers all of {start:g} to {end:g} s", valid="gaps: hold or linear")
+        raise BadTime(
+            f"a hole covers all of {time_text(start)} to {time_text(end)} s",
+            valid="gaps: hold or linear",
+        )
     return times
 
 

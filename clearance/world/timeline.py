@@ -27,7 +27,7 @@ from clearance.world.mount import Mount
 from clearance.world.path_error import path_error_of
 from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable
-from clearance.world.timing import Timing, Window
+from clearance.world.timing import Timing, Window, time_text
 
 NOT_THERE = "after: absent, or gaps: not_measured"
 """Why an actor may not be there."""
@@ -166,7 +166,8 @@ def _require_carried_present(phase: Phase) -> None:
         if carry is not None:
             start, end = phase.span
             raise BadTime(
-                f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s ({NOT_THERE})",
+                f"part {carry.part!r} is not in the cell from {time_text(start)} s to {time_text(end)} s "
+                f"({NOT_THERE})",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window in which it is, or after: hold",
             )
@@ -189,8 +190,8 @@ def _require_carriers_present(phase: Phase, end: float) -> None:
         if start == carry.window.start or until == carry.window.end < end:
             deed = "picks up" if start == carry.window.start else "lets go of"
             raise BadTime(
-                f"{carry.by!r} is not in the cell from {start:g} s to {until:g} s ({NOT_THERE}), and {deed} part "
-                f"{carry.part!r} then",
+                f"{carry.by!r} is not in the cell from {time_text(start)} s to {time_text(until)} s "
+                f"({NOT_THERE}), and {deed} part {carry.part!r} then",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window at whose ends it is, or after: hold",
             )
@@ -266,7 +267,8 @@ def _require_within(window: Window, start: float, end: float) -> None:
     for edge in window.ends:
         if not start <= edge <= end:
             raise BadTime(
-                f"{edge:g} s is outside the run", valid=f"a time from {start:g} s to {end:g} s"
+                f"{time_text(edge)} s is outside the run",
+                valid=f"a time from {time_text(start)} s to {time_text(end)} s",
             )
 
 

@@ -76,6 +76,13 @@ class Timing:
         return found
 
 
+def time_text(time: float) -> str:
+    """A time, to the millisecond where `%g` would round more: `0.00025`, `3.2`, `1700000003.2`."""
+    if not 1e3 <= abs(time) < 1e12:
+        return f"{time:g}"
+    return f"{time:.3f}".rstrip("0").rstrip(".")
+
+
 AS_GIVEN = Timing()
 """A table whose times are the run's."""
 
@@ -95,7 +102,8 @@ class Window:
         require_types(self, start=Real, end=Real)
         if not self.start < self.end:
             raise BadTime(
-                f"from {self.start:g} s until {self.end:g} s", valid="`until` must be after `from`"
+                f"from {time_text(self.start)} s until {time_text(self.end)} s",
+                valid="`until` must be after `from`",
             )
 
     @property
@@ -108,8 +116,8 @@ class Window:
         return self.start <= start and end <= self.end
 
     def __str__(self) -> str:
-        words = [f"from {self.start:g} s"] if math.isfinite(self.start) else []
-        words += [f"until {self.end:g} s"] if math.isfinite(self.end) else []
+        words = [f"from {time_text(self.start)} s"] if math.isfinite(self.start) else []
+        words += [f"until {time_text(self.end)} s"] if math.isfinite(self.end) else []
         return " ".join(words)
 
 

@@ -13,7 +13,7 @@ from clearance.tolerance import LARGEST
 from clearance.world.corner_zone import CornerZone
 from clearance.world.field_types import numbers_of, owned, require_types
 from clearance.world.notice import NOT_MEASURED, listed
-from clearance.world.timing import Timing, Window, require_increasing
+from clearance.world.timing import Timing, Window, require_increasing, time_text
 
 FURTHER_PASSES = "further passes of an endless loop"
 """What the motion of a program leaves out that never ends: how long they take is not the question."""
@@ -38,7 +38,7 @@ class Hole:
     def text(self) -> str:
         """When it is, how long, and of which joints."""
         return (
-            f"no position of {listed([*self.joints], 4)} from {self.start:.6g} to {self.end:.6g} s "
+            f"no position of {listed([*self.joints], 4)} from {time_text(self.start)} to {time_text(self.end)} s "
             f"({self.end - self.start:.3g} s, usually {self.usual:.2g} s)"
         )
 
@@ -159,7 +159,7 @@ class Trajectory:
 
     def __repr__(self) -> str:
         n_samples, n_joints = self.positions.shape
-        span = f"{self.times[0]:g} to {self.times[-1]:g} s"
+        span = f"{time_text(self.times[0])} to {time_text(self.times[-1])} s"
         return f"<Trajectory: samples {n_samples}, joints {n_joints}, {span}>"
 
     def __post_init__(self) -> None:

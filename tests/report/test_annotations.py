@@ -111,6 +111,8 @@ def test_a_sample_is_that_at_or_before_a_time_of_the_run():
     trajectory = Trajectory(np.array([0.0, 1.0, 2.0]), ("pan",), np.zeros((3, 1)))
     placed = PlacedRobot(arm(), trajectory)
     assert [sample_at(placed, t) for t in (-1.0, 0.0, 0.9, 1.0, 1.5, 9.0)] == [0, 0, 0, 1, 1, 2]
+    stamped = dataclasses.replace(placed, trajectory=trajectory.shifted(1.7e9))
+    assert [sample_at(stamped, 1.7e9 + t) for t in (0.0, 0.9, 1.0, 1.5)] == [0, 0, 1, 1]
     late = dataclasses.replace(placed, timing=Timing(start=5.0, rate=2.0, after="loop"))
     assert [sample_at(late, t) for t in (5.0, 5.5, 6.25, 6.5)] == [0, 1, 0, 1]
 

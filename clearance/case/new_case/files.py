@@ -38,6 +38,7 @@ from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.robot import Robot
+from clearance.world.timing import time_text
 from clearance.world.trajectory import Trajectory
 
 CASE, TRAJECTORY = "case.yaml", "trajectory.csv"
@@ -169,9 +170,8 @@ def _motion(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> tuple[
 def _described(trajectory: Trajectory) -> str:
     start, end = trajectory.times[[0, -1]].tolist()
     n_joints = counted(len(trajectory.joint_names), "joint")
-    return (
-        f"{counted(len(trajectory.written.times), 'sample')} of {n_joints}, {start:g} to {end:g} s"
-    )
+    n_samples = counted(len(trajectory.written.times), "sample")
+    return f"{n_samples} of {n_joints}, {time_text(start)} to {time_text(end)} s"
 
 
 def _assumed_of_motion(given: NewCaseRequest) -> list[str]:

@@ -13,6 +13,7 @@ from clearance.report.model import PageContent, ReportModel
 from clearance.report.topic import Line, Topic, labelled
 from clearance.world.joint_positions import turns
 from clearance.world.recording import SHARE
+from clearance.world.timing import time_text
 
 
 def data(model: ReportModel) -> dict[str, Any]:
@@ -97,7 +98,7 @@ def _run(run: dict[str, Any]) -> list[Paragraph | Table]:
         Row([one["joint"], *map(number, _figures(one))], At(None, one["time"]))
         for one in run["joints"]
     ]
-    offset = f", {run['offset']:g} s added to its times" if run["offset"] else ""
+    offset = f", {time_text(run['offset'])} s added to its times" if run["offset"] else ""
     span = f"{run['start']:.3f} to {seconds(run['end'])}"
     heading = f"{run['path']}, of robot {run['robot']}, compared with the commanded motion from {span}{offset}."
     return [Paragraph(heading), Table(heads, rows, "clickable bodies")]

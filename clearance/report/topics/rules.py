@@ -27,6 +27,7 @@ from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import at_moment, moment_link, moment_row, name_shown, time_of
 from clearance.report.topic import Line, Topic
 from clearance.world.rules import Rule
+from clearance.world.timing import time_text
 
 
 def data(model: ReportModel) -> dict[str, Any]:
@@ -138,8 +139,8 @@ def _row(rule: dict[str, Any], worst_of_all: str) -> Row:
 
 def when_text(rule: dict[str, Any]) -> str:
     """When a rule of the summary holds, in a few words."""
-    parts = [] if rule["from"] is None else [f"from {rule['from']:g} s"]
-    parts += [] if rule["until"] is None else [f"until {rule['until']:g} s"]
+    parts = [] if rule["from"] is None else [f"from {time_text(rule['from'])} s"]
+    parts += [] if rule["until"] is None else [f"until {time_text(rule['until'])} s"]
     parts += [] if rule["while_carried"] is None else [f"while {rule['while_carried']} is carried"]
     return " ".join(parts) or "always"
 

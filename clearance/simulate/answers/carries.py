@@ -19,6 +19,7 @@ from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
+from clearance.world.timing import time_text
 
 FAR_GRASP = 0.3
 """[m] No gripper that a model leaves out is so long: a part that is farther away is picked up too soon."""
@@ -40,7 +41,7 @@ def notices_on_carries(phases: Sequence[Phase]) -> Iterator[Notice]:
                 check = "its place" if phase is phases[0] else "the times of its carry"
                 texts.append(
                     f"part {carry.part!r} is {metres(gap)} m away from all of what picks it up at "
-                    f"{carry.window.start:g} s ({carry.by}): check {check}"
+                    f"{time_text(carry.window.start)} s ({carry.by}): check {check}"
                 )
     return (Notice(Severity.WARNING, "carry", text) for text in texts)
 
@@ -53,8 +54,9 @@ def _held_before(case: Case, carry: Carry) -> Iterator[str]:
         case, carry.by
     ):
         yield (
-            f"part {carry.part!r} is on {carry.by!r} already when that picks it up at {carry.window.start:g} s: "
-            "it rides along from the start; give it a place in the cell if it lies there until then"
+            f"part {carry.part!r} is on {carry.by!r} already when that picks it up at "
+            f"{time_text(carry.window.start)} s: it rides along from the start; give it a place in the "
+            "cell if it lies there until then"
         )
 
 

@@ -29,6 +29,7 @@ from clearance.world.forest import (
     positions_along,
 )
 from clearance.world.pairs import Pair
+from clearance.world.timing import time_text
 
 TOUCHING = 1e-6
 """[m] What stands on something touches it, whichever way rounding goes."""
@@ -91,7 +92,7 @@ def handling_hints(record: Record) -> list[HandlingHint]:
     plan = section_plan(record.timeline)
     for time, carry, what in _changes(record):
         step = int(np.searchsorted(record.timeline.times, time))
-        for hint in _at_change(record, plan, carry, step, f"{what} at {time:g} s"):
+        for hint in _at_change(record, plan, carry, step, f"{what} at {time_text(time)} s"):
             found.setdefault((hint.pair, hint.start), hint)
     return list(found.values())
 

@@ -146,6 +146,9 @@ def test_a_joint_that_is_told_of_once_holds_to_the_end():
 LOG = "time,shoulder,lift\n" + "".join(f"{t},0,0\n" for t in with_hole())
 
 
+EPOCH_LOG = "time,shoulder,lift\n" + "".join(f"{1.7e9 + t},0,0\n" for t in with_hole())
+
+
 def suspects(case):
     return [n for n in notices_of(case) if n.severity == "suspect"]
 
@@ -244,3 +247,11 @@ def test_a_column_that_is_not_read_is_told_whatever_a_hole_means(tmp_path, gaps)
         write_case(tmp_path, changed("file: path.csv", chosen), urdf=TWO_JOINTS, trajectory=LOG)
     )
     assert "columns" in {notice.kind for notice in notices_of(case)}
+
+
+def test_a_hole_in_times_of_the_epoch_is_told_to_the_millisecond(tmp_path):
+    files = {"urdf": TWO_JOINTS, "trajectory": EPOCH_LOG}
+    text = changed("file: path.csv", "file: path.csv, gaps: not_measured")
+    verdict = cl.check(load_case(write_case(tmp_path, text, **files))).verdict
+    assert verdict.headline().endswith(", not measured from 1700000001 to 1700000003 s")
+    assert "from 1700000001 to 1700000003 s (2 s, usually 0.02 s)" in verdict.warnings[0]
