@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-ADJACENT, NEVER = "Adjacent", "Never"
+ADJACENT, DEFAULT, NEVER = "Adjacent", "Default", "Never"
+"""Reasons of an SRDF: a joint joins them, they touch at home, they were not seen to meet."""
 
 PARENT = "MuJoCo's filter of parent and child"
 """The reason of a parent and a child that more than one joint joins: MuJoCo excuses them too, named by nobody."""

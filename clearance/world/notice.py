@@ -40,7 +40,7 @@ WARNED_TOO = ("units", "limits", "gaps", "clocks", START, "simulated")
 WARNINGS = (
     "geometry", "equality", "scene", "padding", "reach", "scan", "plane", "program", "carry", "rest", "neighbours",
     "columns", "recorded run", "pairs", "rules", "profiles", "sketch", "waivers", "paper", "certificate",
-    "contact", "cross-check",
+    "contact", "cross-check", "limbs",
 )  # fmt: skip
 """Kinds of warnings alone, which a case can accept too: where warnings fail, these do not then."""
 

@@ -13,6 +13,7 @@ from clearance.world.case import Case
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_clocks import notices_on_clocks
 from clearance.world.plausible_motion import (
     notices_on_motion,
@@ -23,6 +24,7 @@ from clearance.world.plausible_scans import notices_on_scans
 from clearance.world.plausible_sizes import notices_on_planes, notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.plausible_wrap import notices_on_wrap
+from clearance.world.self_pairs import limbs
 from clearance.world.unproven_motion import notices_on_unproven
 
 LARGE_LIMIT = 0.5
@@ -64,7 +66,15 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
             found += notices_on_unproven(placed, before)
             found += notices_on_wrap(placed, before)
         found += notices_on_joints(placed, case.limits.joints, before)
+        found += _limbs_not_measured(placed)
     return worst_first(found)
+
+
+def _limbs_not_measured(placed: PlacedRobot) -> Iterator[Notice]:
+    ends = [] if placed.self_clearance is not None else limbs(placed.robot)
+    if ends:
+        text = f"limbs of robot {placed.robot.name!r} are not measured against each other: those of {listed(ends)}"
+        yield Notice(Severity.WARNING, "limbs", f"{text}; self_clearance: true measures them")
 
 
 def _notices_of_robots(case: Case) -> list[Notice]:

@@ -46,6 +46,30 @@ def self_pairs(
     ]
 
 
+LIMB = 5
+"""Joints of an arm or a leg, at least; fingers have fewer."""
+
+
+def limbs(robot: Robot) -> list[str]:
+    """A link at the end of each limb, where the robot has several: each has `LIMB` joints that no other has."""
+    ways: dict[str, tuple[str, ...]] = {robot.link_names[0]: ()}
+    moving = {joint.name for joint in robot.moving_joints}
+    for joint in robot.joints:
+        ways[joint.child] = (*ways[joint.parent], *({joint.name} & moving))
+    found: list[str] = []
+    parents = {joint.parent for joint in robot.joints}
+    for link in (one for one in ways if one not in parents):
+        if all(_own_joints(ways[link], ways[other]) >= LIMB for other in found):
+            found += [link] if len(ways[link]) >= LIMB else []
+    return found if len(found) > 1 else []
+
+
+def _own_joints(way: tuple[str, ...], other: tuple[str, ...]) -> int:
+    """How many joints each of two ways from the root has at least that the other has not."""
+    shared = len(set(way) & set(other))
+    return min(len(way), len(other)) - shared
+
+
 def rigid_bodies(robot: Robot) -> dict[str, int]:
     """The number of the rigid body that each link is part of: links that fixed joints join are one."""
     bodies = {robot.link_names[0]: 0}

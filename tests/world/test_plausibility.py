@@ -1,5 +1,6 @@
 """Cases made in memory are looked at as those from files are; what is told twice is told once, worst first."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from clearance.world.plausibility import notices_of
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.self_pairs import limbs
 from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, faces_of
@@ -236,6 +238,27 @@ def test_joints_beyond_their_limits():
     assert reported(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [
         ("violated", "joint limits")
     ]
+
+
+@pytest.mark.parametrize("n_joints", [4, 5])
+def test_limbs_that_are_not_measured_against_each_other_are_told(n_joints):
+    """Two chains on a turning torso; the second has a finger of two joints at its end."""
+    joints = [Joint("torso", JointKind.REVOLUTE, "base", "chest", np.eye(4))]
+    for side, n in (("left", n_joints), ("right", n_joints + 1)):
+        links = ["chest", *(f"{side}_{i}" for i in range(n))]
+        for above, link in itertools.pairwise(links):
+            joints.append(Joint(f"to_{link}", JointKind.REVOLUTE, above, link, np.eye(4)))
+    joints.append(Joint("finger", JointKind.PRISMATIC, f"right_{n_joints - 1}", "tip", np.eye(4)))
+    names = ("base", *(joint.child for joint in joints))
+    robot = Robot("dual", names, tuple(joints), (Body("chest", box((0.3, 0.3, 0.3))),))
+    ends = [f"left_{n_joints - 1}", f"right_{n_joints}"]
+    assert limbs(robot) == (ends if n_joints == 5 else [])
+    asked = Trajectory(np.array([0.0, 1.0]), ("torso",), np.array([[0.0], [0.5]]))
+    block = Obstacle(Body("block", box((0.2, 0.2, 0.2))), at(0.8))
+    for measured in (None, SelfClearance()):
+        placed = PlacedRobot(robot, asked, self_clearance=measured)
+        told = [one for one in reported(Case("made", (placed,), (block,))) if one[1] == "limbs"]
+        assert bool(told) == (n_joints == 5 and measured is None)
 
 
 def test_pairs_that_never_meet_within_limits_are_in_doubt_beyond_them():

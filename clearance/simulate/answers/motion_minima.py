@@ -96,8 +96,8 @@ class _RuleMinima:
     def _proven(
         self, asked: dict[int, float], known: dict[int, PairMinimum]
     ) -> dict[int, PairMinimum]:
-        """The least of some pairs up to a clearance [m] each, without those that stay above it; `known`: their least
-        at the steps."""
+        """The least of some pairs up to a clearance [m] each, without those that stay above it; `known`: their
+        least at the steps."""
         found = least_between(self.rule, asked) if asked else {}
         return {
             pair: _lesser(known.get(pair), moment, proven)

@@ -1,11 +1,12 @@
 """Links that one joint joins, which are excused since most touch always: those that meet or come below their fail
 limit, and are farther apart at home or at first. Links that an SRDF calls `Adjacent` count, whatever joins them.
+So do those that it calls `Default`, which says that they touch at home, and that do not.
 
 How two such links lie depends on the position of their joint alone. From a position at which they are separate the
 joint goes on by their distance over the farthest point's arm, as often as they are farther apart than `GAP`. So no
 position passed meets, and the way between samples counts too. A joint of several degrees of freedom, and several
 joints, are checked at the steps only. Not for: pairs that are measured, and pairs that an SRDF excuses by another
-reason than `Adjacent`.
+reason.
 
 Source of the advancement: Mirtich 1996.
 """
@@ -22,12 +23,12 @@ from clearance.query.pair_query import Query
 from clearance.tolerance import REACH
 from clearance.world.body import Body
 from clearance.world.case import Case
-from clearance.world.collision_matrix import ADJACENT, PARENT
+from clearance.world.collision_matrix import ADJACENT, DEFAULT, PARENT
 from clearance.world.cubic import Cubics, cubics_of, extremes_between
 from clearance.world.extents import metres
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.motion import Motion
-from clearance.world.notice import Notice, Severity
+from clearance.world.notice import Notice, Severity, listed
 from clearance.world.pairs import BodyIndex, names_of
 from clearance.world.phase import Phase
 from clearance.world.robot import JointKind, Robot
@@ -111,7 +112,7 @@ class Neighbours:
 
     def notice(self, text: str) -> Notice:
         """A warning of where they are apart and where they meet."""
-        return Notice(Severity.WARNING, "neighbours", f"neighbours {self._names}, {text}: {REMEDY}")
+        return Notice(Severity.WARNING, "neighbours", f"{self._names}, {text}: {REMEDY}")
 
     @property
     def at_home(self) -> str:
@@ -123,7 +124,7 @@ class Neighbours:
         kinds = [joint.kind for joint in self._chain.masters]
         units = ["m" if kind is JointKind.PRISMATIC else "rad" for kind in kinds]
         found = zip(self.joints, positions, units, strict=True)
-        return ", ".join(f"{name} = {value:.4g} {unit}" for name, value, unit in found)
+        return listed([f"{name} = {value:.4g} {unit}" for name, value, unit in found], 6)
 
     def free_until(self, start: float, end: float, within: float = 0.0) -> float:
         """The position up to which the links of one joint stay farther apart than `within` [m], from start to end.
@@ -162,13 +163,13 @@ class Neighbours:
 
 
 def excused_neighbours(case: Case, i_robot: int) -> Iterator[Neighbours]:
-    """The pairs of links that are excused as neighbours, and by nothing else."""
+    """The pairs of links that are excused as neighbours, or falsely as touching at home, and by nothing else."""
     placed = case.robots[i_robot]
     asked = placed.self_clearance
     number = {body.name: BodyIndex(i_robot, k) for k, body in enumerate(placed.robot.bodies)}
     for one in self_pairs(placed.robot, asked.matrix) if asked else ():
         pair = number[one.link_a], number[one.link_b]
-        if one.excused not in (ADJACENT, PARENT):
+        if one.excused not in (ADJACENT, DEFAULT, PARENT):
             continue
         if not {one.link_a, one.link_b}.isdisjoint(placed.exclude_links):
             continue
@@ -177,7 +178,11 @@ def excused_neighbours(case: Case, i_robot: int) -> Iterator[Neighbours]:
             a, b = (body.body_in(case) for body in pair)
             shown = " - ".join(body.name_in(case) for body in pair)
             paddings = sum(body.padding_in(case) for body in pair) + case.path_error
-            yield Neighbours(placed.robot, a, b, shown, max(_fails(case, names)), paddings)
+            default = one.excused == DEFAULT
+            shown = f"links {shown}, excused as {DEFAULT}" if default else f"neighbours {shown}"
+            found = Neighbours(placed.robot, a, b, shown, max(_fails(case, names)), paddings)
+            if not default or found.is_apart_at_home:
+                yield found
 
 
 def _fails(case: Case, names: Sequence[tuple[str, ...]]) -> Iterator[float]:

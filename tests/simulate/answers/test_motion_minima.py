@@ -57,7 +57,7 @@ def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
 
 
 def test_a_pair_that_comes_near_and_stays_above_is_left_out(monkeypatch):
-    """As the second of two arms that mirror each other: both are near, and one alone is nearer than the samples."""
+    """As the second of two arms that mirror each other: both are near, and one is nearer than the samples."""
     session = cl.check(two_posts()).session
     every = {place for answer in session.rules[0].pairs.answers for place in answer.section.places}
     monkeypatch.setattr(room, "near_between", lambda *_: every)

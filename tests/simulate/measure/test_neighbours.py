@@ -50,7 +50,11 @@ def folding(samples=None, velocities=None, limits=(-np.inf, np.inf), matrix=None
 
 
 def told_of(case):
-    return [one for one in cl.check(case).verdict.warnings if one.startswith("neighbours")]
+    return [
+        one
+        for one in cl.check(case).verdict.warnings
+        if one.startswith(("neighbours", "links arm"))
+    ]
 
 
 @pytest.mark.parametrize(
@@ -136,8 +140,8 @@ def test_what_a_file_excuses_or_a_row_allows_is_told_of_no_more():
     for reason, n_told in (
         ("Adjacent", 1),
         ("User", 0),
-        ("Default", 0),
-    ):  # Adjacent is nobody's word
+        ("Default", 1),
+    ):  # Adjacent is nobody's word, and Default says that they touch at home
         matrix = CollisionMatrix(disabled=(("arm", "hand", reason),))
         assert len(told_of(folding([0.0, 2.9], matrix=matrix))) == n_told
     for reason, n_told in ((PARENT, 1), ("excluded", 0)):
