@@ -120,6 +120,7 @@ class Replay:
         lines: (frames, 6) [m] witness points on the two bodies in the world frame.
         nearest: (frames, 2) int32 indices into `bodies` of the two; -1: there is none.
         move: (frames,) int32 indices into `moves`, the names of a program's moves; -1: none is made.
+        unmeasured: start and end [s] of the stretches between steps in which no pair is measured.
         contacts: the overlaps that are drawn, frames first.
         regions: of each contact the common region's vertices (n, 3) float32 [m] in the world frame and
             triangles (m, 3) int32.
@@ -146,6 +147,7 @@ class Replay:
     nearest: np.ndarray
     move: np.ndarray
     moves: tuple[str, ...] = ()
+    unmeasured: tuple[tuple[float, float], ...] = ()
     contacts: tuple[DrawnContact, ...] = ()
     regions: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
 

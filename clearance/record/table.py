@@ -101,7 +101,7 @@ class Table:
         return Table({**self.columns, **columns})
 
     def arrow(self) -> pa.Table:
-        """The table as pyarrow has it, null where nothing is known.
+        """The table as pyarrow has it, null where nothing is known: an infinite bound is of no pair.
 
         Raises:
             Unavailable: pyarrow is not installed.
@@ -110,7 +110,9 @@ class Table:
             {
                 name: column.arrow()
                 if isinstance(column, Names)
-                else pa.array(column, from_pandas=True)
+                else pa.array(np.where(np.isinf(column), np.nan, column), from_pandas=True)
+                if np.issubdtype(column.dtype, np.floating)
+                else pa.array(column)
                 for name, column in self.columns.items()
             }
         )

@@ -124,6 +124,7 @@ def _data(replay: Replay) -> dict[str, Any]:
         "nearest": replay.nearest.tolist(),
         "move": replay.move.tolist(),
         "moves": replay.moves,
+        "unmeasured": replay.unmeasured,
         "contacts": [
             {
                 "frame": contact.frame,

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.world.notice import NOT_MEASURED
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
+from clearance.world.trajectory import Hole
 from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
 from tests.report.cells import box, cell, sliding
@@ -111,3 +115,22 @@ def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path
         low, high = page.run("window.clearance.chart.range")
         assert low == 0.0 and 500.0 < high < 550.0
         assert page.errors == []
+
+
+def test_the_curve_has_a_gap_where_a_recording_is_not_measured(tmp_path):
+    """A slider of which nothing is known from 0.3 to 1.1 s passes a post that stands in between."""
+    placed = sliding("arm", [(0.1 * i, 0.1 * i) for i in (0, 1, 2, 3, 11, 12, 13)])
+    hole = Hole(("s",), placed.trajectory.times[3], placed.trajectory.times[4], 0.1, NOT_MEASURED)
+    placed = replace(placed, trajectory=replace(placed.trajectory, holes=(hole,)))
+    run = cl.check(cl.Case("gap", (placed,), (box("post", (0.1,) * 3, at(0.7, z=0.5)),)))
+    bounds = run.steps.select(["lower_bound", "upper_bound"]).to_pylist()
+    assert [row["lower_bound"] is None for row in bounds] == [i == 3 for i in range(7)]
+    assert bounds[3] == {"lower_bound": None, "upper_bound": None}
+    run.save(tmp_path / "out")
+    assert "inf" not in (tmp_path / "out" / "steps.csv").read_text()
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        drawn = page.run("document.querySelector('.curve.status.clear').getAttribute('d')")
+        assert drawn.count("M") == 2
+        band = page.run("window.clearance.chart.told.bands.at(-1)")
+        assert band == {"start": hole.start, "end": hole.end, "kind": "unmeasured"}

@@ -84,7 +84,17 @@
   const toPlot = (metres) => metres * 1000;
   const clearancesShown = Array.from(clearances, toPlot), timesShown = Array.from(times);
 
-  // One curve a status; each stretch reaches to the next step so that the curve has no gaps. Dashed where nothing
+  // A curve has a gap where nothing is measured from one of its points to the next.
+  function broken(x, y) {
+    const made = {x: [], y: []}, put = (time, value) => { made.x.push(time); made.y.push(value); };
+    x.forEach((time, i) => {
+      if (i > 0 && data.unmeasured.some(([start, end]) => x[i - 1] < end && start < time)) put((x[i - 1] + time) / 2, null);
+      put(time, y[i]);
+    });
+    return made;
+  }
+
+  // One curve a status; each stretch reaches to the next step so that the curve has no other gaps. Dashed where nothing
   // is known between the samples.
   function statusCurve(code) {
     const y = Array(n).fill(null);
@@ -93,7 +103,7 @@
       if (i + 1 < n && data.status[i + 1] < code) y[i + 1] = clearancesShown[i + 1];
       if (i > 0 && data.status[i - 1] < code) y[i - 1] = clearancesShown[i - 1];
     }
-    return {x: timesShown, y, kind: `status ${data.statuses[code]}${data.sampled ? " dash" : ""}`};
+    return {...broken(timesShown, y), kind: `status ${data.statuses[code]}${data.sampled ? " dash" : ""}`};
   }
 
   const statusCurves = data.statuses.map((_, code) => statusCurve(code));
@@ -106,7 +116,7 @@
   function pairCurves() {
     if (chosen === null || !data.curves) return [];
     const x = decode(data.curves.times, Float64Array), y = decode(data.curves.clearances[chosen], Float32Array);
-    return [{name: nameOf(data.pairs[chosen]), x: Array.from(x), y: Array.from(y, toPlot), kind: "pair"}];
+    return [{name: nameOf(data.pairs[chosen]), ...broken(Array.from(x), Array.from(y, toPlot)), kind: "pair"}];
   }
 
   function marks() {
@@ -151,7 +161,8 @@
 
   const half = n > 1 ? 0.5 * (times[n - 1] - times[0]) / (n - 1) : 0.5;
   const bands = [["below_warn", "near"], ["below_fail", "violated"]].flatMap(([level, kind]) =>
-    data.intervals[level].map(([start, end]) => ({start: start - half, end: end + half, kind})));
+    data.intervals[level].map(([start, end]) => ({start: start - half, end: end + half, kind})))
+    .concat(data.unmeasured.map(([start, end]) => ({start, end, kind: "unmeasured"})));
 
   const extreme = (curves, of) => curves.reduce((found, {y}) => y.reduce((best, value) => (Number.isFinite(value) ? of(best, value) : best), found), 0);
   const lowest = 1.06 * Math.min(0, toPlot(Math.min(...finite)), extreme(moreCurves, Math.min));

@@ -89,10 +89,21 @@ def replay_of(
         nearest=_places_of(bodies, [one.pair for one in frames.places]),
         move=move.astype(np.int32),
         moves=tuple(moves),
+        unmeasured=_unmeasured(record),
         contacts=tuple(replace(one, frame=place_of[int(steps[one.frame])]) for one in contacts),
         regions=regions,
         **frames.arrays,
     )
+
+
+def _unmeasured(record: Record) -> tuple[tuple[float, float], ...]:
+    """The stretches [s] between steps without a bound, as no pair is left there; those that meet are one."""
+    if record.certificate is None:
+        return ()
+    times = record.timeline.times
+    steps = np.flatnonzero(np.isinf(record.certificate.lower_bound[:-1]))
+    runs = np.split(steps, np.flatnonzero(np.diff(steps) > 1) + 1)
+    return tuple((float(times[run[0]]), float(times[run[-1] + 1])) for run in runs if len(run))
 
 
 def _once(values: np.ndarray) -> np.ndarray:
