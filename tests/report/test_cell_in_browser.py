@@ -132,5 +132,7 @@ def test_the_curve_has_a_gap_where_a_recording_is_not_measured(tmp_path):
         page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
         drawn = page.run("document.querySelector('.curve.status.clear').getAttribute('d')")
         assert drawn.count("M") == 2
+        assert run.steps["clearance"][3].as_py() == 0.29999999999999993
+        assert "300.0" not in readout(page) and "299.9 mm" in readout(page)
         band = page.run("window.clearance.chart.told.bands.at(-1)")
         assert band == {"start": hole.start, "end": hole.end, "kind": "unmeasured"}

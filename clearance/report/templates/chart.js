@@ -30,7 +30,10 @@ function nearest(numbers, wanted) {
 }
 
 // Millimetres rounded down: what is shown is never more than what was measured.
-const down = (value) => (Math.floor(Number((value * 1000).toPrecision(15))) / 1000).toFixed(3);
+function down(value) {
+  const scaled = Math.floor(Number((value * 1000).toPrecision(15)));
+  return ((scaled / 1000 > value ? scaled - 1 : scaled) / 1000).toFixed(3);
+}
 
 class Chart {
   // content(): what is drawn, in s and mm: span, range, main {x, y}, tip(i) lines; curves {name, x, y, kind, filled},

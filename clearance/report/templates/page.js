@@ -17,8 +17,8 @@
     if (metres > 0 && metres < 1e-6) return "< 0.001";
     const value = metres * 1000;
     const decimals = Math.max(0, Math.min(3, 3 - Math.floor(Math.log10(Math.abs(value)))));
-    const scaled = Math.floor(Number((value * 10 ** decimals).toPrecision(15)));
-    return (scaled / 10 ** decimals).toFixed(decimals);
+    const places = 10 ** decimals, scaled = Math.floor(Number((value * places).toPrecision(15)));
+    return ((scaled / (places * 1000) > metres ? scaled - 1 : scaled) / places).toFixed(decimals);
   }
 
   // Where no pair is left to measure, no bound holds: it is infinite.
