@@ -7,7 +7,7 @@ Not for: running them (`execution`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -38,10 +38,6 @@ from clearance.formats.program.statements import (
 )
 from clearance.formats.program.tokens import Line
 from clearance.formats.text.notes import counted
-from clearance.world.notice import listed
-
-MOST_PASSES = 100
-"""Passes of an endless loop after which it has to repeat one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,7 +300,9 @@ def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
     """The error for a statement that may do anything."""
     does = "decides which lines run" if one.jumps else "may decide where the robot goes"
     valid = "take it out of the program"
-    if may_be_left_out and not one.jumps:
+    if one.jumps:
+        valid = "a copy of the program that has only the lines that run"
+    elif may_be_left_out:
         valid = f"{valid}, or write skip: [{one.word}] if it does not"
     return BadProgram(f"{one.word!r} is not understood, and {does}", valid=valid)
 
@@ -315,20 +313,3 @@ def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
     if culprit is None:
         fault, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
     return BadProgram(f"{fault} is not known: {value.why}", valid=valid)
-
-
-def require_repeating(states: Sequence[Any]) -> None:
-    """Nothing, if an endless loop may still repeat a pass.
-
-    Args:
-        states: of the program after each pass, the variables first.
-
-    Raises:
-        BadProgram: it has had its passes.
-    """
-    if len(states) == MOST_PASSES:
-        (before, *_), (now, *_) = states[-2:]
-        changed = [repr(name) for name in now if now[name] != before.get(name)]
-        fault = f"an endless loop that repeats none of its first {MOST_PASSES} passes"
-        valid = f"write a loop that ends, or set {listed(changed) or 'its variables'} back in it"
-        raise BadProgram(fault, valid=valid)

@@ -19,7 +19,6 @@ from clearance.formats.program.effects import (
     PersistentValues,
     arguments_of,
     range_of,
-    require_repeating,
     undecided,
     unknown_word,
     unreadable_word,
@@ -38,6 +37,7 @@ from clearance.formats.program.expressions import (
     with_passed,
 )
 from clearance.formats.program.language import Language
+from clearance.formats.program.passes import MOST_PASSES, Jumps, Passes, without_jump
 from clearance.formats.program.remarks import ENDLESS, LEFT_OUT, STILL, UNSAID, WAITS, Remarks
 from clearance.formats.program.statements import (
     BREAK,
@@ -130,18 +130,24 @@ class Execution(Remarks):
 
     def run(self, body: Iterable[Statement]) -> Leave | None:
         """Runs statements, and what they were left by."""
-        for one in body:
+        jumps, at = Jumps(tuple(body), self), 0
+        while at < len(jumps.body):
+            one = jumps.body[at]
             self.line = one.line
             try:
                 with on(one.line):
                     self._count()
-                    left = self._step(one)
+                    left, at = jumps.followed(self._step(one), at + 1)
             except ClearanceError:
                 self.require_all()
                 raise
             if left is not None:
                 return left
         return None
+
+    def run_whole(self, body: Iterable[Statement]) -> Leave | None:
+        """As `run`, of all statements of a routine, which no jump may leave."""
+        return without_jump(self.run(body), self)
 
     def _count(self) -> None:
         self._n_run += 1
@@ -283,7 +289,7 @@ class Execution(Remarks):
         origins = {name: persistent.origin_of([one]) for name, one in given.items()}
         persistent.origins.append(origins)
         self.frames.append(frame)
-        left = self.run(routine.body)
+        left = self.run_whole(routine.body)
         value = None
         if left is not None and left.what == RETURN and left.value is not None:
             value = self.evaluated(left.value)
@@ -335,22 +341,17 @@ class Execution(Remarks):
         self._forget(self.effects.changed_in(bodies))
 
     def _while(self, one: While) -> Leave | None:
-        n_passes, before = 0, list[Any]()
+        n_passes, passes = 0, Passes("an endless loop", MOST_PASSES)
         endless = is_constant(one.condition)
         while (one.at_end and not n_passes) or self._goes_on(one):
-            if endless and n_passes:
-                if (state := self._state()) in before:
-                    self.note(ENDLESS, f"{one.word} ({one.line}), of which {n_passes} are measured")
-                    return Leave(one.line, one.word, STOP)
-                before.append(state)
-                require_repeating(before)
+            if endless and n_passes and passes.repeats(self.state()):
+                self.note(ENDLESS, f"{one.word} ({one.line}), of which {n_passes} are measured")
+                return Leave(one.line, one.word, STOP)
             self._count()
             left = self.run(one.body)
             n_passes += 1
-            if left is not None and left.what in (RETURN, STOP):
-                return left
-            if left is not None and left.what == BREAK:
-                return None
+            if left is not None and left.what != CONTINUE:
+                return None if left.what == BREAK else left
         return None
 
     def _goes_on(self, one: While) -> bool:
@@ -391,9 +392,9 @@ class Execution(Remarks):
         if one.is_own:
             place.pop(name, None)
             place |= before
-        return left if left is not None and left.what in (RETURN, STOP) else None
+        return None if left is not None and left.what == BREAK else left
 
-    def _state(self) -> tuple[Any, ...]:
+    def state(self) -> tuple[Any, ...]:
         """What decides how the program goes on: variables, settings, and where the robot is."""
-        own = self.variables, self.frames[1:], self.language.state
+        own = self.variables, self.concurrent, self.frames[1:], self.language.state
         return (*copy.deepcopy(own), end_of(self.moves))

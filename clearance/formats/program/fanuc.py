@@ -82,7 +82,7 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         statements = (one for listing in (*others, main) for one in within(listing.body))
         counters = {one.name.name for one in statements if isinstance(one, For)}
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
-        run.run(main.body)
+        run.run_whole(main.body)
         return language.program_of(run)
 
 

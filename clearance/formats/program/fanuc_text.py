@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import operator
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -24,17 +25,20 @@ from clearance.formats.program.expressions import (
 from clearance.formats.program.fanuc_positions import Position, positions_of
 from clearance.formats.program.grammar import Grammar, ranked
 from clearance.formats.program.statements import (
+    JUMP,
     RETURN,
     STOP,
     Assign,
     Do,
     For,
     If,
+    Label,
     Leave,
     Routine,
     Statement,
     Unreadable,
     While,
+    within,
 )
 from clearance.formats.program.tokens import END, Cursor, Line, Token, text_of, tokens_of
 
@@ -84,7 +88,11 @@ _GRAMMAR = Grammar(
     fold=named,
 )
 
-_POINT = r"(PR?)\s*\[\s*(A?R\s*\[(?:[^\[\]]|\[[^\]]*\])*\]|[^\]:\[]*)(?::[^\]]*)?\]"
+_NUMBER = r"\[\s*(A?R\s*\[(?:[^\[\]]|\[[^\]]*\])*\]|[^\]:\[]*)(?::[^\]]*)?\]"
+_POINT = rf"(PR?)\s*{_NUMBER}"
+_LABEL, _JUMP = (
+    re.compile(rf"{word}\s*{_NUMBER}", re.IGNORECASE) for word in ("LBL", r"JMP\s+LBL")
+)
 _MOTION = re.compile(rf"([JLCAS])\s+{_POINT}(?:\s*{_POINT})?\s*(.*)", re.IGNORECASE | re.DOTALL)
 _SPEED = re.compile(
     r"\s*([0-9]+\.?[0-9]*|\.[0-9]+|A?R\s*\[[^\]]*\]|\w+)\s*(mm/sec|cm/min|inch/min|deg/sec|msec|sec|%)?\s*(.*)",
@@ -198,6 +206,12 @@ class _Reader(BlockReader):
         if last.kind != END:
             fault = f"{last.text!r:.60} ends nothing"
             raise BadSyntax(fault, where=str(last.line), valid="a whole file")
+        labels = [one for one in within(found) if isinstance(one, Label)]
+        numbers = Counter(one.number for one in labels)
+        for one in labels:
+            if numbers[one.number] > 1:
+                fault = f"LBL[{one.number}] stands in several lines"
+                raise BadSyntax(fault, where=str(one.line), valid="one line for each label")
         return found
 
     def statement(self) -> list[Statement]:
@@ -255,15 +269,19 @@ class _Reader(BlockReader):
         word = _first(text)
         if word in MOVES and (motion := _MOTION.fullmatch(text)):
             return [self._motion(line, motion)]
-        if word in ("LBL", "-"):
+        if word == "-":
             return []
+        if (label := _LABEL.fullmatch(text)) and label[1].strip().isdecimal():
+            return [Label(line, int(label[1]))]
+        if jump := _JUMP.fullmatch(text):
+            return [Leave(line, word, JUMP, _condition(jump[1], line))]
         if word in ("END", "ABORT"):
             return [Leave(line, word, RETURN if word == "END" else STOP)]
         if word == "IF":
             condition, action = _split(text[2:])
             return [If(line, word, ((_condition(condition, line), self._action(line, action)),))]
         if word == "WAIT":
-            return [_wait(line, text[4:].strip())]
+            return _wait(line, text[4:].strip())
         if word == "CALL":
             return [_call(line, text[4:].strip())]
         assigned = _ASSIGNED.match(text)
@@ -330,17 +348,25 @@ def _condition(text: str, line: Line) -> Expression:
     return Constant(Unknown(f"{text.strip()!r:.40} is not read"))
 
 
-def _wait(line: Line, text: str) -> Statement:
-    """A wait: for some time, or for what only the controller knows."""
+def _wait(line: Line, text: str) -> list[Statement]:
+    """A wait: for some time, or for what only the controller knows, with a jump if that does not come in time."""
     seconds = re.fullmatch(
         r"([0-9]*\.?[0-9]+|R\s*\[[^\]]*\])\s*(?:\(?\s*sec\s*\)?)?", text, re.IGNORECASE
     )
     if seconds is not None:
-        return Do(line, Call(WAIT, (_condition(seconds[1], line),), {}, line))
+        return [Do(line, Call(WAIT, (_condition(seconds[1], line),), {}, line))]
     condition, _, late = text.partition("TIMEOUT")
-    if _JUMPS.search(late):
-        return Unreadable(line, "TIMEOUT", jumps=True)
-    return While(line, "WAIT", _condition(condition, line), (), at_end=True)
+    waits = While(line, "WAIT", _condition(condition, line), (), at_end=True)
+    if not late:
+        return [waits]
+    label = re.fullmatch(rf"(?i)\s*,\s*LBL\s*{_NUMBER}\s*", late)
+    if label is None:
+        return [Unreadable(line, "TIMEOUT", jumps=True)]
+    in_time = Constant(
+        Unknown(f"only the controller knows whether {condition.strip()} comes in time")
+    )
+    jump = Leave(line, "TIMEOUT", JUMP, _condition(label[1], line))
+    return [If(line, "TIMEOUT", ((in_time, (jump,)),)), waits]
 
 
 def _call(line: Line, text: str) -> Statement:

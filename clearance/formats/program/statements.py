@@ -67,12 +67,20 @@ class For:
 
 @dataclass(frozen=True)
 class Leave:
-    """The end of a routine with its value, or of a loop, or of one pass of it."""
+    """The end of a routine with its value, of a loop, or of one pass of it; or a jump to the label of a value."""
 
     line: Line
     word: str
     what: str
     value: Expression | None = None
+
+
+@dataclass(frozen=True)
+class Label:
+    """A place that jumps go to."""
+
+    line: Line
+    number: int
 
 
 @dataclass(frozen=True)
@@ -84,10 +92,10 @@ class Unreadable:
     jumps: bool = False
 
 
-Statement = Assign | Do | If | While | For | Leave | Unreadable
+Statement = Assign | Do | If | While | For | Leave | Label | Unreadable
 
-RETURN, BREAK, CONTINUE, STOP = "return", "break", "continue", "stop"
-"""What a `Leave` leaves: a routine, a loop, a pass of one, or the program."""
+RETURN, BREAK, CONTINUE, STOP, JUMP = "return", "break", "continue", "stop", "jump"
+"""What a `Leave` leaves: a routine, a loop, a pass of one, or the program; a jump, all blocks without its label."""
 
 
 @dataclass(frozen=True)

@@ -265,8 +265,11 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
             "P[R[1]:any]=P[5] ;\n" + L2 + " ;",
             "line 6: 'P' is not understood, and may decide where the robot goes; take",
         ),
-        ("JMP LBL[1] ;", "line 6: 'JMP' is not understood, and decides which"),
-        ("WAIT DI[1]=ON TIMEOUT,LBL[1] ;", "line 6: 'TIMEOUT' is not understood, and decides"),
+        ("JMP LBL[1] ;", "line 6: JMP goes to label 1, which is in no block around it"),
+        (
+            "WAIT DI[1]=ON TIMEOUT,LBL[1] ;",
+            "line 6: TIMEOUT decides on TIMEOUT at line 6, and is not known: only the controller knows whether DI[1]=ON comes",
+        ),
         (
             "CALL GRIP ;",
             "line 6: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.LS]}",
@@ -312,3 +315,74 @@ def test_a_listing_may_have_a_mark_and_letters_of_another_page():
         read("CELL.LS", text.encode(code), **CASE).moves for code in ("utf-8-sig", "latin-1")
     )
     assert len(one) == len(two) == 1 and one[0].line.number == two[0].line.number == 9
+
+
+def names(body: str, beside=(), **asked) -> list[str]:
+    """The points that a program goes to, with the frames of the case."""
+    found = read("CELL.LS", listing(FRAMES + body), beside, **{**CASE, **asked})
+    return [one.to.name for one in found.moves]
+
+
+def go(number: int) -> str:
+    return f"L P[{number}] 9mm/sec FINE ;\n"
+
+
+@pytest.mark.parametrize(
+    ("body", "points"),
+    [
+        (f"{go(2)}JMP LBL[1] ;\n{go(3)}LBL[1:end] ;\n{go(4)}", "24"),
+        (f"R[1]=3 ;\nJMP LBL[R[1:way]] ;\n{go(2)}LBL[3] ;\n{go(3)}LBL[4] ;\n{go(4)}", "34"),
+        (f"R[1]=0 ;\nLBL[1] ;\n{go(2)}{go(3)}R[1]=R[1]+1 ;\nIF R[1]<3,JMP LBL[1] ;\n{go(4)}", "2323234"),
+        (f"R[1]=2 ;\nIF (R[1]=2),JMP LBL[2:x] ;\n{go(2)}LBL[2] ;\n{go(3)}", "3"),
+        (f"R[1]=1 ;\nIF R[1]=2,JMP LBL[2] ;\n{go(2)}LBL[2] ;\n{go(3)}", "23"),
+        (f"R[1]=7 ;\nSELECT R[1]=1,JMP LBL[1] ;\n=7,JMP LBL[2] ;\nELSE,JMP LBL[3] ;\nLBL[1] ;\n{go(2)}"
+         f"LBL[2] ;\n{go(3)}LBL[3] ;\n{go(4)}", "34"),
+        (f"FOR R[1]=1 TO 3 ;\n{go(2)}IF R[1]=2,JMP LBL[9] ;\n{go(3)}ENDFOR ;\nLBL[9] ;\n{go(4)}", "2324"),
+        (f"R[1]=1 ;\nIF (R[1]=1) THEN ;\nJMP LBL[9] ;\nENDIF ;\n{go(2)}LBL[9] ;\n{go(4)}", "4"),
+        (f"FOR R[1]=1 TO 2 ;\n{go(2)}IF R[1]=1,JMP LBL[5] ;\n{go(3)}LBL[5] ;\nENDFOR ;\n", "223"),
+        # a loop with the way out at its top
+        (f"R[1]=0 ;\nLBL[1] ;\nIF R[1]>=2,JMP LBL[2] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\nLBL[2] ;\n{go(4)}", "224"),
+    ],
+)  # fmt: skip
+def test_a_jump_that_the_file_decides_is_followed(body, points):
+    assert names(body) == [f"P[{one}]" for one in points]
+
+
+def test_a_jump_goes_to_a_label_of_its_own_program():
+    sub = listing(f"{FRAMES}JMP LBL[1] ;\n{go(2)}LBL[1] ;\n{go(3)}").replace("CELL", "SUB")
+    body = f"{go(4)}CALL SUB ;\n{go(4)}LBL[1] ;\n{go(2)}"
+    assert names(body, {"SUB.LS": sub.encode()}) == ["P[4]", "P[3]", "P[4]", "P[2]"]
+    with pytest.raises(cl.ClearanceError, match=r"SUB.LS line 8: JMP goes to label 1, which is"):
+        names(body, {"SUB.LS": sub.replace(":LBL[1]", ":LBL[2]").encode()})
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (f"JMP LBL[1] ;\nFOR R[1]=1 TO 2 ;\nLBL[1] ;\n{go(2)}ENDFOR ;\n", "line 8: JMP goes to label 1, which is in no block around it; a label of"),
+        (f"{go(2)}LBL[1] ;\n{go(3)}LBL[1] ;\nJMP LBL[1] ;", "line 9: LBL[1] stands in several lines"),
+        (f"IF DI[1]=ON,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n", "IF decides on JMP at line 8, and is not known: only the controller knows DI[1]"),
+        (f"IF R[1]=2,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n", "IF decides on JMP at line 8, and is not known: 'R[1]' is in no file"),
+        (f"JMP LBL[R[1]] ;\n{go(2)}LBL[1] ;\n", "the label of JMP is not known: 'R[1]' is in no file"),
+        (f"LBL[1] ;\n{go(2)}R[1]=R[1]+DI[1] ;\nIF R[1]<3,JMP LBL[1] ;\n", "IF decides on JMP at line 11, and is not known"),
+        (f"R[1]=0 ;\nLBL[1] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\n", "a loop by JMP that repeats none of its first 1,000 passes; write a loop that ends, or set 'R[1]' back in it"),
+        ("LBL[R[1]] ;\n" + go(2), "'LBL' is not understood, and decides which lines run; a copy"),
+    ],
+)  # fmt: skip
+def test_a_jump_that_the_file_does_not_decide_is_refused(body, told):
+    with pytest.raises(cl.ClearanceError) as caught:
+        names(body, skip=["JMP", "IF", "LBL"])
+    assert told in str(caught.value)
+
+
+def test_a_program_that_jumps_back_to_its_top_is_measured_until_a_pass_repeats_one():
+    """The way from the last point to the first is measured, and the turn at either."""
+    found = program(f"{FRAMES}J P[2] 9% FINE ;\nLBL[1:main] ;\n{go(3)}{go(4)}JMP LBL[1] ;\n{go(2)}")
+    assert [one.to.name for one in found.moves] == ["P[2]", "P[3]", "P[4]", "P[3]", "P[4]"]
+    assert "repeats one that is: JMP (line 12), of which 2 are measured" in "\n".join(found.notes)
+    assert found.left_out == ("further passes of an endless loop JMP (line 12), of which 2 are measured",)
+    # a way that only the first pass goes, and one to and fro
+    once = f"R[1]=0 ;\nLBL[1] ;\nIF R[1]>0,JMP LBL[2] ;\n{go(2)}LBL[2] ;\nR[1]=1 ;\n{go(3)}{go(4)}JMP LBL[1] ;\n"
+    assert names(once) == ["P[2]", "P[3]", "P[4]", "P[3]", "P[4]"]
+    turns = f"R[1]=2 ;\nLBL[1] ;\nL P[R[1]] 9mm/sec FINE ;\nR[1]=5-R[1] ;\nJMP LBL[1] ;\n"
+    assert names(turns) == ["P[2]", "P[3]", "P[2]"]

@@ -1,0 +1,98 @@
+"""Loops that may not end, and jumps back: they are run until a pass repeats one. Not for: running statements
+(`execution`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from clearance.errors import BadProgram
+from clearance.formats.program.expressions import number
+from clearance.formats.program.remarks import ENDLESS
+from clearance.formats.program.statements import JUMP, STOP, Label, Leave, Statement
+from clearance.world.notice import listed
+
+MOST_PASSES = 100
+"""Passes of an endless loop after which it has to repeat one."""
+
+MOST_JUMPS = 1_000
+"""As `MOST_PASSES`, of jumps to one label: they may be a loop that ends."""
+
+
+@dataclass(eq=False)
+class Passes:
+    """The states of a program after the passes of a loop, the variables first."""
+
+    what: str
+    most: int
+    states: list[Any] = field(default_factory=list)
+
+    def repeats(self, state: Sequence[Any]) -> bool:
+        """Whether a pass ends as one before, so that all further ones repeat those between.
+
+        Raises:
+            BadProgram: the loop has had its passes.
+        """
+        if state in self.states:
+            return True
+        self.states.append(state)
+        if len(self.states) == self.most:
+            (before, *_), (now, *_) = self.states[-2:]
+            changed = [repr(name) for name in now if now[name] != before.get(name)]
+            fault = f"{self.what} that repeats none of its first {self.most:,} passes"
+            valid = (
+                f"write a loop that ends, or set {listed(changed) or 'its variables'} back in it"
+            )
+            raise BadProgram(fault, valid=valid)
+        return False
+
+
+@dataclass(eq=False)
+class Jumps:
+    """The jumps to labels of a body that runs."""
+
+    body: Sequence[Statement]
+    run: Any
+    _passes: dict[int, Passes] = field(default_factory=dict)
+
+    def followed(self, left: Leave | None, at: int) -> tuple[Leave | None, int]:
+        """What the body is left by, if it is, and the place where it goes on.
+
+        Args:
+            left: what its statement before a place was left by.
+        """
+        if left is None or left.what != JUMP:
+            return left, at
+        label, places = _label_of(left, self.run), enumerate(self.body)
+        labels = (i for i, one in places if isinstance(one, Label) and one.number == label)
+        place = next(labels, None)
+        if place is None:
+            return left, at
+        passes = self._passes.setdefault(place, Passes(f"a loop by {left.word}", MOST_JUMPS))
+        if place < at and passes.repeats(self.run.state()):
+            n_passes = len(passes.states) + 1
+            self.run.note(ENDLESS, f"{left.word} ({left.line}), of which {n_passes} are measured")
+            return Leave(left.line, left.word, STOP), at
+        return None, place
+
+
+def without_jump(left: Leave | None, run: Any) -> Leave | None:
+    """What a routine is left by.
+
+    Raises:
+        BadProgram: a jump.
+    """
+    if left is not None and left.what == JUMP:
+        fault = (
+            f"{left.word} goes to label {_label_of(left, run):g}, which is in no block around it"
+        )
+        valid = "a label of the same program that stands in no other IF or FOR"
+        raise BadProgram(fault, where=str(left.line), valid=valid)
+    return left
+
+
+def _label_of(one: Leave, run: Any) -> float:
+    assert one.value is not None
+    return number(run.evaluated(one.value), f"the label of {one.word}")
