@@ -126,9 +126,13 @@ def digits_of(*values: Any) -> str:
 
 
 def end_of(moves: Sequence[ControllerMove | ControllerWait]) -> tuple[str, list[Any]]:
-    """Where the robot is after moves; nowhere where there are none."""
-    last = next((one for one in reversed(moves) if isinstance(one, ControllerMove)), None)
-    return ("", []) if last is None else (digits_of(last.to), last.tool.tolist())
+    """Where the robot is after moves; nowhere where there are none. If a corner zone may follow, the way there too."""
+    own = (one for one in reversed(moves) if isinstance(one, ControllerMove))
+    last, before = next(own, None), next(own, None)
+    if last is None:
+        return "", []
+    way = (last, before.to) if last.zone and before else (last.to,)
+    return digits_of(*way), last.tool.tolist()
 
 
 @dataclass(frozen=True, eq=False)

@@ -265,7 +265,7 @@ class Rapid(Language):
             run.note(TAKES_TIME, f"{word} ({call.line})")
         if max(zone) > 0.0:
             self.zones[len(run.moves)] = zone
-        run.add(move.slowed(self.share))
+        run.add(replace(move, zone=max(0.0, *zone)).slowed(self.share))
         if call.name.endswith("Sync"):
             self._run_beside(call, rule, run)
 
