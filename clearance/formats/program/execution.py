@@ -252,8 +252,8 @@ class Execution(Remarks):
 
     def _place(self, name: str, is_own: bool = False) -> dict[str, Any]:
         """Where a variable is, or begins to be."""
-        own = self.frames[-1]
-        return own if is_own or name in own or name not in self.variables else self.variables
+        own, shared = self.frames[-1], self.language.shares_variables or name in self.variables
+        return own if is_own or name in own or not shared else self.variables
 
     def forget_written(self, call: Call) -> None:
         """Makes variables unknown that an instruction or a function of the language gives a value."""

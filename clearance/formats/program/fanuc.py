@@ -96,7 +96,8 @@ class _Fanuc(Language):
 
     asked: ProgramFile
     share: float = 1.0
-    maker, base, suffix, keeps_counter = "fanuc", BASE, ".LS", True
+    maker, base, suffix = "fanuc", BASE, ".LS"
+    keeps_counter = shares_variables = True
     moving = (*MOVES, *DECIDING)
     still = (*QUIET, WAIT)
     timed = (WAIT, *WAITING)

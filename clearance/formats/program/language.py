@@ -24,6 +24,7 @@ class Language:
         retiming: words that change how long moves take also from a thread, a trap or an interrupt.
         keeps_counter: a loop counts by the value of its variable, and leaves it at the last one; elsewhere it is
             not known behind the loop.
+        shares_variables: a routine has none of its own, but for its parameters.
         skips_overlaps: as of a `ControllerProgram`.
         values: functions whose value follows from their arguments.
     """
@@ -33,7 +34,7 @@ class Language:
     still: Collection[str] = ()
     timed: Collection[str] = ()
     retiming: Collection[str] = ()
-    keeps_counter = skips_overlaps = False
+    keeps_counter = shares_variables = skips_overlaps = False
     values: Mapping[str, Callable[..., Any]] = {}
 
     @property

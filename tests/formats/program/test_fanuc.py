@@ -380,9 +380,31 @@ def test_a_program_that_jumps_back_to_its_top_is_measured_until_a_pass_repeats_o
     found = program(f"{FRAMES}J P[2] 9% FINE ;\nLBL[1:main] ;\n{go(3)}{go(4)}JMP LBL[1] ;\n{go(2)}")
     assert [one.to.name for one in found.moves] == ["P[2]", "P[3]", "P[4]", "P[3]", "P[4]"]
     assert "repeats one that is: JMP (line 12), of which 2 are measured" in "\n".join(found.notes)
-    assert found.left_out == ("further passes of an endless loop JMP (line 12), of which 2 are measured",)
+    assert found.left_out == (
+        "further passes of an endless loop JMP (line 12), of which 2 are measured",
+    )
     # a way that only the first pass goes, and one to and fro
     once = f"R[1]=0 ;\nLBL[1] ;\nIF R[1]>0,JMP LBL[2] ;\n{go(2)}LBL[2] ;\nR[1]=1 ;\n{go(3)}{go(4)}JMP LBL[1] ;\n"
     assert names(once) == ["P[2]", "P[3]", "P[4]", "P[3]", "P[4]"]
     turns = f"R[1]=2 ;\nLBL[1] ;\nL P[R[1]] 9mm/sec FINE ;\nR[1]=5-R[1] ;\nJMP LBL[1] ;\n"
     assert names(turns) == ["P[2]", "P[3]", "P[2]"]
+
+
+def test_a_corner_between_two_passes_is_measured_by_each_way_that_leads_there():
+    """Both passes end at P[3]; only the second comes there from P[2], through the corner to P[4]."""
+    body = f"R[1]=0 ;\nLBL[1] ;\n{go(4)}IF R[1]>0,JMP LBL[2] ;\n{go(3)}R[1]=1 ;\nJMP LBL[1] ;\nLBL[2] ;\n"
+    body += f"{go(2)}L P[3] 9mm/sec CNT50 ;\nJMP LBL[1] ;\n"
+    passes = ["P[4]", "P[3]", *["P[4]", "P[2]", "P[3]"] * 2]
+    assert names(body, zones={"CNT50": 0.02}) == passes
+    assert names(body.replace("CNT50", "FINE")) == passes[:5]
+
+
+@pytest.mark.parametrize("changed", ["UFRAME[1]=PR[5]", "UTOOL[1]=PR[5]", "P[2]=P[3]"])
+def test_what_a_called_program_may_change_is_not_known_in_it_nor_behind_it(changed):
+    sub = f"IF (DI[1]=ON) THEN ;\n{changed} ;\nENDIF ;\n"
+    for body, after in ((sub, go(2)), (sub + go(2), "")):
+        beside = {"SUB.LS": listing(body).replace("CELL", "SUB").encode()}
+        with pytest.raises(
+            cl.ClearanceError, match=r"(given a value before|is set in the program)"
+        ):
+            names(f"CALL SUB ;\n{after}{go(4)}", beside)
