@@ -126,7 +126,7 @@ def digits_of(*values: Any) -> str:
 
 
 def end_of(moves: Sequence[ControllerMove | ControllerWait]) -> tuple[str, list[Any]]:
-    """Where the robot is after moves; nowhere where there are none. If a corner zone may follow, the way there too."""
+    """Where the robot is after moves, with the way there if a corner may follow; nowhere where there are none."""
     own = (one for one in reversed(moves) if isinstance(one, ControllerMove))
     last, before = next(own, None), next(own, None)
     if last is None:

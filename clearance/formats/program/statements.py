@@ -95,7 +95,7 @@ class Unreadable:
 Statement = Assign | Do | If | While | For | Leave | Label | Unreadable
 
 RETURN, BREAK, CONTINUE, STOP, JUMP = "return", "break", "continue", "stop", "jump"
-"""What a `Leave` leaves: a routine, a loop, a pass of one, or the program; a jump, all blocks without its label."""
+"""What a `Leave` leaves: a routine, a loop, a pass of one, or the program; a jump, all blocks around it."""
 
 
 @dataclass(frozen=True)

@@ -268,7 +268,7 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
         ("JMP LBL[1] ;", "line 6: JMP goes to label 1, which is in no block around it"),
         (
             "WAIT DI[1]=ON TIMEOUT,LBL[1] ;",
-            "line 6: TIMEOUT decides on TIMEOUT at line 6, and is not known: only the controller knows whether DI[1]=ON comes",
+            "TIMEOUT at line 6, and is not known: only the controller knows whether DI[1]=ON comes in time",
         ),
         (
             "CALL GRIP ;",
@@ -341,7 +341,8 @@ def go(number: int) -> str:
         (f"R[1]=1 ;\nIF (R[1]=1) THEN ;\nJMP LBL[9] ;\nENDIF ;\n{go(2)}LBL[9] ;\n{go(4)}", "4"),
         (f"FOR R[1]=1 TO 2 ;\n{go(2)}IF R[1]=1,JMP LBL[5] ;\n{go(3)}LBL[5] ;\nENDFOR ;\n", "223"),
         # a loop with the way out at its top
-        (f"R[1]=0 ;\nLBL[1] ;\nIF R[1]>=2,JMP LBL[2] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\nLBL[2] ;\n{go(4)}", "224"),
+        (f"R[1]=0 ;\nLBL[1] ;\nIF R[1]>=2,JMP LBL[2] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\nLBL[2] ;\n"
+         f"{go(4)}", "224"),
     ],
 )  # fmt: skip
 def test_a_jump_that_the_file_decides_is_followed(body, points):
@@ -359,13 +360,18 @@ def test_a_jump_goes_to_a_label_of_its_own_program():
 @pytest.mark.parametrize(
     ("body", "told"),
     [
-        (f"JMP LBL[1] ;\nFOR R[1]=1 TO 2 ;\nLBL[1] ;\n{go(2)}ENDFOR ;\n", "line 8: JMP goes to label 1, which is in no block around it; a label of"),
+        (f"JMP LBL[1] ;\nFOR R[1]=1 TO 2 ;\nLBL[1] ;\n{go(2)}ENDFOR ;\n",
+         "line 8: JMP goes to label 1, which is in no block around it; a label of"),
         (f"{go(2)}LBL[1] ;\n{go(3)}LBL[1] ;\nJMP LBL[1] ;", "line 9: LBL[1] stands in several lines"),
-        (f"IF DI[1]=ON,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n", "IF decides on JMP at line 8, and is not known: only the controller knows DI[1]"),
-        (f"IF R[1]=2,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n", "IF decides on JMP at line 8, and is not known: 'R[1]' is in no file"),
+        (f"IF DI[1]=ON,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n",
+         "IF decides on JMP at line 8, and is not known: only the controller knows DI[1]"),
+        (f"IF R[1]=2,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n",
+         "IF decides on JMP at line 8, and is not known: 'R[1]' is in no file"),
         (f"JMP LBL[R[1]] ;\n{go(2)}LBL[1] ;\n", "the label of JMP is not known: 'R[1]' is in no file"),
-        (f"LBL[1] ;\n{go(2)}R[1]=R[1]+DI[1] ;\nIF R[1]<3,JMP LBL[1] ;\n", "IF decides on JMP at line 11, and is not known"),
-        (f"R[1]=0 ;\nLBL[1] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\n", "a loop by JMP that repeats none of its first 1,000 passes; write a loop that ends, or set 'R[1]' back in it"),
+        (f"LBL[1] ;\n{go(2)}R[1]=R[1]+DI[1] ;\nIF R[1]<3,JMP LBL[1] ;\n",
+         "IF decides on JMP at line 11, and is not known"),
+        (f"R[1]=0 ;\nLBL[1] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\n",
+         "a loop by JMP that repeats none of its first 1,000 passes; write a loop that ends, or set 'R[1]'"),
         ("LBL[R[1]] ;\n" + go(2), "'LBL' is not understood, and decides which lines run; a copy"),
     ],
 )  # fmt: skip
@@ -386,7 +392,7 @@ def test_a_program_that_jumps_back_to_its_top_is_measured_until_a_pass_repeats_o
     # a way that only the first pass goes, and one to and fro
     once = f"R[1]=0 ;\nLBL[1] ;\nIF R[1]>0,JMP LBL[2] ;\n{go(2)}LBL[2] ;\nR[1]=1 ;\n{go(3)}{go(4)}JMP LBL[1] ;\n"
     assert names(once) == ["P[2]", "P[3]", "P[4]", "P[3]", "P[4]"]
-    turns = f"R[1]=2 ;\nLBL[1] ;\nL P[R[1]] 9mm/sec FINE ;\nR[1]=5-R[1] ;\nJMP LBL[1] ;\n"
+    turns = "R[1]=2 ;\nLBL[1] ;\nL P[R[1]] 9mm/sec FINE ;\nR[1]=5-R[1] ;\nJMP LBL[1] ;\n"
     assert names(turns) == ["P[2]", "P[3]", "P[2]"]
 
 
