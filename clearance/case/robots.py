@@ -143,7 +143,7 @@ class RobotReader:
             return SelfClearance()
         with at(f"{field}.srdf"):
             matrix = read_srdf(resolved(given.srdf, self._folder), robot, self._files)
-        return SelfClearance(matrix, given.trust_never)
+        return SelfClearance(matrix, given.trust_never, given.geometry)
 
 
 class InMotion(NamedTuple):

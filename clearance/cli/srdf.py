@@ -114,7 +114,7 @@ def make(
     robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
     with shown_progress(False, ["proving"]) as progress:
         pairs = propose(robot, progress)
-    text = proposed_srdf(robot, pairs)
+    text = proposed_srdf(robot, pairs, geometry)
     if out is None:
         click.echo(text, nl=False)
     else:

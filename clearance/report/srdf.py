@@ -80,15 +80,19 @@ def _finding_text(found: PairFinding, kinds: Mapping[str, str]) -> str:
     return f"undecided: {found.why}; {mm(found.least)} mm{at}"
 
 
-def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair]) -> str:
+def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair], geometry: str = "collision") -> str:
     """An SRDF with a row for each pair that can be excused, and a comment on each that cannot and why.
 
     Rows of reason `Never` are proven, within the joint limits of the URDF; those of `Adjacent` are neighbours
     that are together at home, or proven as well.
+
+    Args:
+        geometry: which shapes of its links the robot has.
     """
     kinds = {joint.name: joint.kind for joint in robot.joints}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(robot.name)}>"]
-    lines.append("  <!-- Never: proven for all positions within the joint limits. -->")
+    proven = "proven not to touch at any position within the joint limits"
+    lines.append(f"  <!-- Never: {proven}; geometry: {geometry}. -->")
     lines.append("  <!-- Adjacent: joined by one moving joint; not checked. -->")
     for each in pairs:
         ends = f"link1={quoteattr(each.pair.link_a)} link2={quoteattr(each.pair.link_b)}"

@@ -24,17 +24,18 @@ class Severity(StrEnum):
 
 KINDS = (
     "units", "limits", "axis", "inside", "frame", "package", "gaps", "clocks", "wrap", "start", "simulated",
+    "never",
 )  # fmt: skip
 """Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
 limits, meshes turned by their file's axis tag and programs for other axes, solids of which inside and outside
 cannot be decided, scenes in the frame of a link that moves or stands elsewhere, files read in place of those of
 a missing package, holes in recordings (then bridged straight), tables that never move at the same time, turns
-that could go either way (then as written), goals without a start (then single poses), and simulated robots that
-are pushed, do not arrive or are far off their trajectory."""
+that could go either way (then as written), goals without a start (then single poses), simulated robots that
+are pushed, do not arrive or are far off their trajectory, and pairs left out by an SRDF made for other shapes."""
 
 WRAP, START = "wrap", "start"
 
-WARNED_TOO = ("units", "limits", "gaps", "clocks", START, "simulated")
+WARNED_TOO = ("units", "limits", "gaps", "clocks", START, "simulated", "never")
 """Those whose lesser cases are warnings: their code accepts the warnings alone, their name suspect input too."""
 
 WARNINGS = (

@@ -32,10 +32,12 @@ class SelfClearance:
     Attributes:
         matrix: which pairs are excused, and why; without one, neighbours are.
         trust_never: excuse also what was not seen to meet in random poses.
+        geometry: the shapes of the links, as a case file says it; an SRDF is made for those of collision.
     """
 
     matrix: CollisionMatrix | None = None
     trust_never: bool = False
+    geometry: str = "collision"
 
     def __post_init__(self) -> None:
         require_types(self, matrix=(CollisionMatrix, None))

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from clearance.world.case import Case
+from clearance.world.collision_matrix import NEVER
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
@@ -24,7 +25,7 @@ from clearance.world.plausible_scans import notices_on_scans
 from clearance.world.plausible_sizes import notices_on_planes, notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.plausible_wrap import notices_on_wrap
-from clearance.world.self_pairs import limbs
+from clearance.world.self_pairs import limbs, self_pairs
 from clearance.world.unproven_motion import notices_on_unproven
 
 LARGE_LIMIT = 0.5
@@ -52,6 +53,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     found += notices_on_tables(case)
     found += notices_on_clocks(case)
     found += _rides_with_tolerance(case)
+    found += _never_measured(case)
     moves = [placed.trajectory is not None for placed in case.robots]
     moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:
@@ -130,6 +132,25 @@ def _in_millimetres(large: list[str], what: str) -> list[Notice]:
     names = " and ".join(large) if len(large) < 3 else listed(large)
     text = f"CHECK UNITS: {names}; {what} in metres, is this millimetres?"
     return [Notice(Severity.SUSPECT, "units", text)]
+
+
+def _never_measured(case: Case) -> Iterator[Notice]:
+    """A notice on the pairs that a robot leaves out by `trust_never`; suspect for shapes other than collision."""
+    for placed in case.robots:
+        asked = placed.self_clearance
+        if asked is None or not asked.trust_never:
+            continue
+        pairs = self_pairs(placed.robot, asked.matrix, trust_never=True)
+        names = [f"{one.link_a} - {one.link_b}" for one in pairs if one.excused == NEVER]
+        text = (
+            f"trust_never leaves out what the SRDF calls Never ({listed(names)}): it says that collision shapes "
+            "do not touch, and these pairs are taken to keep their limits too"
+        )
+        if names and asked.geometry != "collision":
+            text = f"CHECK SHAPES: {text}, with geometry: {asked.geometry}; srdf audit --geometry proves them"
+            yield Notice(Severity.SUSPECT, "never", text, placed.robot.name)
+        elif names:
+            yield Notice(Severity.WARNING, "never", text, placed.robot.name)
 
 
 def _rides_with_tolerance(case: Case) -> Iterator[Notice]:

@@ -66,6 +66,12 @@ def test_what_was_never_seen_is_measured_unless_it_is_trusted(folder, capsys):
     told = json.loads(out)
     assert code == 0 and told["worst"]["obstacle"] == "far"
     assert "excused: Never" in {row["reason"] for row in told["unmeasured"]}
+    (told,) = [line for line in told["warnings"] if "CL434" in line]
+    assert "(base - hand)" in told and "taken to keep their limits too" in told
+    code, out, _ = check(
+        folder, capsys, ", srdf: folder.srdf, trust_never: true, geometry: collision_or_visual"
+    )
+    assert code == 2 and "with geometry: collision_or_visual" in json.loads(out)["reasons"][0]
 
 
 def test_a_pair_of_links_can_be_allowed_in_either_order(folder, capsys):
