@@ -232,6 +232,8 @@ def _meaning(summary: dict[str, Any]) -> str:
         f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
         f"line and {shown}; \N{EN DASH} marks a pair that was not measured."
     )
+    if any(proven):
+        text += " Far pairs may come about 1 % nearer; summary.json has their proven bounds."
     text += " Less padding." if summary["paddings"] else ""
     return text + (
         " Colours go by the rule that judges a pair." if len(summary["rules"]) > 1 else ""
