@@ -16,6 +16,7 @@ from clearance.formats.cloud.formats import Points
 from clearance.formats.table.column_units import Column, columns_in, in_own_units, note_on_units
 from clearance.formats.table.csv_table import TextTable, columns_of, first_row, header_of
 from clearance.formats.table.table_start import blanks_as_tabs
+from clearance.formats.text.notes import counted
 
 _LENGTHS = dict.fromkeys("xyz", False)
 """What has a length, for the units of columns."""
@@ -38,7 +39,12 @@ def read_points_text(data: bytes) -> Points:
         table = table._replace(names=(*"xyz"[: len(first)], *others))
     header = header_of(table, "y, z")
     if len(header) < 3:
-        raise BadShape(f"{len(header)} columns", valid="three or more: x, y, z")
+        line = 1 + next(i for i, row in enumerate(content.splitlines()) if row.strip())
+        raise BadShape(
+            counted(len(header), "column"),
+            where=f"line {line}",
+            valid="three or more: x, y, z; remove a line that is the count of points",
+        )
     of_axes = _axes(header)
     chosen = [header[i] for i, _ in of_axes]
     (places,) = columns_of(table, header, [chosen], finite=False)

@@ -20,7 +20,7 @@ from clearance.formats.motion.trajectory_file import is_bag
 from clearance.formats.motion.trajectory_writer import untold
 from clearance.formats.scene.request import SceneRequest
 from clearance.formats.schema.timed import Choice
-from clearance.formats.text.file_start import LONGEST
+from clearance.formats.text.file_start import LONGEST, POSE_COLUMNS
 from clearance.formats.text.notes import counted
 from clearance.formats.timed_files import load_samples, load_trajectory
 from clearance.world.trajectory import Trajectory
@@ -83,6 +83,8 @@ def _trajectory(asked: Conversion) -> ConvertedFiles:
     n_joints = counted(len(trajectory.joint_names), "joint")
     samples = trajectory_writer.samples_in(trajectory, asked.target.name)
     amount = f"{counted(len(samples.times), 'sample')} of {n_joints}"
+    if set(POSE_COLUMNS[1:4]) <= {*trajectory.joint_names}:
+        changes += (f"x, y and z are joints; poses also need {', '.join(POSE_COLUMNS[4:])}",)
     return ConvertedFiles(
         {asked.target.name: content}, amount, (*notes, *_of_target(asked, changes))
     )

@@ -58,6 +58,8 @@ def read_glb(asked: MeshRequest) -> Triangles:
     notes: tuple[str, ...] = (note,)
     if len(document.items("scenes")) > 1:
         notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
+    if document.items("animations"):
+        notes += ("its animations are not read: nodes stand as they are placed",)
     return Triangles(vertices, surface.corners, notes, rounded=surface.rounded)
 
 

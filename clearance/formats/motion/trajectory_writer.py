@@ -43,7 +43,13 @@ def written(trajectory: Trajectory, shown: str) -> WrittenFile:
     whole = whole_times(trajectory.written.times.tolist()) if known.is_message else None
     is_rounded = whole is not None and whole.n_rounded > 0
     _refuse_other(trajectory, content, shown, is_rounded)
-    return WrittenFile(content, (whole.note(),) if whole and is_rounded else ())
+    notes = [whole.note()] if whole and is_rounded else []
+    if trajectory.path_error and not known.is_message:
+        notes.append(
+            f"its cubics are up to {trajectory.path_error:.1g} rad or m off the motion asked for, "
+            "which checks of it do not take off"
+        )
+    return WrittenFile(content, tuple(notes))
 
 
 def untold(trajectory: Trajectory, shown: str) -> Iterator[str]:

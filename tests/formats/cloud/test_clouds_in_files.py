@@ -148,7 +148,8 @@ def test_a_pcd_file_that_is_not_as_it_says_is_refused(fault):
     [
         (b"", "there are no rows"),
         (b"x,y,z\n", "no rows below the header"),
-        (b"1,2\n", "2 columns; three or more"),
+        (b"1,2\n", "line 1: 2 columns; three or more"),
+        (b"//X Y Z\n2\n1 2 3\n4 5 6\n", "line 2: 1 column; three or more: x, y, z; remove a line"),
         (b"1 2 3\n4 5\n", "line 2: 2 columns; there are 3 names"),
         (b"1 2 3\n4 5 a\n", "line 2: 'a' in column 'z' is not a number"),
         (

@@ -38,6 +38,11 @@ def test_a_cube_is_a_cube():
     assert mesh.notes == ("turned from y up to z up, as glTF says",)
 
 
+def test_an_animation_is_told_and_not_read():
+    mesh = load(DOCUMENT | {"animations": [{"channels": [], "samplers": []}]})
+    assert mesh.notes[1:] == ("its animations are not read: nodes stand as they are placed",)
+
+
 @pytest.mark.parametrize(
     ("kind", "normalized", "divisor"),
     [
