@@ -82,7 +82,11 @@ def mapping_in(path: Path) -> dict[str, Any]:
 def _matching(pattern: object, path: Path, where: str) -> list[Path]:
     outside = not isinstance(pattern, str) or Path(pattern).is_absolute() or ".." in pattern
     if outside or not pattern:
-        raise BadInput(f"{pattern!r:.60} is given", where=where, valid="a pattern below the folder")
+        raise BadInput(
+            f"{pattern!r:.60} is given",
+            where=where,
+            valid="a pattern below the folder of the list, without `..`",
+        )
     found = sorted(path.parent.glob(str(pattern)))
     matching = [one for one in found if not one.is_dir() and one != path]
     if not matching:

@@ -113,7 +113,7 @@ class _Item(pytest.Item):
 
     def reportinfo(self) -> tuple[Path, None, str]:
         """File and name."""
-        return self.path, None, f"{self.case_run.path.name}: {self.name}"
+        return self.path, None, f"{_below_root(self.case_run.path, self.config)}: {self.name}"
 
     def failure(self, lines: Iterable[str]) -> NotClear:
         """The failure that says some lines and where the page is."""
@@ -225,6 +225,11 @@ def report_folder(path: Path, config: pytest.Config) -> Path | None:
     out = config.getoption("--clearance-out")
     if not out:
         return None
-    path = path.absolute()
-    known = path.relative_to(config.rootpath) if path.is_relative_to(config.rootpath) else path
+    known = _below_root(path, config)
     return config.invocation_params.dir / out / known.relative_to(known.anchor)
+
+
+def _below_root(path: Path, config: pytest.Config) -> Path:
+    """A path as seen from the root of the tests, if it is below it."""
+    path = path.absolute()
+    return path.relative_to(config.rootpath) if path.is_relative_to(config.rootpath) else path

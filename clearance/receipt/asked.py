@@ -66,7 +66,7 @@ def refuse_uncovered(question: Question) -> None:
             raise NoReceipt(f"no receipt {what}", valid=f"{needed}")
     if question.motion != "kinematic":
         raise NoReceipt(
-            f"no receipt of {question.motion} motion: it follows from no input",
+            f"no receipt of {question.motion} motion: it proves commanded motion alone",
             valid="kinematic motion",
         )
     require_covered(question.case)

@@ -103,7 +103,7 @@ def _require_joints(driven: Trajectory, commanded: Trajectory) -> None:
     missing = [name for name in commanded.joint_names if name not in driven.joint_names]
     if missing:
         raise MissingKey(
-            f"it does not have joints {listed(missing, 8)}, which should move",
+            f"it does not have joints {listed(missing, 8)} of the commanded motion",
             valid=f"it has {listed([*driven.joint_names], 8)}",
         )
 

@@ -82,7 +82,7 @@ def test_joints_that_were_to_stay_are_held_against_where():
     ("driven", "timing", "kind", "told"),
     [
         (trajectory([5, 6], [0, 0], [0, 0]), AS_GIVEN, BadTime, APART),
-        (trajectory([0, 1], [0, 0]), AS_GIVEN, MissingKey, "does not have joints b, which should move"),
+        (trajectory([0, 1], [0, 0]), AS_GIVEN, MissingKey, "does not have joints b of the commanded motion"),
         (trajectory([0, 1], [0, 0], [0, 0]), Timing(after="loop"), BadInput, "begins again and again"),
     ],
 )  # fmt: skip

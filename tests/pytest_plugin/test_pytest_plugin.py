@@ -97,7 +97,9 @@ def test_each_case_has_a_report_of_its_own(inside, pytester):
     for folder, name, gates in (("weld", "a-x", BROKEN), ("weld-a", "x", CLEAR)):
         (pytester.path / folder).mkdir()
         write_case(pytester.path / folder, gates, f"{name}.clearance.yaml")
-    inside("--clearance-out", "reports").assert_outcomes(passed=2, failed=2)
+    result = inside("--clearance-out", "reports")
+    result.assert_outcomes(passed=2, failed=2)
+    assert "_ weld/a-x.clearance.yaml: verdict _" in result.stdout.str()
     summary = pytester.path / "reports" / "weld" / "a-x.clearance.yaml" / "summary.json"
     assert not json.loads(summary.read_text())["passed"]
 
@@ -117,7 +119,7 @@ def test_a_case_that_is_refused_leaves_no_older_report_green(inside, pytester):
     ("text", "told"),
     [
         ("cases: ['no_*.yaml']", "no file is called 'no_*.yaml'"),
-        ("cases: ['../*.yaml']", "a pattern below the folder"),
+        ("cases: ['../*.yaml']", "a pattern below the folder of the list, without `..`"),
         ("cases: 7", "no list of cases"),
         ("cases: [a.yaml]\nname: x", "no list of cases"),
         ("- 1", "no mapping"),
