@@ -5,11 +5,12 @@ robot, or a CSV table. Not for: how it is written (`formats.motion.trajectory_wr
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import PurePath
 
 from clearance.errors import BadInput, at
 from clearance.formats.known_formats import Kind, written_as
-from clearance.formats.motion.trajectory_writer import WrittenFile, written
+from clearance.formats.motion.trajectory_writer import WrittenFile, untold, written
 from clearance.world.motion import Motion
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.placed_robot import PlacedRobot
@@ -58,18 +59,18 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenFile:
         if len(motions) > 1 and is_yaml:
             content = f"# {motion.placed.robot.name}\n".encode() + content
         parts.append(content)
-        notes += (*changes, *_bridged(motion), *_nominal(motion))
+        notes += (*changes, *_untold(motion, shown), *_nominal(motion))
     between = b"---\n" if is_yaml else b""
     return WrittenFile(between.join(parts), tuple(dict.fromkeys(notes)))
 
 
-def _bridged(motion: Motion) -> list[str]:
-    """A note on holes that are not measured: the file joins the samples around them by straight lines."""
+def _untold(motion: Motion, shown: str) -> list[str]:
+    """Notes on what the verdict says of the trajectory and the file does not, as holes that are not measured."""
     asked = motion.placed.trajectory
-    holes = () if asked is None else asked.holes
-    return [
-        f"{hole.text}: a straight line in this file" for hole in holes if hole.means == NOT_MEASURED
-    ]
+    if asked is None:
+        return []
+    holes = tuple(hole for hole in asked.holes if hole.means == NOT_MEASURED)
+    return [*untold(replace(asked, holes=holes), shown)]
 
 
 def _nominal(motion: Motion) -> list[str]:

@@ -243,7 +243,7 @@ def test_a_recording_with_holes_is_not_changed(tmp_path, kind, how):
     ("more", "says"),
     [
         ({"has_way_in": True}, "how the robot comes to its first point"),
-        ({"unread": ("attached_collision_objects",)}, "would not name what is not read"),
+        ({"unread": ("attached_collision_objects",)}, "does not name what is not read"),
     ],
 )
 def test_a_path_of_which_a_table_does_not_say_all_is_not_changed(tmp_path, more, says):

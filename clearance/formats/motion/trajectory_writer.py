@@ -57,15 +57,15 @@ def untold(trajectory: Trajectory, shown: str) -> Iterator[str]:
     yield from trajectory.odd
     for hole in trajectory.holes:
         is_within = hole.end > trajectory.times[0] and hole.start < trajectory.times[-1]
-        deed = "bridge it by a straight line" if is_within else "leave it out"
-        yield f"{hole.text}; {shown} would {deed}"
+        deed = "bridges it by a straight line" if is_within else "leaves it out"
+        yield f"{hole.text}; {shown} {deed}"
     is_late_message = written_as(Kind.TRAJECTORY, shown).is_message and not trajectory.start_off
     if trajectory.has_way_in and not is_late_message:
         why = trajectory.start_off and f" ({trajectory.start_off})"
         first = f"{trajectory.times[0]:g} s"
-        yield f"how the robot comes to its first point at {first} is not known{why}; {shown} would begin there"
+        yield f"how the robot comes to its first point at {first} is not known{why}; {shown} begins there"
     if trajectory.unread:
-        yield f"{shown} would not name what is not read: {listed(trajectory.unread, 6)}"
+        yield f"{shown} does not name what is not read: {listed(trajectory.unread, 6)}"
 
 
 def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:

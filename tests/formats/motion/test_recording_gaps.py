@@ -197,7 +197,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
     bound = run.record.certificate.lower_bound[run.record.steps["time"].to_numpy() == 1.0]
     assert not np.isfinite(bound).any()
     assert motion_content(run.record.motions, "out.csv").notes == (
-        "no position of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s): a straight line in this file",
+        "no position of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s); out.csv bridges it by a straight line",
     )
     held = changed("file: path.csv", "file: path.csv, gaps: hold")
     (told,) = [

@@ -9,6 +9,7 @@ from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadTime, NotFinite
 from clearance.formats.schema.timed import Choice
 from clearance.formats.timed_files import load_trajectory
+from clearance.report.motion_file import motion_content
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed
 
@@ -224,8 +225,12 @@ def test_a_recording_of_which_an_end_is_not_known_is_not_converted(tmp_path, cap
     bag = write_bag(tmp_path, "mcap", {"/joint_states": states})
     assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 2
     told = capsys.readouterr().err
-    assert "no position of lift from 19 to 20 s" in told and "out.csv would leave it out" in told
+    assert "no position of lift from 19 to 20 s" in told and "out.csv leaves it out" in told
     assert not (tmp_path / "out.csv").exists()
+    text = changed("file: path.csv", f"file: {bag.relative_to(tmp_path)}")
+    found = check(write_case(tmp_path, text, urdf=TWO_JOINTS))
+    (note,) = motion_content(found.record.motions, "out.csv").notes
+    assert note.endswith("out.csv leaves it out")
 
 
 def test_a_joint_without_any_number_is_refused(tmp_path):
