@@ -6,9 +6,16 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from clearance.errors import BadSyntax
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.mesh.mesh_file import LoadedMesh, mesh_from_bytes
-from clearance.formats.mesh.triangles import UpAxis
+from clearance.formats.mesh.mesh_file import (
+    LoadedMesh,
+    mesh_from_bytes,
+    triangles_from_bytes,
+)
+from clearance.formats.mesh.triangles import UpAxis, scaled
 from clearance.tolerance import TESSELLATION
 
 if TYPE_CHECKING:
@@ -27,6 +34,7 @@ class MeshStore:
     def __init__(self, files: InputFiles) -> None:
         self.files = files
         self._loaded: dict[tuple[str, Scale, UpAxis, float], LoadedMesh] = {}
+        self._points: dict[tuple[str, Scale, UpAxis, float], np.ndarray] = {}
         self._clouds: dict[tuple[str, float, Scale, bool], LoadedCloud] = {}
 
     def load(
@@ -50,6 +58,26 @@ class MeshStore:
             shown = self.files.shown(path)
             self._loaded[key] = mesh_from_bytes(data, shown, scale, up_axis, tolerance)
         return self._loaded[key]
+
+    def points(self, path: Path, scale: Scale, up_axis: UpAxis, largest: float) -> np.ndarray:
+        """(n, 3) [m] corners of the surface in a mesh file, all of its hull among them; no solid is made of it.
+
+        Args:
+            largest: [bytes] a larger file is refused, unless it is loaded.
+
+        Raises:
+            BadInput: as `load`, or too large.
+        """
+        key = (os.path.abspath(path), scale, up_axis, TESSELLATION)
+        if key in self._loaded:
+            return self._loaded[key].shape.vertices
+        if key not in self._points:
+            data, shown = self.files.read(path), self.files.shown(path)
+            if len(data) > largest:
+                raise BadSyntax(f"{len(data):,} bytes", where=shown, valid=f"up to {largest:,}")
+            made = triangles_from_bytes(data, shown, up_axis)
+            self._points[key] = scaled(made, scale).vertices
+        return self._points[key]
 
     def load_points(
         self, path: Path, radius: float, scale: Scale, *, in_millimetres: bool = False

@@ -12,7 +12,7 @@ from clearance.world.notice import Severity
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
-from tests.formats.making import ARM, cube_stl, signed_volume
+from tests.formats.making import ARM, CUBE, CUBE_TRIANGLES, binary_stl, cube_stl, signed_volume
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_urdf import BOX, collision, joint, link, load_robot, robot
 
@@ -310,9 +310,38 @@ def test_visual_shapes_that_reach_far_out_of_the_collision_shapes_are_warned_of(
     for near in (
         _seen('<box size="0.2 0.2 0.2"/>', 0.0),
         _seen('<sphere radius="0.001"/>', 1.0),
-        _seen('<mesh filename="not_there.stl"/>', 0.0),
     ):
         assert warned(near) == []
+
+
+def test_visual_meshes_that_reach_far_out_of_the_collision_shapes_are_warned_of(
+    tmp_path, monkeypatch
+):
+    """The tube of a telescope arm, 0.2 m long, of which the collision mesh has the cap alone."""
+    large = binary_stl(CUBE[np.tile(CUBE_TRIANGLES, (2, 1))])
+    for name, data in {"cube": cube_stl(), "cut": cube_stl()[:-1], "large": large}.items():
+        (tmp_path / f"{name}.stl").write_bytes(data)
+    cap, tube, bead = (
+        f'"cube.stl" scale="{one}"' for one in ("0.1 0.1 0.1", "0.2 0.1 0.1", "0.02 0.02 0.02")
+    )
+
+    def read(mesh, x, asked="collision"):
+        arm = collision(f"<mesh filename={cap}/>") + _seen(f"<mesh filename={mesh}/>", x)
+        made = load_robot(tmp_path, robot(link(arm)), geometry=asked)
+        return [one.text for one in made.notices], made.notes
+
+    for asked in ("collision", "collision_or_visual"):
+        (text,), _ = read(tube, 0.1, asked)
+        assert "link 'a' by 0.15 m; add collision shapes" in text
+    for mesh, x in ((tube, 0.0), (bead, 0.3), (cap, 0.05)):
+        assert read(mesh, x) == ([], ())
+    monkeypatch.setattr("clearance.formats.robot.urdf.robot.LARGEST", len(cube_stl()))
+    for unreadable in ('"not_there.stl"', '"cut.stl"', '"large.stl"'):
+        texts, (note,) = read(unreadable, 0.0)
+        assert not texts
+        assert note == (
+            "arm.urdf: visual shapes that are not read, nor compared with the collision shapes: 'a'"
+        )
 
 
 def _seen(shape, x):

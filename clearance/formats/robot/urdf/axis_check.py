@@ -9,15 +9,13 @@ is `Z_UP`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from clearance.errors import ClearanceError
-from clearance.formats.mesh.mesh_file import triangles_from_bytes
 from clearance.formats.mesh.triangles import UpAxis
-from clearance.formats.robot.urdf.elements import pose_of
 from clearance.formats.robot.urdf.shapes import ShapeReader
 from clearance.world.body import Body
 from clearance.world.notice import Notice, Severity, listed
@@ -52,7 +50,7 @@ def axis_notices(
         name = link.get("name")
         if name not in boxes or not _has_tag(link, reader):
             continue
-        turn = _Turn(boxes[name], _bounds(link, reader.kind(link), reader, _other(reader)))
+        turn = _Turn(boxes[name], _bounds(link, reader.kind(link), reader, reader.other_axis))
         if turn.is_the_same:
             continue
         points = np.array([np.zeros(3), *below.get(name, [])])
@@ -103,13 +101,9 @@ def _notice(odd: list[str], what: str, so: str, otherwise: str, reader: ShapeRea
     count = "1 link" if len(odd) == 1 else f"{len(odd)} links"
     text = (
         f"CHECK AXES: the {what} of {count} lie {so} with robot: {{collada_up_axis: "
-        f"{reader.request.collada_up_axis}}} and {otherwise} with {_other(reader)}: {listed(odd, 6)}"
+        f"{reader.request.collada_up_axis}}} and {otherwise} with {reader.other_axis}: {listed(odd, 6)}"
     )
     return Notice(Severity.SUSPECT, "axis", text)
-
-
-def _other(reader: ShapeReader) -> UpAxis:
-    return "file" if reader.request.collada_up_axis == "ros" else "ros"
 
 
 def _has_tag(link: Element, reader: ShapeReader) -> bool:
@@ -135,25 +129,12 @@ def _picture_agrees_only_otherwise(link: Element, turn: _Turn, reader: ShapeRead
     try:
         if turn.agrees(turn.chosen, _bounds(link, kind, reader, reader.request.collada_up_axis)):
             return False
-        return turn.agrees(turn.other, _bounds(link, kind, reader, _other(reader)))
+        return turn.agrees(turn.other, _bounds(link, kind, reader, reader.other_axis))
     except ClearanceError:  # a picture that cannot be read is no reason to stop
         return False
 
 
 def _bounds(link: Element, kind: str, reader: ShapeReader, way: UpAxis) -> np.ndarray:
     """(2, 3) [m] the box of all of a link's elements of a kind, in its frame."""
-    points = np.concatenate(list(_points(link, kind, reader, way)))
-    return np.array([points.min(axis=0), points.max(axis=0)])
-
-
-def _points(link: Element, kind: str, reader: ShapeReader, way: UpAxis) -> Iterator[np.ndarray]:
-    for element in link.iterfind(kind):
-        mesh = element.find("geometry/mesh")
-        if mesh is None:
-            yield reader.shape(element)[0].vertices
-            continue
-        path, scale = reader.mesh_file(mesh)
-        files = reader.meshes.files
-        made = triangles_from_bytes(files.read(path), files.shown(path), way)
-        pose = pose_of(element)
-        yield (made.vertices[made.corners.ravel()] * scale) @ pose[:3, :3].T + pose[:3, 3]
+    boxes = np.array([reader.box(element, way) for element in link.iterfind(kind)])
+    return np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])

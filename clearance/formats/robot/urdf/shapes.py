@@ -5,12 +5,14 @@ Not for: which links and joints there are (`robot`).
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.formats.files.found_files import FoundFiles
+from clearance.formats.mesh.triangles import UpAxis
 from clearance.formats.mesh_store import MeshStore, Scale
 from clearance.formats.plausibility import scale_notices
 from clearance.formats.robot.request import RobotRequest
@@ -26,14 +28,24 @@ if TYPE_CHECKING:
 
 
 class ShapeReader:
-    """Makes shapes from elements, and keeps what is to be reported of their files."""
+    """Makes shapes from elements, and keeps what is to be reported of their files.
 
-    def __init__(self, request: RobotRequest, meshes: MeshStore) -> None:
+    Args:
+        largest: [bytes] files above it are not read for a box alone.
+    """
+
+    def __init__(self, request: RobotRequest, meshes: MeshStore, largest: float = math.inf) -> None:
         self.request = request
         self.meshes = meshes
+        self.largest = largest
         self._notes: list[tuple[str, str]] = []
         self._scales: dict[str, Scale] = {}
         self._found = FoundFiles()
+
+    @property
+    def other_axis(self) -> UpAxis:
+        """The reading of COLLADA and GLB that is not asked for."""
+        return "file" if self.request.collada_up_axis == "ros" else "ros"
 
     def kind(self, link: Element) -> str:
         """Which elements of a link are its shape."""
@@ -45,6 +57,23 @@ class ShapeReader:
         shape, origin = self._unmoved(element.find("geometry")[0])
         moved = element.find("origin") is not None
         return (shape.transformed(pose_of(element)) if moved else shape), origin
+
+    def box(self, element: Element, way: UpAxis) -> np.ndarray:
+        """(2, 3) [m] the box round a collision or visual element in its link's frame.
+
+        Args:
+            way: which way is up in COLLADA and GLB.
+
+        Raises:
+            BadInput: it cannot be read, or is a larger file than asked for.
+        """
+        mesh = element.find("geometry/mesh")
+        if mesh is None:
+            return self.shape(element)[0].bounds
+        path, scale = self.mesh_file(mesh)
+        pose = pose_of(element)
+        points = self.meshes.points(path, scale, way, self.largest) @ pose[:3, :3].T + pose[:3, 3]
+        return np.array([points.min(axis=0), points.max(axis=0)])
 
     def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
         """Where a mesh element's file lies, and its scale."""
