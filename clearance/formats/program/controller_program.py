@@ -7,7 +7,8 @@ seconds. Not for: names, loops and calls, which a language's reader resolves.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
@@ -154,6 +155,17 @@ class ControllerProgram:
     maker: str = "plain"
     left_out: tuple[str, ...] = ()
     skips_overlaps: bool = False
+
+    def names(self) -> Iterator[str]:
+        """The name of each move in reports: "LIN 14 → P23"; where a line is run again, with the time."""
+        times = Counter[str]()
+        for one in self.moves:
+            kind = one.kind.upper() if isinstance(one, ControllerMove) else "WAIT"
+            name = f"{kind} {one.line.file} {one.line.own or one.line.number}".replace("  ", " ")
+            times[name] += 1
+            again = f" ({times[name]})" if times[name] > 1 else ""
+            to = one.to.name if isinstance(one, ControllerMove) else ""
+            yield f"{name}{again} → {to}" if to else f"{name}{again}"
 
 
 @dataclass(frozen=True, eq=False)

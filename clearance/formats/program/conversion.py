@@ -167,7 +167,7 @@ class _Conversion:
         Raises:
             BadInput: with the line.
         """
-        tool, names = self.first_tool, _names(self.read)
+        tool, names = self.first_tool, self.read.names()
         for one, name in zip(self._stops.applied(self.read.moves), names, strict=True):
             place = str(one.line)
             if isinstance(one, ControllerMove) and one.uses_tool:
@@ -382,15 +382,3 @@ def _joint_speed(one: ControllerMove) -> dict[str, float]:
     if "joint_speed" in found and one.axis_acceleration is not None:
         found["joint_acceleration"] = one.axis_acceleration
     return found
-
-
-def _names(read: ControllerProgram) -> Iterator[str]:
-    """The name of each move in reports: "LIN 14 → P23"; where a line is run again, with the time."""
-    times = Counter[str]()
-    for one in read.moves:
-        kind = one.kind.upper() if isinstance(one, ControllerMove) else "WAIT"
-        name = f"{kind} {one.line.file} {one.line.own or one.line.number}".replace("  ", " ")
-        times[name] += 1
-        again = f" ({times[name]})" if times[name] > 1 else ""
-        to = one.to.name if isinstance(one, ControllerMove) else ""
-        yield f"{name}{again} → {to}" if to else f"{name}{again}"
