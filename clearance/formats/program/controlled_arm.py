@@ -249,6 +249,16 @@ class ControlledArm:
         row = np.array([[joints[joint.name] for joint in self.chain.masters]])
         return np.asarray(self.chain.frames(row)[0, -1] @ tool)
 
+    def off(
+        self, to: PoseTarget, joints: Mapping[str, float], tool: np.ndarray
+    ) -> tuple[float, float] | None:
+        """How far joints have the tool from a pose [m] and [rad]; None where only the cell says where that is."""
+        if self.root_from_base is None or to.unit:
+            return None
+        found = inverse(self.tool_at(joints, tool)) @ self.root_from_base @ to.pose
+        turn = float(np.arccos(np.clip(0.5 * np.trace(found[:3, :3]) - 0.5, -1.0, 1.0)))
+        return float(np.linalg.norm(found[:3, 3])), turn
+
     def base_from_flange(self, one: ControllerMove | None, unit: str = "") -> np.ndarray | None:
         """(4, 4) the flange at a move's end, seen from the base or a mechanical unit [m]; None if unknown."""
         if one is None or one.orientation == "constant":

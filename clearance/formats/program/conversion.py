@@ -181,16 +181,23 @@ class _Conversion:
         """The joints at the beginning, and whether they are but where the first move ends.
 
         Raises:
-            MissingKey: the first move ends at a pose, and nobody says where it begins.
+            MissingKey: the first move ends at a pose, without axes beside it that have the tool there, and nobody
+                says where it begins.
         """
         if given:
             return dict(given), False
-        first = self._moves[0]
+        first, far = self._moves[0], ""
         with at(str(first.line)):
             if first.kind == "ptp" and isinstance(first.to, AxisTarget):
                 return self.arm.axes.joints_of(first.to), True
+            if first.kind == "ptp" and first.to.near is not None:
+                joints = self.arm.axes.joints_of(AxisTarget(first.to.near, first.to.external))
+                off = self.arm.off(first.to, joints, first.tool)
+                if off is not None and _is_there(*off):
+                    return joints, True
+                far = f", and the axes beside it have the tool {_shown(*off)} from it" if off else ""
             raise MissingKey(
-                "the first move ends at a pose, and the joints at its beginning are unknown",
+                f"the first move ends at a pose{far}, and the joints at its beginning are unknown",
                 valid="trajectory: {program: …, start_state: {joint: …}}",
             )
 
@@ -241,22 +248,18 @@ class _Conversion:
         self, place: str, to: PoseTarget, joints: Mapping[str, float], tool: np.ndarray
     ) -> None:
         """Keeps how far a pose is from where the axes beside it have the tool; too far, they are a seed alone."""
-        if self.arm.root_from_base is None or to.unit:
+        off = self.arm.off(to, joints, tool)
+        if off is None:
             return
-        off = inverse(self.arm.tool_at(joints, tool)) @ self.arm.root_from_base @ to.pose
-        way, turn = (
-            float(np.linalg.norm(off[:3, 3])),
-            float(np.arccos(np.clip(0.5 * np.trace(off[:3, :3]) - 0.5, -1.0, 1.0))),
-        )
-        if way > FARTHEST_OFF or turn > MOST_TURNED:
-            text = f"{place}: the axes beside {to.name or 'its pose'} have the tool {way * 1e3:.4g} mm and "
-            text += f"{np.degrees(turn):.3g} degrees from it"
+        if not _is_there(*off):
+            way, turn = off
+            text = f"{place}: the axes beside {to.name or 'its pose'} have the tool {_shown(*off)} from it"
             if (way > FAR_OFF or turn > FAR_TURNED) and self._ends_by_axes[to.near] == 1:
                 self.far_off.append(f"{text}, and no point confirms axes, base, link and tools")
             else:
                 self.seeds.append(f"{text}: they are taken for a seed, and confirm no axes or base")
             return
-        self.compared = max(self.compared, (way, turn))
+        self.compared = max(self.compared, off)
 
     def _path_move(self, one: ControllerMove) -> dict[str, Any]:
         given = {
@@ -372,6 +375,15 @@ class _Conversion:
                     text = f"a point {away:.3g} m away"
                     raise BadProgram(text, where=str(one.line), valid=f"{FARTHEST:g} m or less")
         return found
+
+
+def _is_there(way: float, turn: float) -> bool:
+    """True where axes [m] and [rad] off a pose are taken for its own."""
+    return way <= FARTHEST_OFF and turn <= MOST_TURNED
+
+
+def _shown(way: float, turn: float) -> str:
+    return f"{round(way * 1e3, 3):.4g} mm and {np.degrees(turn):.3g} degrees"
 
 
 def _joint_speed(one: ControllerMove) -> dict[str, float]:

@@ -150,6 +150,26 @@ def test_the_start_is_the_first_target_of_axes_and_its_way_in_is_unknown():
     assert not made(HOME, start=start).starts_anywhere
 
 
+def test_a_first_pose_begins_at_the_axes_beside_it_if_these_have_the_tool_there():
+    one, near = arm("heron6"), (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    tool = at(0.0, 0.05, 0.1)
+    there = one.poses(np.array([near]))[0] @ np.linalg.inv(one.link_from_tool) @ tool
+    asked = {"base": {"on": "base"}, "axes_as": "plain"}
+    first = replace(HOME, to=PoseTarget(at(0.0, 0.0, 0.009) @ there, near=near), tool=tool)
+    found = made(first, HOME, **asked)
+    assert list(found.program.start.values()) == list(near) and found.starts_anywhere
+    assert any("agree with the robot within 9 mm and 0 degrees" in note for note in found.notes)
+    turned = there @ pose_from_rpy([0.0, 0.0, 0.0], [0.0, 0.0, 0.04])
+    for pose, told in ((at(0.0, 0.0, 0.011) @ there, "11 mm and 0"), (turned, "0 mm and 2.29")):
+        far = replace(first, to=PoseTarget(pose, near=near))
+        match = f"ends at a pose, and the axes beside it have the tool .*{told} degrees from it"
+        with pytest.raises(cl.ClearanceError, match=match):
+            made(far, HOME, **asked)
+    line = replace(first, kind="lin")
+    with pytest.raises(cl.ClearanceError, match="ends at a pose, and the joints at its beg"):
+        made(line, HOME, **asked)
+
+
 def test_another_tool_is_a_move_of_its_own():
     other = replace(POSE, tool=at(0.0, 0.0, 0.2), line=Line(9))
     found = made(HOME, POSE, other, HOME, other)
