@@ -64,8 +64,14 @@ class Effects:
                 if call.name in self.routines:
                     inner = self.routines[call.name].body
                     yield from self.deciding(inner, (*entered, call.name))
-                elif self.language.moves(call.name) is not False:
+                elif self._may_move(call, entered):
                     yield f"{call.name} at {one.line}"
+
+    def _may_move(self, call: Call, entered: tuple[str, ...]) -> bool:
+        """Whether an instruction may move the robot, by what it has run beside the program too."""
+        if name := self.language.beside(call):
+            return name not in entered and self.culprit_in(name, entered) is not None
+        return self.language.moves(call.name) is not False
 
     def leaves_out(self, one: Unreadable) -> bool:
         """True if a statement is left out as asked; one that decides which lines run never is."""
@@ -75,7 +81,7 @@ class Effects:
         """The calls in a body that move the robot or change how it moves, or may do so."""
         for call in self._calls_in(body, entered):
             own = call.name in self.routines or call.name in self.skip
-            if not own and self.language.moves(call.name) is not False:
+            if not own and self._may_move(call, entered):
                 yield call
 
     def waiting(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
@@ -100,6 +106,17 @@ class Effects:
     def _calls_in(self, body: tuple[Statement, ...], entered: tuple[str, ...]) -> Iterator[Call]:
         return (call for one in self._run_in(body, entered) for call in _calls_of(one))
 
+    def beside_in(
+        self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()
+    ) -> Iterator[tuple[str, str]]:
+        """What in bodies has a routine run beside the program, and that one's name; in what is left out too."""
+        ones = (one for body in bodies for one in within(body))
+        for name, call in ((call.name, call) for one in ones for call in _calls_of(one)):
+            if other := self.language.beside(call):
+                yield name, other
+            elif name in self.routines and name not in entered:
+                yield from self.beside_in([self.routines[name].body], (*entered, name))
+
     def moving_in(self, name: str) -> str | None:
         """Where an instruction or a routine moves the robot; None where it does not, or nobody knows."""
         if name not in self.routines:
@@ -116,16 +133,19 @@ class Effects:
             found |= {f"{call.line}: {text}": None for call in islice(self.moving(body), 1)}
         return found
 
+    def culprit_in(self, name: str, entered: tuple[str, ...] = ()) -> str | None:
+        """What in a routine that runs beside the program moves the robot, or may, in words; None if nothing does."""
+        if name in self.routines:
+            return next(self.deciding(self.routines[name].body, (*entered, name)), None)
+        return None if name in self.skip else "it is in no file that is given"
+
     def require_still(self, what: str, name: str) -> None:
         """Nothing, if nothing in a routine that runs beside the program moves the robot.
 
         Raises:
             BadProgram: something does, or may.
         """
-        if name in self.routines:
-            culprit = next(self.deciding(self.routines[name].body, (name,)), None)
-        else:
-            culprit = None if name in self.skip else "it is in no file that is given"
+        culprit = self.culprit_in(name)
         if culprit is not None:
             fault = f"{what} {name!r} moves the robot, or may: {culprit}"
             raise BadProgram(fault, valid="call one that moves nothing")
@@ -164,6 +184,9 @@ class Effects:
                 elif call.name not in entered:
                     targets += given_back(self.routines[call.name], call)
                     yield from self.changed_by(self.routines[call.name], (*entered, call.name))
+                other = self.language.beside(call)
+                if other in self.routines and other not in entered:
+                    yield from self.changed_by(self.routines[other], (*entered, other))
             for name in (assigned(target) for target in targets):
                 if name is not None:
                     yield name.name, one.line
@@ -305,6 +328,12 @@ def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
     elif may_be_left_out:
         valid = f"{valid}, or write skip: [{one.word}] if it does not"
     return BadProgram(f"{one.word!r} is not understood, and {does}", valid=valid)
+
+
+def undecided_branch(one: If, culprit: str, why: Unknown) -> BadProgram:
+    """The error for a branch that moves the robot, or may, and that only the controller decides."""
+    fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
+    return BadProgram(fault, valid="let the file decide it")
 
 
 def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:

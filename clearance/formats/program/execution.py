@@ -7,7 +7,7 @@ refused with its line; what moves nothing may be left out. Not for: what instruc
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -20,6 +20,7 @@ from clearance.formats.program.effects import (
     arguments_of,
     range_of,
     undecided,
+    undecided_branch,
     unknown_word,
     unreadable_word,
     value_after,
@@ -265,10 +266,16 @@ class Execution(Remarks):
         for name, line in changed:
             self._place(name)[name] = Unknown(f"{name!r} is given a value{by} at {line}")
 
+    def _forget_changed(self, bodies: Sequence[tuple[Statement, ...]], by: str = "") -> None:
+        """Makes variables unknown that bodies may have changed, or have changed at any time from then on."""
+        self._forget(self.effects.changed_in(bodies), by)
+        for what, name in self.effects.beside_in(bodies):
+            self.run_concurrently(what, name)
+
     def _leave_out(self, call: Call) -> None:
         """Keeps that a call is left out, and makes variables unknown that it may have changed."""
         self.note(LEFT_OUT, f"{call.name} ({call.line})")
-        self._forget(self.effects.changed_in([(Do(call.line, call),)]), f" by {call.name}")
+        self._forget_changed([(Do(call.line, call),)], f" by {call.name}")
 
     def enter(self, routine: Routine) -> None:
         """Runs a routine that takes no arguments."""
@@ -333,12 +340,11 @@ class Execution(Remarks):
         bodies = [body for _, body in one.branches]
         culprit = next((found for body in bodies for found in self.effects.deciding(body)), None)
         if culprit is not None:
-            fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
-            raise BadProgram(fault, valid="let the file decide it")
+            raise undecided_branch(one, culprit, why)
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         for waiting in self.effects.waiting(bodies):
             self.note(WAITS, waiting)
-        self._forget(self.effects.changed_in(bodies))
+        self._forget_changed(bodies)
 
     def _while(self, one: While) -> Leave | None:
         n_passes, passes = 0, Passes("an endless loop", MOST_PASSES)
@@ -368,7 +374,7 @@ class Execution(Remarks):
         if culprit is not None or one.word not in self.skip:
             raise undecided(one, culprit, value)
         self.note(LEFT_OUT, f"{one.word} ({one.line})")
-        self._forget(self.effects.changed_in([one.body]))
+        self._forget_changed([one.body])
         return False
 
     def _for(self, one: For) -> Leave | None:

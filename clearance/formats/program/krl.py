@@ -26,7 +26,7 @@ from clearance.formats.program.controller_program import (
     Target,
 )
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Expression, Name, Unknown
+from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown
 from clearance.formats.program.krl_expressions import (
     AGGREGATE,
     FRAME,
@@ -138,6 +138,12 @@ class _Krl(Language):
         """Where the robot is."""
         return (None if self.pose is None else self.pose.tolist(), self.unit, self.axes)
 
+    def beside(self, call: Call) -> str:
+        """What an interrupt or a trigger calls; nothing where that is known to move nothing."""
+        (one,) = call.args if call.name in QUIET and call.args else (Constant(""),)
+        assert isinstance(one, Constant)
+        return "" if one.value == SYSTEM else one.value
+
     def writes(self, call: Call) -> tuple[Expression, ...]:
         """All arguments of a procedure that is in no file; instructions change no variables that are read."""
         return call.args if self.moves(call.name) is None else ()
@@ -189,10 +195,10 @@ class _Krl(Language):
         elif call.name == SPLINE:
             raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
         elif call.args:  # an interrupt or a trigger, and what it calls
-            (called,) = (run.evaluated(one) for one in call.args)
-            if called != SYSTEM:
+            if called := self.beside(call):
                 run.run_concurrently(call.name, called)
-            run.note("interrupts and triggers that move nothing", f"{called} ({call.line})")
+            what = "interrupts and triggers that move nothing"
+            run.note(what, f"{called or SYSTEM} ({call.line})")
         else:
             run.pass_over(call)
 

@@ -52,6 +52,10 @@ class Language:
         """Whether an instruction or a function takes a time that counts."""
         return call.name in self.timed
 
+    def beside(self, call: Call) -> str:
+        """The routine that an instruction has run beside the program from then on; empty where it has none."""
+        return ""
+
     def writes(self, call: Call) -> Iterable[Expression]:
         """The arguments of an instruction or a function that it gives a value."""
         return ()

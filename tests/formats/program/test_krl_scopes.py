@@ -8,6 +8,7 @@ import clearance as cl
 from tests.formats.program.reading import read
 
 FRAMES = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\n"
+HOME = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 45,A6 0}"
 
 
 def at(y: object) -> str:
@@ -136,3 +137,21 @@ def test_a_variable_that_is_imported_is_not_known():
     ):
         heights(f"{FRAMES}b()", b_src=b, b_dat=own, config_dat=of_all)
     assert heights(f"{FRAMES}b()\nLIN {at('m')}", b_src=b, config_dat=of_all) == [300, 300]
+
+
+def test_an_interrupt_in_a_branch_that_only_the_controller_decides_is_followed():
+    """Its routine moves nothing, changes variables at any time, and is asked in what is left out too."""
+    for declared in ("INTERRUPT DECL 9 WHEN $IN[2] DO c()", "GLOBAL INTERRUPT DECL 9 WHEN $IN[2] DO d()"):
+        routine = "DEF c()\nPTP {A1 9}\nEND\nDEF d()\nINTERRUPT DECL 8 WHEN $IN[3] DO c()\nEND\n"
+        branch = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\n{HOME}\nEND\n{routine}"
+        with pytest.raises(cl.ClearanceError, match="line 2: IF decides on INTERRUPT at line 3"):
+            read("a.src", branch)
+        skipped = f"DEF a()\nb()\n{HOME}\nEND\nDEF b()\n{declared}\nEND\n{routine}"
+        with pytest.raises(cl.ClearanceError, match="line 2: INTERRUPT '[CD]' moves the robot, or may"):
+            read("a.src", skipped, skip=["b"])
+    text = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\nn=1\n{HOME}\nPTP {{A1 n,A2 0,A3 0,A4 0,A5 0,A6 0}}\nEND\nDEF d()\nn=2\nEND\n"
+    with pytest.raises(cl.ClearanceError, match="INTERRUPT 'D' may change it at any time"):
+        read("a.src", text)
+    assert len(read("a.src", text.replace("\nn=2", "\nm=2")).moves) == 2
+    itself = f"DEF a()\n{declared}\n{HOME}\nEND\nDEF d()\n{declared}\nEND\n"
+    assert len(read("a.src", itself).moves) == 1
