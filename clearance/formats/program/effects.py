@@ -135,9 +135,12 @@ class Effects:
 
     def culprit_in(self, name: str, entered: tuple[str, ...] = ()) -> str | None:
         """What in a routine that runs beside the program moves the robot, or may, in words; None if nothing does."""
-        if name in self.routines:
-            return next(self.deciding(self.routines[name].body, (*entered, name)), None)
-        return None if name in self.skip else "it is in no file that is given"
+        body = self.routines[name].body if name in self.routines else ()
+        if name in self.skip:  # what it calls was asked before
+            jumps = (one for one in within(body) if isinstance(one, Unreadable) and one.jumps)
+            return next((f"{one.word} at {one.line}" for one in jumps), None)
+        found = next(self.deciding(body, (*entered, name)), None)
+        return found if name in self.routines else "it is in no file that is given"
 
     def require_still(self, what: str, name: str) -> None:
         """Nothing, if nothing in a routine that runs beside the program moves the robot.
@@ -149,6 +152,12 @@ class Effects:
         if culprit is not None:
             fault = f"{what} {name!r} moves the robot, or may: {culprit}"
             raise BadProgram(fault, valid="call one that moves nothing")
+
+    def doubts_on_stops(self, what: str, name: str) -> dict[str, None]:
+        """A line on what in a routine that runs beside the program stops the robot on its way."""
+        stops = (call for call in self.calls_of(name) if call.name in self.language.stopping)
+        text = f"of {what} {name} may stop the robot: it is taken to go on along its way"
+        return {f"{call.name} ({call.line}) {text}": None for call in islice(stops, 1)}
 
     def calls_of(self, name: str) -> Iterator[Call]:
         """The calls in a routine, and in those that it calls."""

@@ -113,6 +113,9 @@ class Execution(Remarks):
     def run_concurrently(self, what: str, name: str) -> None:
         """Keeps that a routine runs beside the program: it moves nothing, and what it changes is not known."""
         self.effects.require_still(what, name)
+        self.doubts |= self.effects.doubts_on_stops(what, name)
+        if name in self.skip:
+            self.note(LEFT_OUT, f"{name} ({self.line})")
         self.concurrent |= self.effects.changed_concurrently(what, name)
         for call in self.effects.calls_of(name):
             if call.name in self.language.retiming:

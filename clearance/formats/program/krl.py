@@ -34,6 +34,7 @@ from clearance.formats.program.krl_expressions import (
     MM,
     MOVES,
     OF,
+    PAUSES,
     QUIET,
     SPLINE,
     SYSTEM,
@@ -126,7 +127,8 @@ class _Krl(Language):
     maker, suffix = "kuka", ".src"
     moving = frozenset((*MOVES, SPLINE, "BAS"))
     still = frozenset((*QUIET, *FUNCTIONS, AGGREGATE, WAIT))
-    timed = retiming = (WAIT,)
+    timed = retiming = (WAIT, *PAUSES)
+    stopping = ("BRAKE",)
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""
@@ -194,6 +196,9 @@ class _Krl(Language):
             Settings(run, call.line).bas(command, value[0] if value else 0)
         elif call.name == SPLINE:
             raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
+        elif call.name == "BRAKE":
+            fault = "BRAKE stands outside of what an interrupt calls"
+            raise BadProgram(fault, valid="BRAKE in a procedure that an interrupt calls")
         elif call.args:  # an interrupt or a trigger, and what it calls
             if called := self.beside(call):
                 run.run_concurrently(call.name, called)

@@ -110,8 +110,11 @@ MOVES = {
 WAIT, SPLINE = "WAIT SEC", "SPLINE"
 """Calls that stand for a wait, and for a spline, which is not read."""
 
+PAUSES = ("HALT", "BRAKE")
+"""Instructions that stop the robot on its way, until it goes on along it: at a key, or at an interrupt's end."""
+
 QUIET = frozenset(
-    "INTERRUPT TRIGGER PULSE ANOUT ANIN DIGIN SIGNAL EXT EXTFCT EXTP EXTFCTP STRUC ENUM IMPORT $OUT "
+    "HALT BRAKE INTERRUPT TRIGGER PULSE ANOUT ANIN DIGIN SIGNAL EXT EXTFCT EXTP EXTFCTP STRUC ENUM IMPORT $OUT "
     "SET_CD_PARAMS MSGNOTIFY MSGQUIT ERR_CLEAR ON_ERROR_PROCEED".split()
 )
 """Instructions that move nothing, whatever stands behind them."""

@@ -52,7 +52,7 @@ from clearance.formats.program.statements import (
 )
 from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token, text_of, tokens_of
 
-_JUMPS = ("RETURN", "EXIT", "GOTO", "BRAKE", "RESUME")  # decide which lines run
+_JUMPS = ("RETURN", "EXIT", "GOTO", "RESUME")  # decide which lines run
 
 _BLOCKS = ("IF", "SWITCH", "WHILE", "FOR", "REPEAT", "LOOP", SPLINE, "PTP_SPLINE")
 
@@ -211,8 +211,8 @@ class _Reader(BlockReader):
             cursor.take()
             value = read.expression() if cursor.next.kind != NEWLINE else None
             return [Leave(line, word, RETURN if word == "RETURN" else BREAK, value)]
-        if word in (*_JUMPS, "HALT"):
-            return [Unreadable(line, word, word != "HALT")]
+        if word in _JUMPS:
+            return [Unreadable(line, word, True)]
         if word == "WAIT":
             return [self._wait(line, read)]
         if word in MOVES:

@@ -22,6 +22,7 @@ class Language:
         moving, still: words that decide where the robot goes, and those that do not.
         timed: words that take a time that counts; their file may not say how long.
         retiming: words that change how long moves take also from a thread, a trap or an interrupt.
+        stopping: words that stop the robot on its way; it goes on along it.
         keeps_counter: a loop counts by the value of its variable, and leaves it at the last one; elsewhere it is
             not known behind the loop.
         shares_variables: a routine has none of its own, but for its parameters.
@@ -34,6 +35,7 @@ class Language:
     still: Collection[str] = ()
     timed: Collection[str] = ()
     retiming: Collection[str] = ()
+    stopping: Collection[str] = ()
     keeps_counter = shares_variables = skips_overlaps = False
     values: Mapping[str, Callable[..., Any]] = {}
 

@@ -51,7 +51,7 @@ from clearance.formats.program.rapid_data import (
 from clearance.formats.program.rapid_moves import name_of, on_cycles, require_plain, with_zones
 from clearance.formats.program.rapid_text import FIRST, Declaration, Modules
 from clearance.formats.program.rapid_words import GRAMMAR, MOVES, MoveRule
-from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID
+from clearance.formats.program.remarks import NOT_FOLLOWED, UNSAID
 from clearance.formats.program.remarks import WAITS as TAKES_TIME
 from clearance.formats.program.statements import assigned
 from clearance.formats.program.tokens import on, text_of
@@ -109,6 +109,7 @@ class Rapid(Language):
     still = frozenset(words.WORDS.values())
     timed = words.WAITS | words.PAUSES
     retiming = words.LIMITS | words.WAITS | words.PAUSES | {"VelSet"}
+    stopping = ("StopMove",)
     values = VALUES
 
     @property
@@ -283,8 +284,6 @@ class Rapid(Language):
         named = [one for one in self.modules.routines if one.lower().rpartition(".")[2] == own]
         for one in named or [GRAMMAR.folded(own)]:
             run.run_concurrently("procedure", one)
-            if one in run.skip:
-                run.note(LEFT_OUT, f"{one} ({call.line})")
         run.note("procedures that moves call at their end and that move nothing", name)
 
     def _made(

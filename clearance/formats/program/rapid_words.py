@@ -46,7 +46,7 @@ MOVES = {
 OTHER_MOVES = frozenset(
     "MoveExtJ SearchL SearchC SearchExtJ SpotL SpotJ PaintL PaintC PDispOn PDispSet EOffsOn EOffsSet CorrCon "
     "CorrWrite IndAMove IndRMove IndDMove IndCMove EGMRunJoint EGMRunPose EGMMoveL EGMMoveC SoftAct "
-    "StepBwdPath StartMove RestoPath WaitWObj ContactL DispL DispC LaserL PathRecMoveBwd "
+    "StepBwdPath ClearPath RestoPath WaitWObj ContactL DispL DispC LaserL PathRecMoveBwd "
     "PathRecMoveFwd MToolTCPCalib CONNECT SingArea CirPathMode".split()
 )
 """Instructions that move the robot otherwise, or change where moves go."""
@@ -62,8 +62,8 @@ STILL = frozenset(
     "ISleep IEnable IDisable IError IPers Incr Decr Add Clear TriggIO TriggEquip TriggInt TriggRampAO "
     "TriggCheckIO Open Close Write ErrWrite ErrLog BookErrNo PathAccLim MotionSup ActUnit DeactUnit "
     "SyncMoveOn SyncMoveOff EOffsOff PDispOff IOEnable IODisable Load UnLoad StartLoad SocketCreate SocketConnect "
-    "SocketSend SocketClose SocketListen SocketBind SocketAccept StopMove StorePath WorldAccLim "
-    "ClearPath SetSysData SoftDeact TuneServo TuneReset SpyStart SpyStop WriteStrBin WriteBin Rewind "
+    "SocketSend SocketClose SocketListen SocketBind SocketAccept StopMove StartMove StorePath WorldAccLim "
+    "SetSysData SoftDeact TuneServo TuneReset SpyStart SpyStop WriteStrBin WriteBin Rewind "
     "ClearIOBuff LoadId SystemStopAction TextTabInstall RMQEmptyQueue ArcRefresh "
     "SetAllDataVal".split()
 )

@@ -294,7 +294,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "grip()",
             "line 7: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.src]}",
         ),
-        ("HALT", "line 7: 'HALT' is not understood"),
+        ("BRAKE", "line 7: BRAKE stands outside of what an interrupt calls"),
         ("n=SQRT(-1)", "line 7: SQRT is given data of another kind"),
         ("n=STOOL2()", "line 7: STOOL2 is given data of another kind"),
         ("FOR n={X 1} TO 3\nENDFOR", "line 7: the range of 'N' is {'X': 1.0}; a number"),
@@ -452,10 +452,10 @@ ENDDAT
 WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
 
 
-@pytest.mark.parametrize("body", ["GOTO over", "BRAKE", "IF $IN[1] THEN\nGOTO over\nENDIF"])
+@pytest.mark.parametrize("body", ["GOTO over", "RESUME", "IF $IN[1] THEN\nGOTO over\nENDIF"])
 def test_what_decides_which_lines_run_is_never_left_out(body):
     with pytest.raises(cl.ClearanceError, match=r"line [78]") as caught:
-        program(f"{body}\nPTP XHOME\nover:", skip=["GOTO", "BRAKE"])
+        program(f"{body}\nPTP XHOME\nover:", skip=["GOTO", "RESUME"])
     assert "skip" not in str(caught.value)
 
 
@@ -464,13 +464,31 @@ def test_what_decides_which_lines_run_is_never_left_out(body):
 )
 def test_what_runs_beside_the_program_moves_nothing(body):
     beside = "END\nDEF away()\nBRAKE\nLIN XP1\nEND\nDEF lamp()\n$OUT[1]=TRUE\n"
-    for name, told in (("away", "BRAKE at line 11"), ("off", "it is in no file that is given")):
+    for name, told in (("away", "LIN at line 12"), ("off", "it is in no file that is given")):
         with pytest.raises(cl.ClearanceError, match=f"line 7: .* or may: {told}"):
             program(f"{body} {name}()\nPTP XHOME\n{beside}")
     found = program(f"{body} lamp()\n{body} IR_STOPM()\nPTP XHOME\n{beside}")
     assert len(found.moves) == 1 and any(
         "LAMP (line 7), IR_STOPM (line 8)" in x for x in found.notes
     )
+
+
+def test_an_interrupt_that_brakes_stops_the_robot_on_its_way_and_is_told():
+    body = "INTERRUPT DECL 20 WHEN $IN[20]==FALSE DO paro()\nPTP XHOME\nEND\nDEF paro()\n"
+    stop = "BRAKE (line 11) of INTERRUPT PARO may stop the robot: it is taken to go on along its way"
+    found = program(f"{body}BRAKE F\nHALT\nINTERRUPT ON 20")
+    assert len(found.moves) == 1 and found.doubts == (stop,)
+    assert found.left_out == ("BRAKE (line 11) in INTERRUPT PARO", "HALT (line 12) in INTERRUPT PARO")
+    unknown = f"{body}BRAKE\nlights()"
+    with pytest.raises(cl.ClearanceError, match="INTERRUPT 'PARO' moves.* LIGHTS at line 12"):
+        program(unknown)
+    for name in ("PARO", "lights"):
+        found = program(unknown, skip=[name])
+        assert len(found.moves) == 1 and found.doubts == (stop,)
+    assert "PARO (line 7)" in program(unknown, skip=["PARO"]).left_out
+    for last, told in (("RESUME", "or may: RESUME at line 12"), ("LIN XP1", "skip: PARO moves")):
+        with pytest.raises(cl.ClearanceError, match=told):
+            program(f"{body}BRAKE\n{last}", skip=["PARO"])
 
 
 @pytest.mark.parametrize("line", ["FIND(XP1)", "N=FIND(1,XP1)", "XP1=A(1) WHATEVER"])

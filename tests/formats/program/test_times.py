@@ -146,6 +146,7 @@ UR_MOVE, RAPID_MOVE, FANUC_MOVE = (
         (lambda: krl("$OV_APPL=20", f"LIN {AWAY} WITH $VEL.CP=1.0"), ["what $OV_APPL (line 5) sets"]),
         (lambda: krl(f"LIN {AWAY}"), ["the speed of line 5"]),
         (lambda: krl(f"LIN {AWAY} WITH $VEL.CP=1.0", "HALT", skip=["HALT"]), ["HALT (line 6)"]),
+        (lambda: krl(f"LIN {AWAY} WITH $VEL.CP=1.0", "HALT"), ["HALT (line 6)"]),
     ],
 )  # fmt: skip
 def test_what_takes_a_time_that_no_file_says_is_named(program, lacks):
