@@ -29,7 +29,6 @@ from clearance.formats.program.stops import Stops
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
-from clearance.geometry.pose import inverse
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
 
@@ -188,14 +187,17 @@ class _Conversion:
             return dict(given), False
         first, far = self._moves[0], ""
         with at(str(first.line)):
-            if first.kind == "ptp" and isinstance(first.to, AxisTarget):
-                return self.arm.axes.joints_of(first.to), True
-            if first.kind == "ptp" and first.to.near is not None:
-                joints = self.arm.axes.joints_of(AxisTarget(first.to.near, first.to.external))
-                off = self.arm.off(first.to, joints, first.tool)
+            to = first.to
+            if first.kind == "ptp" and isinstance(to, AxisTarget):
+                return self.arm.axes.joints_of(to), True
+            if first.kind == "ptp" and isinstance(to, PoseTarget) and to.near is not None:
+                joints = self.arm.axes.joints_of(AxisTarget(to.near, to.external))
+                off = self.arm.off(to, joints, first.tool)
                 if off is not None and _is_there(*off):
                     return joints, True
-                far = f", and the axes beside it have the tool {_shown(*off)} from it" if off else ""
+                far = (
+                    f", and the axes beside it have the tool {_shown(*off)} from it" if off else ""
+                )
             raise MissingKey(
                 f"the first move ends at a pose{far}, and the joints at its beginning are unknown",
                 valid="trajectory: {program: …, start_state: {joint: …}}",

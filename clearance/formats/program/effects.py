@@ -13,6 +13,7 @@ from itertools import islice
 from typing import Any
 
 from clearance.errors import BadProgram
+from clearance.formats.program.culprits import Culprit, way_past
 from clearance.formats.program.expressions import (
     Call,
     Expression,
@@ -52,26 +53,33 @@ class Effects:
     routines: Mapping[str, Routine]
     skip: frozenset[str]
 
-    def deciding(self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()) -> Iterator[str]:
-        """What in a body moves the robot, leaves the body, or may do so, in words."""
+    def deciding(
+        self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()
+    ) -> Iterator[Culprit]:
+        """What in a body moves the robot, leaves the body, or may do so."""
         for one in within(body):
             leaves = isinstance(one, Leave) and one.what != STOP and not entered
             if leaves or (isinstance(one, Unreadable) and not self.leaves_out(one)):
-                yield f"{one.word} at {one.line}"  # type: ignore[union-attr]
+                yield Culprit(f"{one.word} at {one.line}")  # type: ignore[union-attr]
             for call in _calls_of(one):
                 if call.name in self.skip or call.name in entered:
                     continue
                 if call.name in self.routines:
                     inner = self.routines[call.name].body
                     yield from self.deciding(inner, (*entered, call.name))
-                elif self._may_move(call, entered):
-                    yield f"{call.name} at {one.line}"
+                elif culprit := self._culprit(call, one.line, entered):
+                    yield culprit
 
-    def _may_move(self, call: Call, entered: tuple[str, ...]) -> bool:
-        """Whether an instruction may move the robot, by what it has run beside the program too."""
+    def _culprit(self, call: Call, line: Line, entered: tuple[str, ...]) -> Culprit | None:
+        """An instruction that may move the robot, by what it has run beside the program too; None if not."""
+        text = f"{call.name} at {line}"
         if name := self.language.beside(call):
-            return name not in entered and self.culprit_in(name, entered) is not None
-        return self.language.moves(call.name) is not False
+            found = None if name in entered else self.culprit_in(name, entered)
+            return None if found is None else found._replace(text=text)
+        moves = self.language.moves(call.name)
+        if moves is False or self.language.initialises(call):
+            return None
+        return Culprit(text, "" if moves else call.name)
 
     def leaves_out(self, one: Unreadable) -> bool:
         """True if a statement is left out as asked; one that decides which lines run never is."""
@@ -81,7 +89,7 @@ class Effects:
         """The calls in a body that move the robot or change how it moves, or may do so."""
         for call in self._calls_in(body, entered):
             own = call.name in self.routines or call.name in self.skip
-            if not own and self._may_move(call, entered):
+            if not own and self._culprit(call, call.line, entered):
                 yield call
 
     def waiting(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
@@ -133,14 +141,16 @@ class Effects:
             found |= {f"{call.line}: {text}": None for call in islice(self.moving(body), 1)}
         return found
 
-    def culprit_in(self, name: str, entered: tuple[str, ...] = ()) -> str | None:
-        """What in a routine that runs beside the program moves the robot, or may, in words; None if nothing does."""
+    def culprit_in(self, name: str, entered: tuple[str, ...] = ()) -> Culprit | None:
+        """What in a routine that runs beside the program moves the robot, or may; None if nothing does."""
         body = self.routines[name].body if name in self.routines else ()
         if name in self.skip:  # what it calls was asked before
             jumps = (one for one in within(body) if isinstance(one, Unreadable) and one.jumps)
-            return next((f"{one.word} at {one.line}" for one in jumps), None)
+            return next((Culprit(f"{one.word} at {one.line}") for one in jumps), None)
         found = next(self.deciding(body, (*entered, name)), None)
-        return found if name in self.routines else "it is in no file that is given"
+        if name in self.routines or name in self.language.packages:
+            return found
+        return Culprit("it is in no file that is given", name)
 
     def require_still(self, what: str, name: str) -> None:
         """Nothing, if nothing in a routine that runs beside the program moves the robot.
@@ -151,7 +161,22 @@ class Effects:
         culprit = self.culprit_in(name)
         if culprit is not None:
             fault = f"{what} {name!r} moves the robot, or may: {culprit}"
-            raise BadProgram(fault, valid="call one that moves nothing")
+            valid = way_past([culprit], self.language.suffix) or "call one that moves nothing"
+            raise BadProgram(fault, valid=valid)
+
+    def doubts_on_packages(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
+        """A line on packages that are in no file and that bodies call, if there are any."""
+        calls = (call for body in bodies for one in within(body) for call in _calls_of(one))
+        packages, first = (
+            {*self.language.packages} - {*self.routines} - self.skip,
+            dict[str, Line](),
+        )
+        for name, line in ((self.language.beside(call) or call.name, call.line) for call in calls):
+            if name in packages:
+                first.setdefault(name, line)
+        if found := [f"{name} ({line})" for name, line in first.items()]:
+            text = "packages that are in no file are taken to move nothing, and to set neither tool nor"
+            yield f"{text} base: {listed(found, 6)}"
 
     def doubts_on_stops(self, what: str, name: str) -> dict[str, None]:
         """A line on what in a routine that runs beside the program stops the robot on its way."""
@@ -314,20 +339,6 @@ def _calls_of(one: Statement) -> Iterator[Call]:
         yield from calls_in(part)
 
 
-def unknown_word(name: str, suffix: str, moves: bool | None = None) -> BadProgram:
-    """The error for an instruction or a function that may do anything, or that moves and has no value.
-
-    Args:
-        suffix: of the file that may have it.
-    """
-    if moves:
-        fault = f"{name} moves the robot, and has no value"
-        return BadProgram(fault, valid="write the move as a statement of its own")
-    file = f"program: {{beside: [{name}{suffix}]}}" if suffix else "a file beside that has it"
-    valid = f"{file}, or skip: [{name}] if it neither moves nor sets tool or frame"
-    return BadProgram(f"{name!r} is no known instruction, and may move the robot", valid=valid)
-
-
 def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
     """The error for a statement that may do anything."""
     does = "decides which lines run" if one.jumps else "may decide where the robot goes"
@@ -339,13 +350,7 @@ def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
     return BadProgram(f"{one.word!r} is not understood, and {does}", valid=valid)
 
 
-def undecided_branch(one: If, culprit: str, why: Unknown) -> BadProgram:
-    """The error for a branch that moves the robot, or may, and that only the controller decides."""
-    fault = f"{one.word} decides on {culprit}, and is not known: {why.why}"
-    return BadProgram(fault, valid="let the file decide it")
-
-
-def undecided(one: While, culprit: str | None, value: Unknown) -> BadProgram:
+def undecided(one: While, culprit: Culprit | None, value: Unknown) -> BadProgram:
     """The error for a loop whose condition only the controller knows."""
     fault, valid = f"{one.word} decides on {culprit}, and", "let the file decide it"
     if culprit is None:

@@ -14,14 +14,13 @@ from typing import Any
 
 from clearance.errors import BadProgram, ClearanceError, nearest_name
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait, end_of
+from clearance.formats.program.culprits import undecided_branch, unknown_word
 from clearance.formats.program.effects import (
     Effects,
     PersistentValues,
     arguments_of,
     range_of,
     undecided,
-    undecided_branch,
-    unknown_word,
     unreadable_word,
     value_after,
 )
@@ -217,7 +216,7 @@ class Execution(Remarks):
         if call.name in self.routines:
             return self._run_routine(self.routines[call.name], call)
         moves = self.language.moves(call.name)
-        if moves is None or (moves and has_value):
+        if (moves is None and not self.language.initialises(call)) or (moves and has_value):
             raise unknown_word(call.name, self.language.suffix, moves)
         if has_value and self.language.waits(call):
             self.note(WAITS, f"{call.name} ({call.line})")
@@ -341,9 +340,9 @@ class Execution(Remarks):
             BadInput: one does.
         """
         bodies = [body for _, body in one.branches]
-        culprit = next((found for body in bodies for found in self.effects.deciding(body)), None)
-        if culprit is not None:
-            raise undecided_branch(one, culprit, why)
+        culprits = [found for body in bodies for found in self.effects.deciding(body)]
+        if culprits:
+            raise undecided_branch(one, culprits, why, self.language.suffix)
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         for waiting in self.effects.waiting(bodies):
             self.note(WAITS, waiting)

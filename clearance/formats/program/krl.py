@@ -34,6 +34,7 @@ from clearance.formats.program.krl_expressions import (
     MM,
     MOVES,
     OF,
+    PACKAGES,
     PAUSES,
     QUIET,
     SPLINE,
@@ -102,7 +103,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         run.enter(files.routines[own[entry]])
         run.require_all()
         bodies = [routine.body for routine in files.routines.values()]
-        unread = [*not_followed(bodies, run)]
+        unread = [*not_followed(bodies, run), *run.effects.doubts_on_packages(bodies)]
         doubts = (*language.root.doubts(asked.asked), *unread)
         return language.program_of(run, language.notes(), doubts)
 
@@ -129,6 +130,7 @@ class _Krl(Language):
     still = frozenset((*QUIET, *FUNCTIONS, AGGREGATE, WAIT))
     timed = retiming = (WAIT, *PAUSES)
     stopping = ("BRAKE",)
+    packages = PACKAGES
 
     def notes(self) -> list[str]:
         """A line each on an assumption."""
@@ -145,6 +147,11 @@ class _Krl(Language):
         (one,) = call.args if call.name in QUIET and call.args else (Constant(""),)
         assert isinstance(one, Constant)
         return "" if one.value == SYSTEM else one.value
+
+    def initialises(self, call: Call) -> bool:
+        """Whether a technology package is called as in an INI."""
+        first = (str(getattr(one, "name", getattr(one, "value", ""))) for one in call.args)
+        return next(first, "") == PACKAGES.get(call.name)
 
     def writes(self, call: Call) -> tuple[Expression, ...]:
         """All arguments of a procedure that is in no file; instructions change no variables that are read."""

@@ -113,6 +113,10 @@ WAIT, SPLINE = "WAIT SEC", "SPLINE"
 PAUSES = ("HALT", "BRAKE")
 """Instructions that stop the robot on its way, until it goes on along it: at a key, or at an interrupt's end."""
 
+PACKAGES = {"A20": "ARC_INI", "A10_INI": "", "A10": None, "H70": "1"}
+"""Routines of KUKA's technology packages (arc welding, touch sensing) that programs call in their INI, with the
+argument of that call; None where interrupts alone call one."""
+
 QUIET = frozenset(
     "HALT BRAKE INTERRUPT TRIGGER PULSE ANOUT ANIN DIGIN SIGNAL EXT EXTFCT EXTP EXTFCTP STRUC ENUM IMPORT $OUT "
     "SET_CD_PARAMS MSGNOTIFY MSGQUIT ERR_CLEAR ON_ERROR_PROCEED".split()

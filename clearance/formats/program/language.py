@@ -23,6 +23,7 @@ class Language:
         timed: words that take a time that counts; their file may not say how long.
         retiming: words that change how long moves take also from a thread, a trap or an interrupt.
         stopping: words that stop the robot on its way; it goes on along it.
+        packages: routines of the maker; where no file has one, it moves nothing that is called beside a program.
         keeps_counter: a loop counts by the value of its variable, and leaves it at the last one; elsewhere it is
             not known behind the loop.
         shares_variables: a routine has none of its own, but for its parameters.
@@ -36,6 +37,7 @@ class Language:
     timed: Collection[str] = ()
     retiming: Collection[str] = ()
     stopping: Collection[str] = ()
+    packages: Collection[str] = ()
     keeps_counter = shares_variables = skips_overlaps = False
     values: Mapping[str, Callable[..., Any]] = {}
 
@@ -49,6 +51,10 @@ class Language:
         if name in self.moving:
             return True
         return False if name in self.still else None
+
+    def initialises(self, call: Call) -> bool:
+        """Whether a call of a package initialises it, and so moves nothing."""
+        return False
 
     def waits(self, call: Call) -> bool:
         """Whether an instruction or a function takes a time that counts."""

@@ -141,17 +141,70 @@ def test_a_variable_that_is_imported_is_not_known():
 
 def test_an_interrupt_in_a_branch_that_only_the_controller_decides_is_followed():
     """Its routine moves nothing, changes variables at any time, and is asked in what is left out too."""
-    for declared in ("INTERRUPT DECL 9 WHEN $IN[2] DO c()", "GLOBAL INTERRUPT DECL 9 WHEN $IN[2] DO d()"):
+    for declared in (
+        "INTERRUPT DECL 9 WHEN $IN[2] DO c()",
+        "GLOBAL INTERRUPT DECL 9 WHEN $IN[2] DO d()",
+    ):
         routine = "DEF c()\nPTP {A1 9}\nEND\nDEF d()\nINTERRUPT DECL 8 WHEN $IN[3] DO c()\nEND\n"
         branch = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\n{HOME}\nEND\n{routine}"
         with pytest.raises(cl.ClearanceError, match="line 2: IF decides on INTERRUPT at line 3"):
             read("a.src", branch)
         skipped = f"DEF a()\nb()\n{HOME}\nEND\nDEF b()\n{declared}\nEND\n{routine}"
-        with pytest.raises(cl.ClearanceError, match="line 2: INTERRUPT '[CD]' moves the robot, or may"):
+        with pytest.raises(
+            cl.ClearanceError, match=r"line 2: INTERRUPT '[CD]' moves the robot, or may"
+        ):
             read("a.src", skipped, skip=["b"])
-    text = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\nn=1\n{HOME}\nPTP {{A1 n,A2 0,A3 0,A4 0,A5 0,A6 0}}\nEND\nDEF d()\nn=2\nEND\n"
+    text = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\nn=1\n{HOME}\nPTP {{A1 n}}\nEND\n"
+    text += "DEF d()\nn=2\nEND\n"
     with pytest.raises(cl.ClearanceError, match="INTERRUPT 'D' may change it at any time"):
         read("a.src", text)
     assert len(read("a.src", text.replace("\nn=2", "\nm=2")).moves) == 2
     itself = f"DEF a()\n{declared}\n{HOME}\nEND\nDEF d()\n{declared}\nEND\n"
     assert len(read("a.src", itself).moves) == 1
+
+
+INI = """IF ARC20==TRUE THEN
+A20 (ARC_INI)
+INTERRUPT DECL 6 WHEN $CYCFLAG[3]==FALSE DO A20(TECH_STOP2)
+ENDIF
+IF A10_OPTION==#ACTIVE THEN
+INTERRUPT DECL 4 WHEN $CYCFLAG[2]==FALSE DO A10 (#APPL_ERROR)
+A10_INI ( )
+ENDIF
+IF H70_OPTION THEN
+INTERRUPT DECL 15 WHEN $MEAS_PULSE[TOUCH_I[TOUCH_ACTIVE].IN_NR] DO H70 (6,CD0 )
+H70 (1,CD0 )
+ENDIF
+"""
+
+
+def test_packages_that_an_ini_initialises_are_taken_to_move_nothing_and_told():
+    text = f"DEF a()\n{INI}{HOME}\nEND\n"
+    (told,) = read("a.src", text).doubts
+    assert told == (
+        "packages that are in no file are taken to move nothing, and to set neither tool nor base: "
+        "A20 (line 3), A10 (line 7), A10_INI (line 8), H70 (line 11)"
+    )
+    known = read("a.src", text, {"$config.dat": b"DEFDAT $CONFIG\nBOOL ARC20=TRUE\nENDDAT\n"})
+    assert known.doubts == (told,)
+    for name in ("A20", "H70"):
+        moving = {f"{name}.src": f"DEF {name}(n,m)\n{HOME}\nEND\n".encode()}
+        with pytest.raises(cl.ClearanceError, match=rf"IF decides on (PTP at {name}|INTERRUPT)"):
+            read("a.src", text, moving)
+    for call in ("A20(ARC_ON)", "H70(2,CD0)", "A10(#APPL_ERROR)", "A20()", "USER_GRP(0)"):
+        name = call.partition("(")[0]
+        with pytest.raises(cl.ClearanceError, match=rf"'{name}' is no known .* skip: \[{name}\]"):
+            read("a.src", text.replace(HOME, f"{call}\n{HOME}"))
+
+
+def test_a_branch_of_unknown_routines_says_what_gets_past_it():
+    text = f"DEF a()\nIF n==1 THEN\nb(1)\nc()\nENDIF\n{HOME}\nEND\n"
+    with pytest.raises(cl.ClearanceError) as caught:
+        read("a.src", text)
+    assert str(caught.value).endswith(
+        "line 2: IF decides on B at line 3, and is not known: 'N' is in no file that is given; let the file "
+        "decide it, or program: {beside: [B.src, C.src]}, or skip: [B, C] if they neither move nor set tool or frame"
+    )
+    assert len(read("a.src", text, skip=["b", "C"]).moves) == 1
+    with pytest.raises(cl.ClearanceError, match=r"let the file decide it$"):
+        read("a.src", text.replace("c()", HOME))

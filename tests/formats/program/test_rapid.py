@@ -359,14 +359,20 @@ def test_what_moves_nothing_is_left_out_by_name():
 
 
 def test_a_trap_that_stops_the_robot_and_lets_it_go_on_moves_nothing():
-    body = f"CONNECT i WITH t;\nMoveL {P},v5,fine,tool0;\nENDPROC\nTRAP t\nStopMove;\n%sStartMove;\n"
+    body = (
+        f"CONNECT i WITH t;\nMoveL {P},v5,fine,tool0;\nENDPROC\nTRAP t\nStopMove;\n%sStartMove;\n"
+    )
     text = f"MODULE M\nVAR intnum i;\nPROC main()\n{body}ENDTRAP ENDMODULE"
     found = read("a.mod", text % "")
     (told,) = found.doubts
-    assert told.startswith("StopMove (line 8) of trap t may stop the robot") and len(found.moves) == 1
+    assert (
+        told.startswith("StopMove (line 8) of trap t may stop the robot") and len(found.moves) == 1
+    )
     assert found.left_out == ("StopMove (line 8) in trap t",)
     for more in ("ClearPath;\n", f"MoveL {P},v5,fine,tool0;\n"):
-        with pytest.raises(cl.ClearanceError, match=r"trap 't' moves the robot, or may: \w+ at line 9"):
+        with pytest.raises(
+            cl.ClearanceError, match=r"trap 't' moves the robot, or may: \w+ at line 9"
+        ):
             read("a.mod", text % more)
 
 
