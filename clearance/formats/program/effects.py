@@ -39,6 +39,7 @@ from clearance.formats.program.statements import (
 )
 from clearance.formats.program.tokens import Line
 from clearance.formats.text.notes import counted
+from clearance.world.notice import listed
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +125,17 @@ class Effects:
                 yield name, other
             elif name in self.routines and name not in entered:
                 yield from self.beside_in([self.routines[name].body], (*entered, name))
+
+    def require_left_out(self) -> None:
+        """Nothing, if what is left out moves nothing.
+
+        Raises:
+            BadProgram: it does.
+        """
+        for name in self.skip:
+            if (culprit := self.moving_in(name)) is not None:
+                fault = f"{name} moves the robot, or changes how it moves{culprit}"
+                raise BadProgram(fault, where="skip", valid="skip only what moves nothing")
 
     def moving_in(self, name: str) -> str | None:
         """Where an instruction or a routine moves the robot; None where it does not, or nobody knows."""

@@ -96,15 +96,11 @@ class Execution(Remarks):
 
     def __post_init__(self) -> None:
         self.frames = [self.variables]
-        for name in self.skip:
-            if (culprit := self.effects.moving_in(name)) is not None:
-                fault = f"{name} moves the robot, or changes how it moves{culprit}"
-                raise BadProgram(fault, where="skip", valid="skip only what moves nothing")
+        self.effects.require_left_out()
 
     def pass_over(self, call: Call) -> None:
         """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
-        what = WAITS if self.language.waits(call) else STILL
-        self.note(what, f"{call.name} ({call.line})")
+        self.note(WAITS if self.language.waits(call) else STILL, f"{call.name} ({call.line})")
         for part in (*call.args, *call.named.values()):
             if any(one.name in self.routines for one in calls_in(part)):
                 self.evaluated(part)
@@ -118,8 +114,8 @@ class Execution(Remarks):
         self.concurrent |= self.effects.changed_concurrently(what, name)
         for call in self.effects.calls_of(name):
             if call.name in self.language.retiming:
-                kind = WAITS if self.language.waits(call) else UNSAID
-                self.note(kind, f"{call.name} ({call.line}) in {what} {name}")
+                why = WAITS if self.language.waits(call) else UNSAID
+                self.note(why, f"{call.name} ({call.line}) in {what} {name}")
 
     def add(self, move: ControllerMove | ControllerWait) -> None:
         """A move that the robot makes.
@@ -214,7 +210,7 @@ class Execution(Remarks):
             self._leave_out(call)
             return Unknown(f"{call.name} ({call.line}) is left out"), None
         if call.name in self.routines:
-            return self._run_routine(self.routines[call.name], call)
+            return self.enter(self.routines[call.name], call)
         moves = self.language.moves(call.name)
         if (moves is None and not self.language.initialises(call)) or (moves and has_value):
             raise unknown_word(call.name, self.language.suffix, moves)
@@ -279,12 +275,8 @@ class Execution(Remarks):
         self.note(LEFT_OUT, f"{call.name} ({call.line})")
         self._forget_changed([(Do(call.line, call),)], f" by {call.name}")
 
-    def enter(self, routine: Routine) -> None:
-        """Runs a routine that takes no arguments."""
-        self._run_routine(routine, Call(routine.name, (), {}, routine.line))
-
-    def _run_routine(self, routine: Routine, call: Call) -> tuple[Any, Leave | None]:
-        """As `_called`, of a routine.
+    def enter(self, routine: Routine, call: Call | None = None) -> tuple[Any, Leave | None]:
+        """As `_called`, of a routine; without a call, of one that takes no arguments.
 
         Raises:
             BadInput: other arguments than it has; too many routines in one another.
@@ -292,6 +284,7 @@ class Execution(Remarks):
         if len(self.frames) > MOST_CALLS:
             fault = f"more than {MOST_CALLS} routines call one another"
             raise BadProgram(fault, valid="end the calls")
+        call = call or Call(routine.name, (), {}, routine.line)
         given, persistent = arguments_of(routine, call), self.persistent
         self.doubts |= self.effects.doubts_on_handlers(routine)
         frame = {name: self.evaluated(value) for name, value in given.items()}
@@ -340,8 +333,7 @@ class Execution(Remarks):
             BadInput: one does.
         """
         bodies = [body for _, body in one.branches]
-        culprits = [found for body in bodies for found in self.effects.deciding(body)]
-        if culprits:
+        if culprits := [found for body in bodies for found in self.effects.deciding(body)]:
             raise undecided_branch(one, culprits, why, self.language.suffix)
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         for waiting in self.effects.waiting(bodies):
