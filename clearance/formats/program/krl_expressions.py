@@ -131,7 +131,7 @@ AGGREGATE = "{}"
 """The call that an aggregate is."""
 
 WORD = re.compile(
-    r"""(?P<skip>[ \t\f\v]+|;[^\n]*|\[[ \t]*\])
+    r"""(?P<skip>[ \t\f\v]+|;[^\n]*|\[[ \t,]*\])
     |(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|'[HhBb][0-9A-Fa-f]+')
     |(?P<string>"[^"\n]*")
     |(?P<name>\#?\$?[A-Za-z_][A-Za-z0-9_$]*)

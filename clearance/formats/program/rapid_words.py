@@ -13,6 +13,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+
 from clearance.formats.program.grammar import Grammar, Spelled, numeric, ranked
 from clearance.formats.program.rapid_data import VALUES
 
@@ -135,11 +137,15 @@ def _by_item(act: Callable[[Any, Any], Any], a: object, b: object) -> object:
 
 
 def _product(a: object, b: object) -> object:
-    """Numbers, and a position by a number, are multiplied.
+    """Numbers, a position by a number, and two orientations are multiplied.
 
     Raises:
         TypeError: other things are.
     """
+    if isinstance(a, list) and isinstance(b, list) and len(a) == len(b) == 4:
+        (w, *v), (s, *t) = a, b
+        turned = np.cross(v, t) + w * np.array(t) + s * np.array(v)
+        return [float(w * s - np.dot(v, t)), *turned.tolist()]
     for one, by in ((a, b), (b, a)):
         if isinstance(one, list) and len(one) == 3 and not isinstance(by, list):
             return [numeric(operator.mul)(x, by) for x in one]

@@ -27,7 +27,7 @@ STILL = frozenset(
     "get_conveyor_tick_count set_conveyor_tick_count position_deviation_warning "
     "force to_str str_at str_cat str_empty str_find str_len str_sub to_num binary_list_to_integer "
     "integer_to_binary_list random make_list size struct get_list_length normalize "
-    "interpolate_pose pose_dist pose_sub rotvec2rpy rpy2rotvec wrench_trans "
+    "interpolate_pose pose_dist pose_sub rotvec2rpy wrench_trans "
     # the arm and its load
     "get_actual_joint_positions get_actual_joint_positions_history get_actual_joint_speeds "
     "get_actual_tcp_pose get_actual_tcp_speed get_actual_tool_flange_pose get_controller_temp "
