@@ -21,6 +21,9 @@ MOST_PARTS = 200
 MOST_DEPTH = 60
 """Brackets within brackets."""
 
+MOST_SHOWN = 40
+"""Characters of a value in a message."""
+
 
 @dataclass(frozen=True)
 class Unknown:
@@ -32,6 +35,9 @@ class Unknown:
 
     what: str
     hint: Callable[[], str] = field(default=str, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        return "what is not known"
 
     @property
     def why(self) -> str:
@@ -89,11 +95,12 @@ class Part:
 
 @dataclass(frozen=True)
 class Operation:
-    """An operator on one or two values."""
+    """An operator on one or two values; `word` is how it is written."""
 
     act: Callable[..., Any]
     on: tuple[Expression, ...]
     line: Line
+    word: str = "this"
 
 
 Expression = Constant | Name | Items | Call | Part | Operation
@@ -130,9 +137,10 @@ def value_of(one: Expression, scope: Scope) -> Any:
             return scope.language.items(items, one.kind)
         case Part():
             by = one.by if isinstance(one.by, str) else value_of(one.by, scope)
-            return applied(scope.language.part_of, (value_of(one.of, scope), by), one.line)
+            name = "'.'" if isinstance(one.by, str) else "an index"
+            return applied(scope.language.part_of, (value_of(one.of, scope), by), one.line, name)
         case Operation():
-            return applied(one.act, [value_of(item, scope) for item in one.on], one.line)
+            return applied(one.act, [value_of(item, scope) for item in one.on], one.line, one.word)
 
 
 def applied(act: Callable[..., Any], values: Sequence[Any], line: Line, name: str = "this") -> Any:
@@ -150,8 +158,17 @@ def applied(act: Callable[..., Any], values: Sequence[Any], line: Line, name: st
         except ClearanceError:
             raise
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
-            given = " and ".join(f"{value!r:.40}" for value in values)
+            given = " and ".join(map(_shown, values))
             raise BadProgram(f"{name} has no value for {given}") from None
+
+
+def _shown(value: Any) -> str:
+    """A value in a message; of a long one, its kind alone."""
+    text = repr(value)
+    if len(text) <= MOST_SHOWN:
+        return text
+    kinds = {list: f"a list of {len(value)}", dict: f"data of {len(value)} parts"}
+    return next((kind for one, kind in kinds.items() if isinstance(value, one)), "a long text")
 
 
 def known(value: Any, what: str) -> Any:
@@ -243,8 +260,10 @@ class ExpressionReader:
         found = self._prefixed()
         n_parts = 0
         while (rule := self.grammar.binary.get(self._word)) and rule[0] > power:
-            line = self.cursor.take().line
-            found = Operation(rule[1], (found, self.expression(rule[0])), line)
+            word = self.cursor.take()
+            found = Operation(
+                rule[1], (found, self.expression(rule[0])), word.line, repr(word.text)
+            )
             n_parts = self._counted(n_parts)
         self._depth -= 1
         return found
@@ -294,8 +313,8 @@ class ExpressionReader:
         rule = self.grammar.unary.get(self._word) if self.cursor.next.kind != "string" else None
         if rule is None:
             return self._with_parts(self._atom())
-        line = self.cursor.take().line
-        return Operation(rule[1], (self.expression(rule[0]),), line)
+        word = self.cursor.take()
+        return Operation(rule[1], (self.expression(rule[0]),), word.line, repr(word.text))
 
     def _atom(self) -> Expression:
         cursor = self.cursor

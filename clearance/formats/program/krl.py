@@ -54,7 +54,7 @@ from clearance.formats.program.krl_settings import (
     first_variables,
     key_of,
 )
-from clearance.formats.program.krl_system import RobotRoot, not_followed, require_followed
+from clearance.formats.program.krl_system import STATES, RobotRoot, not_followed, require_followed
 from clearance.formats.program.krl_text import files_of
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import UNSAID
@@ -164,7 +164,7 @@ class _Krl(Language):
             return False
         if name in STANDS:
             return Unknown(f"{name}, where the robot is, is not read")
-        return None
+        return Unknown(f"only the controller knows {name}") if name in STATES else None
 
     def part_of(self, value: Any, by: Any) -> Any:
         """A part of an aggregate, or an element of an array; texts of pendants have none."""

@@ -304,7 +304,8 @@ def first_variables(asked: ProgramFile, run: Execution) -> dict[str, Any]:
     that routines give values to and do not declare, which all have in common."""
     changed = (one for own in run.routines.values() for one in run.effects.changed_by(own))
     found: dict[str, Any] = {
-        name: Unknown(f"{name} is in no file that is given") for name, _ in changed
+        name: run.language.value_of(name, run) or Unknown(f"{name} is in no file that is given")
+        for name, _ in changed
     }
     found |= {name: copy.deepcopy(one) for name, one in FIRST.items()}
     for name, pose in (*asked.tools.items(), *asked.frames.items()):

@@ -30,6 +30,11 @@ QUIET = frozenset(
 )
 """Those that say nothing of the way of a move."""
 
+STATES = frozenset(
+    "$IN $OUT $ANIN $ANOUT $DIGIN1 $DIGIN2 $FLAG $CYCFLAG $TIMER $TIMER_FLAG $STOPMESS $MODE_OP".split()
+)
+"""Those that no file has: inputs, and how the controller is just then."""
+
 _NULL = np.eye(4)
 
 

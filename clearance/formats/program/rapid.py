@@ -57,6 +57,9 @@ from clearance.formats.program.statements import assigned
 from clearance.formats.program.tokens import on, text_of
 from clearance.formats.schema.program_file import ProgramFile
 
+_KEYS = {"tool": "tools", "work object": "frames"}
+"""Of the case, for what a move needs."""
+
 
 def read_rapid(asked: ProgramRequest) -> ControllerProgram:
     """The moves of a procedure of a program: `main`, if no other is asked for.
@@ -252,7 +255,7 @@ class Rapid(Language):
             "work object": call.named.get("wobj", Name("wobj0", call.line)),
             **({"point on the arc": call.args[0]} if rule.to == 1 else {}),
         }
-        given = {what: known(run.evaluated(one), f"the {what}") for what, one in asked.items()}
+        given = {what: self._given(what, one, run) for what, one in asked.items()}
         options = {
             key: number(run.evaluated(call.named[key]), key.upper())
             for key in ("v", "t", "z")
@@ -269,6 +272,16 @@ class Rapid(Language):
         run.add(replace(move, zone=max(0.0, *zone)).slowed(self.share))
         if call.name.endswith("Sync"):
             self._run_beside(call, rule, run)
+
+    def _given(self, what: str, one: Expression, run: Execution) -> Any:
+        """The value of an argument; any, for a tool or a work object that no file has: the case then has to."""
+        value, usual = run.evaluated(one), {"tool": "tool0", "work object": "wobj0"}.get(what)
+        if isinstance(value, Unknown) and isinstance(one, Name) and usual:
+            if one.name not in {*self.modules.declared, *run.frames[-1], *run.variables}:
+                fault, key = f"the {what} is not known: {value.why}", _KEYS[what]
+                run.lack(fault, key, str(one.name), "a file beside that has it, or ")
+                return STANDARD[usual]
+        return known(value, f"the {what}")
 
     def _run_beside(self, call: Call, rule: MoveRule, run: Execution) -> None:
         """The procedure that a move calls at its end: no line behind it knows whether it is done.

@@ -43,7 +43,7 @@ from clearance.formats.program.urscript_words import (
     STILL,
     TARGETS,
 )
-from clearance.geometry.pose import inverse, pose_from_rotation_vector
+from clearance.geometry.pose import inverse, pose_from_rotation_vector, pose_from_rpy
 from clearance.geometry.quaternions import rotation_vector
 
 TCP = "tcp"
@@ -60,6 +60,9 @@ class Solved:
 
     flange: list[list[float]]
     near: list[float] | None
+
+    def __repr__(self) -> str:
+        return "the axes of get_inverse_kin"
 
 
 def read_urscript(asked: ProgramRequest) -> ControllerProgram:
@@ -154,6 +157,12 @@ def _written(matrix: np.ndarray) -> ToolPose:
     return ToolPose([*matrix[:3, 3].tolist(), *rotation_vector(matrix[:3, :3]).tolist()])
 
 
+def _three(value: list[Any]) -> list[float]:
+    """Angles about the fixed x, y and z, in this order [rad]."""
+    roll, pitch, yaw = (number(one, "an angle") for one in value)
+    return [roll, pitch, yaw]
+
+
 def _of_poses(act: Callable[..., np.ndarray]) -> Callable[..., ToolPose]:
     """A function of poses by one of their matrices."""
     return lambda *poses: _written(act(*map(_placed, poses)))
@@ -180,6 +189,9 @@ _VALUES: Mapping[str, Callable[..., Any]] = {
     "pose_trans": _of_poses(lambda a, b: a @ b),
     "pose_inv": _of_poses(inverse),
     "pose_add": _of_poses(_added),
+    "rpy2rotvec": lambda rpy: rotation_vector(
+        pose_from_rpy([0.0, 0.0, 0.0], _three(rpy))[:3, :3]
+    ).tolist(),
     "point_dist": lambda a, b: math.dist(a[:3], b[:3]),
 }
 
@@ -226,7 +238,14 @@ class _UrScript(Language):
         return ToolPose(values) if kind else values
 
     def part_of(self, value: Any, by: Any) -> Any:
-        """An item of a list."""
+        """An item of a list.
+
+        Raises:
+            BadProgram: of axes that the robot alone decides.
+        """
+        if isinstance(value, Solved):
+            fault = "one axis of get_inverse_kin is asked for, and they are not worked out"
+            raise BadProgram(fault, valid="six numbers in its place")
         return value[_index(by)]
 
     def with_part(self, value: Any, by: Any, new: Any) -> None:

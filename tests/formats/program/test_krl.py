@@ -288,7 +288,10 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "INTERRUPT 'OFF' moves the robot, or may",
         ),
         (FRAMES + "SPLINE\nSPL XP1\nENDSPLINE", "line 9: a spline is not read"),
-        ("WAIT FOR $IN[3]", "line 7: WAIT FOR waits for what is not known"),
+        (
+            "WAIT FOR $IN[3]",
+            "line 7: WAIT FOR waits for what is not known: only the controller knows $IN;",
+        ),
         ("IF $IN[1] THEN\nPTP XHOME\nENDIF", "line 7: IF decides on PTP at line 8"),
         (
             "grip()",
@@ -299,8 +302,8 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("n=STOOL2()", "line 7: STOOL2 is given data of another kind"),
         ("FOR n={X 1} TO 3\nENDFOR", "line 7: the range of 'N' is {'X': 1.0}; a number"),
         ("SWITCH 1\nPTP XHOME\nCASE 1\nENDSWITCH", "line 8: SWITCH begins with a statement"),
-        ("PTP XHOME WITH $ORI_TYPE.X.Y = 1", "line 7: this has no value for '#VAR' and 'X'"),
-        ("n=3\nLOOP\nn=n*n\nENDLOOP", "line 9: this has no value for"),
+        ("PTP XHOME WITH $ORI_TYPE.X.Y = 1", "line 7: '.' has no value for '#VAR' and 'X'"),
+        ("n=3\nLOOP\nn=n*n\nENDLOOP", "line 9: '*' has no value for"),
         ("n='B12'\nPTP {A1 n}", "line 8: a position is not known: N is given what is not read"),
         ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
         ("PTP XHOME\nEND\nDEF half()\nPTP XHOME\nEN", "line 9: half has no END; a whole file"),
@@ -338,7 +341,9 @@ def test_a_base_on_another_machine_is_refused():
     ).moves  # BASE_DATA is seen from the plate as it is from the robot's foot
     for move, other in zip((one, two, last), stands, strict=True):
         assert np.array_equal(move.to.pose, other.to.pose)
-    with pytest.raises(cl.ClearanceError, match=r"^weld\.src: line 9: this has no value for"):
+    with pytest.raises(
+        cl.ClearanceError, match=r"^weld\.src: line 9: ':' has no value for data of 7 parts and"
+    ):
         program(f"{body.replace('LIN XP1', 'XP1=$BASE:XP1')}\nLIN XP1", points, **units)
     with pytest.raises(
         cl.ClearanceError, match="line 11: the tool's pose before this move is not known"
@@ -423,8 +428,13 @@ def test_operators_bind_as_the_controller_has_it(condition, is_true):
     assert len(program(f"{FRAMES}PTP XHOME\n{body}").moves) == 2 + is_true
 
 
+def test_a_parameter_may_be_an_array_of_several_indices():
+    body = "double(GRID[])\nPTP XHOME\nEND\nDEF double(a[,], b[], n:IN)\nn=1"
+    assert len(program(body).moves) == 1
+
+
 def test_truths_and_numbers_are_not_mixed():
-    with pytest.raises(cl.ClearanceError, match="line 8: this has no value for 1 and True"):
+    with pytest.raises(cl.ClearanceError, match="line 8: 'AND' has no value for 1 and True"):
         program("n=1\nIF n==1 AND TRUE THEN\nPTP XHOME\nENDIF\n")
 
 

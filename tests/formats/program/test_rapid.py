@@ -376,6 +376,28 @@ def test_a_trap_that_stops_the_robot_and_lets_it_go_on_moves_nothing():
             read("a.mod", text % more)
 
 
+def test_tools_and_work_objects_that_no_file_has_are_asked_of_the_case():
+    move = f"MoveL {P},v100,fine,tGun\\WObj:=wJig;"
+    with pytest.raises(cl.ClearanceError) as caught:
+        moves_of(move)
+    assert "line 3: the tool is not known: 'tGun' is in no file" in str(caught.value)
+    assert str(caught.value).endswith(
+        "program: {tools: {tGun: {xyz: […], rpy: […]}}, frames: {wJig: {xyz: […], rpy: […]}}} in m and rad"
+    )
+    (found,) = moves_of(move, tools={"tgun": {"xyz": [0, 0, 0.2]}}, frames={"wJig": {}})
+    assert found.tool[2, 3] == 0.2
+    with pytest.raises(cl.ClearanceError, match="the tool is not known: 'tGun' has no value"):
+        moves_of(move, "VAR tooldata tGun;", frames={"wJig": {}})
+
+
+def test_orientations_are_multiplied():
+    data, turn = f"VAR robtarget p:={P}; VAR orient o;", "OrientZYX(90,0,0)*OrientZYX(0,0,90)"
+    (found,) = moves_of(f"o:={turn};\np.rot:=o;\nMoveL p,v100,fine,tool0;", data)
+    assert found.to.pose[:3, :3] == pytest.approx(
+        np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]), abs=1e-12
+    )
+
+
 def test_a_procedure_is_left_out_only_if_it_moves_nothing():
     data = f"VAR robtarget p:={P};"
     body = "sub;\nMoveL p,v100,fine,tool0;\nENDPROC\nPROC sub()\nsub2;\nENDPROC\nPROC sub2()\n"

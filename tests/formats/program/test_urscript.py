@@ -158,13 +158,25 @@ FAULTS = {
     + "\nend": "entry: several functions are there: f, g",
     "def f():\nf()\nend\nf()": "more than 40 routines call one another",
     "x = " + Q: "line 1: movej moves the robot, and has no value; write the move as a statement",
-    "movej(1 / 0)": "this has no value",
+    "movej(1 / 0)": "line 1: '/' has no value for 1 and 0",
+    TOOL + "q=get_inverse_kin(p[0.4,0.2,0.3,3,0,0],[1,2,3,4,5,6])\nq[5]=q[5]+1": (
+        "line 3: one axis of get_inverse_kin is asked for, and they are not worked out; six numbers"
+    ),
+    "a=[[1,2,3,4,5,6],[1,2,3,4,5,6],[1,2,3,4,5,6]]*0.5": "'*' has no value for a list of 3 and 0.5",
+    "a=[get_actual_tcp_pose()]+0": "'+' has no value for [what is not known] and 0",
     "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
     "RPC = rpc_factory(1)\nRPC.grip(20)": "line 2: 'RPC.grip' is no known instruction",
     "while 1 == 1:\nx = [1]\nx[3] = 2\nend": "line 3: there is no part 3",
     "movej([0,0,0,0,0,1e999])": "a number of this earth",
     "a b": "line 1: 'b' is given; the end of the line is needed",
 }
+
+
+def test_angles_about_fixed_axes_become_a_rotation_vector():
+    """A quarter turn about x, then one about z, is a third of a turn about (1, 1, 1)."""
+    (move,) = moves_of(TOOL + "r=rpy2rotvec([pi/2,0,pi/2])\nmovel(p[0,0,0,r[0],r[1],r[2]])")
+    turn = move.to.pose[:3, :3]
+    assert turn == pytest.approx(np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]), abs=1e-12)
 
 
 @pytest.mark.parametrize("text", FAULTS)
