@@ -39,6 +39,7 @@ GIVEN = {
     "CL420": "start", "CL421": "gaps", "CL422": "clocks", "CL423": "wrap", "CL424": "limits",
     "CL425": "joint limits", "CL426": "recorded run", "CL427": "program", "CL428": "carry", "CL429": "rest",
     "CL430": "neighbours", "CL431": "columns", "CL432": "simulated", "CL433": "limbs", "CL434": "never",
+    "CL435": "srdf",
     "CL501": "clearance", "CL502": "profile",
     "CL510": "unused waiver", "CL511": "BadWaiver", "CL512": "waivers", "CL520": "NothingToMeasure",
     "CL521": "pairs", "CL522": "paper", "CL523": "rules", "CL524": "profiles", "CL525": "sketch",

@@ -75,7 +75,7 @@ class RobotReader:
             exclude_links=exclude_links,
             urdf_path=str(request.path),
             package_dirs=tuple(map(str, request.package_dirs)),
-            self_clearance=self._self_clearance(entry, robot),
+            self_clearance=self._self_clearance(entry, robot, self._read[request].name),
             padding=padding,
             motion_limits=limits.motion_limits,
             path_tolerances=limits.path_tolerances,
@@ -133,8 +133,14 @@ class RobotReader:
         robot = self._read[request]
         return robot if name is None else replace(robot, name=name)
 
-    def _self_clearance(self, entry: schema.RobotEntry, robot: Robot) -> SelfClearance | None:
-        """Whether the robot's links are measured against one another, and which pairs an SRDF file excuses."""
+    def _self_clearance(
+        self, entry: schema.RobotEntry, robot: Robot, own_name: str
+    ) -> SelfClearance | None:
+        """Whether the robot's links are measured against one another, and which pairs an SRDF file excuses.
+
+        Args:
+            own_name: of the robot in its own file.
+        """
         given, field = entry.robot, entry.field
         _refuse_idle_excuses(entry)
         if not given.self_clearance:
@@ -142,7 +148,8 @@ class RobotReader:
         if given.srdf is None:
             return SelfClearance()
         with at(f"{field}.srdf"):
-            matrix = read_srdf(resolved(given.srdf, self._folder), robot, self._files)
+            own = replace(robot, name=own_name)
+            matrix = read_srdf(resolved(given.srdf, self._folder), own, self._files)
         return SelfClearance(matrix, given.trust_never, given.geometry)
 
 

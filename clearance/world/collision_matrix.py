@@ -28,12 +28,14 @@ class CollisionMatrix:
         enabled: pairs of links.
         disabled: pairs of links with a reason each; of several rows for a pair the last counts.
         notes: omissions, one line each.
+        other: the robot that the file names, if it is not the one whose links it is read for.
     """
 
     off_by_default: tuple[str, ...] = ()
     enabled: tuple[tuple[str, str], ...] = ()
     disabled: tuple[tuple[str, str, str], ...] = ()
     notes: tuple[str, ...] = ()
+    other: str = ""
 
     def reason(self, link_a: str, link_b: str) -> str | None:
         """Why a pair is excused, in either order; None if it is not."""

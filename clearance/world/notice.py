@@ -41,7 +41,7 @@ WARNED_TOO = ("units", "limits", "gaps", "clocks", START, "simulated", "never")
 WARNINGS = (
     "geometry", "equality", "scene", "padding", "reach", "scan", "plane", "program", "carry", "rest", "neighbours",
     "columns", "recorded run", "pairs", "rules", "profiles", "sketch", "waivers", "paper", "certificate",
-    "contact", "cross-check", "limbs",
+    "contact", "cross-check", "limbs", "srdf",
 )  # fmt: skip
 """Kinds of warnings alone, which a case can accept too: where warnings fail, these do not then."""
 

@@ -54,6 +54,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     found += notices_on_clocks(case)
     found += _rides_with_tolerance(case)
     found += _never_measured(case)
+    found += _of_other_robots(case)
     moves = [placed.trajectory is not None for placed in case.robots]
     moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:
@@ -151,6 +152,18 @@ def _never_measured(case: Case) -> Iterator[Notice]:
             yield Notice(Severity.SUSPECT, "never", text, placed.robot.name)
         elif names:
             yield Notice(Severity.WARNING, "never", text, placed.robot.name)
+
+
+def _of_other_robots(case: Case) -> Iterator[Notice]:
+    """A warning on an SRDF that names another robot: many robots call their links alike."""
+    for placed in case.robots:
+        matrix = None if placed.self_clearance is None else placed.self_clearance.matrix
+        if matrix is not None and matrix.other:
+            text = (
+                f"the SRDF of robot {placed.robot.name!r} names another robot, {matrix.other!r}: is it the right "
+                "file? pairs of links that it excuses are not measured"
+            )
+            yield Notice(Severity.WARNING, "srdf", text, placed.robot.name)
 
 
 def _rides_with_tolerance(case: Case) -> Iterator[Notice]:

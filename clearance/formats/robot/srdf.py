@@ -104,6 +104,7 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
                 valid=nearest_name(sorted(unknown)[0], robot.link_names),
             )
     said = [row for row in known if not row.is_of_one]
+    of = root.get("name") or robot.name
     return CollisionMatrix(
         tuple(row.links[0] for row in said if row.tag == "disable_default_collisions"),
         tuple(_pair(row) for row in said if row.tag == "enable_collisions"),
@@ -112,6 +113,7 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
             *_notes(shown, len(rows) - len(known), unknown, len(known) - len(said)),
             *_notes_on_reasons(shown, said),
         ),
+        "" if of == robot.name else of,
     )
 
 

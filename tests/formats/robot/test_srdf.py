@@ -143,6 +143,22 @@ def state(inner=JOINTS, name="home", group="arm"):
     return f'<group_state name="{name}" group="{group}">{inner}</group_state>'
 
 
+@pytest.mark.parametrize(("name", "called"), [("arm", ""), ("other", ""), ("other", "left")])
+def test_an_srdf_that_names_another_robot_is_warned_of(tmp_path, name, called):
+    """Robots of one maker call their links alike; the name that the case gives is its own affair."""
+    row = disable("base", "upper", "User")
+    case = changed(
+        "arm.urdf",
+        "arm.urdf, self_clearance: true, srdf: arm.srdf" + (f", name: {called}" if called else ""),
+    )
+    text = f'<robot name="{name}">{row}</robot>'
+    made = load_small(tmp_path, case, urdf=TWO_JOINTS, arm__srdf=text)
+    found = [one.line for one in notices_of(made) if one.kind == "srdf"]
+    assert len(found) == (name == "other")
+    for line in found:
+        assert "names another robot, 'other': is it the right file?" in line and "CL435" in line
+
+
 def srdf(*states):
     return f'<robot name="arm">{"".join(states)}</robot>'
 
