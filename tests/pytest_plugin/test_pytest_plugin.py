@@ -285,6 +285,7 @@ def test_exactly_as_far_as_asked_for_is_far_enough_where_the_work_suffices(run, 
         assert_clear(run, between=("box", B), at_least=0.1)
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("certify", [True, False])
 def test_tolerances_count_whichever_pair_is_asked_about(tmp_path, certify):
     case = load_gates(tmp_path, CLEAR)  # 50 and 100 mm
@@ -309,6 +310,7 @@ def test_tolerances_count_whichever_pair_is_asked_about(tmp_path, certify):
         assert_clear(accepted, between=("box", A), at_least=0.0)
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")
 def test_suspect_input_is_never_clear_whichever_pair_is_asked_about(tmp_path):
     case = load_gates(tmp_path, CLEAR)
     doubt = Notice(Severity.SUSPECT, "units", "lengths look like millimetres")
@@ -363,6 +365,7 @@ def test_what_stands_in_the_headline_beside_clear_is_a_warning(inside, pytester)
     assert "gates: clear at the samples only" in result.stdout.str()
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("between", [None, ("*", "*"), ("l2", "*"), ("o*", "l?")])
 def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_meant(
     swaying, between
