@@ -1,13 +1,15 @@
-"""Tables of poses that look like another unit, or leave a turn open."""
+"""Tables of poses that look like another unit, leave a turn open, or begin again elsewhere than they end."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 
 from clearance.world.case import Case
 from clearance.world.extents import metres
 from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN
-from clearance.world.notice import WRAP, Notice, Severity
+from clearance.world.notice import START, WRAP, Notice, Severity
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import time_text
@@ -24,14 +26,35 @@ HALF_TURN = 2e-3
 
 
 def notices_on_tables(case: Case) -> list[Notice]:
-    """Tables of obstacles that look like another unit, or leave a turn open."""
-    texts, halves = [], []
+    """Tables of obstacles that look like another unit, leave a turn open, or begin again elsewhere."""
+    texts, halves, backs = [], [], []
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
+            backs += _back_to_start(f"obstacle {obstacle.name!r}", obstacle.moves)
             texts += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
             halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
     notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
-    return [*notices, *(Notice(Severity.SUSPECT, WRAP, text) for text in halves)]
+    notices += [Notice(Severity.SUSPECT, WRAP, text) for text in halves]
+    return [*notices, *(Notice(Severity.WARNING, START, text) for text in backs)]
+
+
+def _back_to_start(what: str, table: PoseTable) -> Iterator[str]:
+    """How far a table that begins again is then from its end: the next part of a line is, a door is not."""
+    if table.timing.after != "loop":
+        return
+    last, first = table.quaternions[-1], table.quaternions[0]
+    same_side = first if last @ first >= 0.0 else -first
+    ways = _ways(table.positions[[-1, 0]], np.array([last, same_side]))
+    told = [
+        f"{way[0]:.3g} {unit}"
+        for way, least, unit in zip(ways, (STEP_SLIDE, STEP_TURN), ("m", "rad"), strict=True)
+        if way[0] > least
+    ]
+    if told:
+        yield (
+            f"{what} is {' and '.join(told)} away when its table begins again (after: loop): "
+            "no way back is measured; if it is another part each time, accept: [start] says so"
+        )
 
 
 def _half_turns(what: str, table: PoseTable) -> list[str]:
@@ -65,7 +88,11 @@ def _odd(what: str, table: PoseTable) -> list[str]:
 def _jump(what: str, table: PoseTable) -> list[str]:
     """The fastest step of a table, if nothing is so fast. A short way is no jump: stamps can lie close."""
     for ways, least, fast, unit in zip(
-        _ways(table), (STEP_SLIDE, STEP_TURN), (FAST_SLIDE, FAST_TURN), ("m", "rad"), strict=True
+        _ways(table.positions, table.quaternions),
+        (STEP_SLIDE, STEP_TURN),
+        (FAST_SLIDE, FAST_TURN),
+        ("m", "rad"),
+        strict=True,
     ):
         speeds = np.where(ways > least, ways, 0.0) / _lengths(table)
         step = int(speeds.argmax())
@@ -78,10 +105,10 @@ def _jump(what: str, table: PoseTable) -> list[str]:
     return []
 
 
-def _ways(table: PoseTable) -> tuple[np.ndarray, np.ndarray]:
-    """(n - 1,) [m] and [rad] How far a table goes and turns from sample to sample."""
-    ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
-    chords = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
+def _ways(positions: np.ndarray, quaternions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n - 1,) [m] and [rad] How far the n poses of a table are from one to the next."""
+    ways = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    chords = np.linalg.norm(np.diff(quaternions, axis=0), axis=1)
     return ways, 4.0 * np.arcsin(np.minimum(1.0, chords / 2.0))
 
 
@@ -92,7 +119,7 @@ def _lengths(table: PoseTable) -> np.ndarray:
 
 def _creeps(table: PoseTable) -> bool:
     """True for a motion that gets somewhere, but never faster than creeping."""
-    ways, turns = _ways(table)
+    ways, turns = _ways(table.positions, table.quaternions)
     lengths = _lengths(table)
     slow = (ways / lengths).max() <= CREEP_SLIDE and (turns / lengths).max() <= CREEP_TURN
     return bool(slow and (ways.sum() > LEAST_SLIDE or turns.sum() > LEAST_TURN))
@@ -100,7 +127,9 @@ def _creeps(table: PoseTable) -> bool:
 
 def greatest_speeds_in(table: PoseTable) -> tuple[float, float]:
     """[m/s], [rad/s] The greatest mean speeds in the run, between samples."""
-    slide, turn = (float((ways / _lengths(table)).max()) for ways in _ways(table))
+    slide, turn = (
+        float((ways / _lengths(table)).max()) for ways in _ways(table.positions, table.quaternions)
+    )
     return slide, turn
 
 

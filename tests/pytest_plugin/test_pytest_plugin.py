@@ -370,7 +370,7 @@ def test_what_stands_in_the_headline_beside_clear_is_a_warning(inside, pytester)
 def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_meant(
     swaying, between
 ):
-    with warnings.catch_warnings(record=True) as found:
+    with warnings.catch_warnings(record=True, action="always") as found:
         assert_clear(swaying, between=between, at_least=0.001)
     told = [one for one in found if "not measured are" in str(one.message)]
     meant = between != ("o*", "l?")

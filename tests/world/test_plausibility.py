@@ -375,6 +375,21 @@ def test_a_table_that_jumps_is_suspect(step, place, turn, rate, told):
     assert all(text.startswith(f"CHECK UNITS: obstacle 'block' {told}") for text in found)
 
 
+@pytest.mark.parametrize("after", ["loop", "hold"])
+@pytest.mark.parametrize(
+    ("end", "turn", "told"), [(0.0, 0.0, ""), (1.0, 0.0, "1 m"), (0.0, 1.0, "1 rad")]
+)
+def test_a_table_that_begins_again_elsewhere_is_told(end, turn, told, after):
+    xyz = np.array([[0.0, 2.0, 0.0], [0.5, 2.0, 0.0], [end, 2.0, 0.0]])
+    quaternions = np.array([[0.0, 0.0, np.sin(a / 2), np.cos(a / 2)] for a in (0.0, 0.5, turn)])
+    quaternions[2] *= -1.0  # the same turn
+    moves = PoseTable(np.arange(3.0), xyz, quaternions, Timing(after=after))
+    pusher = Obstacle(Body("pusher", box((0.1, 0.1, 0.1))), moves=moves)
+    (found,) = notices_on_tables(Case("c", (PlacedRobot(arm()),), (pusher,))) or [None]
+    assert (found is None) == (not told or after == "hold")
+    assert found is None or f"is {told} away when its table begins again" in found.text
+
+
 @pytest.mark.parametrize(("radius", "n_told"), [(0.0051, 0), (0.0049, 1)])
 def test_a_scan_whose_balls_stand_alone_is_a_warning(radius, n_told):
     """Points 10 mm apart in a row."""
