@@ -27,7 +27,7 @@ HALF_TURN = 2e-3
 
 def notices_on_tables(case: Case) -> list[Notice]:
     """Tables of obstacles that look like another unit, leave a turn open, or begin again elsewhere."""
-    texts, halves, backs = [], [], []
+    texts, halves, backs = list[str](), list[str](), list[str]()
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
             backs += _back_to_start(f"obstacle {obstacle.name!r}", obstacle.moves)
