@@ -104,11 +104,11 @@ def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
 
 def _times_lacking(case: Case) -> Iterator[Notice]:
     """Notices on programs whose times lack something, or rest on what nobody says, beside others that move."""
-    moving = [table.name for table in _tables(case)]
     for placed in case.robots:
         asked = placed.trajectory
         if asked is None or not (asked.left_out or asked.is_rough):
             continue
+        moving = [table.name for table in _tables(case)]
         own = [f"robot {name!r}" for name in (placed.robot.name, *asked.drives)]
         others = listed([name for name in moving if name not in own])
         if others and asked.left_out:
