@@ -94,7 +94,7 @@ class Verdict:
             else of all. Whoever tells one moment of a run tells this one.
         nearest: the moment of least clearance of all, in one line, where that is not the most critical one.
         clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
-            for one clock and all of the run.
+            for one clock and all of the run. has_holes: some are not measured.
         waived: what is below a limit and waived, one line each. n_waivers: how many waivers that takes.
         waiver_faults: what is wrong with waivers, one line each.
         tolerances: what they make of limits that are kept as measured: "kept", "not proven", or "accepted" where
@@ -133,6 +133,7 @@ class Verdict:
     excused: tuple[str, ...] = ()
     warned: tuple[str, ...] = ()
     simulated: bool = False
+    has_holes: bool = False
 
     def __bool__(self) -> NoReturn:
         refuse_truth(self, "passed")
@@ -164,11 +165,11 @@ class Verdict:
 
     @property
     def shade(self) -> str:
-        """The status whose colour it has: nothing is green that fails, or that only the samples show."""
+        """The status whose colour it has: nothing is green that fails, or of which only a part is measured."""
         if self.disputed_by or self.status in (UNUSED_WAIVER, NOT_PROVEN, WARNING):
             return str(Status.VIOLATED)
-        by_samples = self.basis == SAMPLES and self.status == Status.CLEAR
-        return str(Status.NEAR) if by_samples else self.status
+        in_part = (self.basis == SAMPLES or self.has_holes) and self.status == Status.CLEAR
+        return str(Status.NEAR) if in_part else self.status
 
     @property
     def reservations(self) -> tuple[str, ...]:
@@ -289,6 +290,7 @@ def verdict_of(
         beside=tuple(beside),
         nearest=_nearest(record, worst),
         clocks=_when(record.case),
+        has_holes=bool(not_measured(record.case)),
         beyond="joints beyond their limits" if any(one.kind in BEYOND for one in notices) else "",
         waived=waived_lines(judgement),
         n_waivers=len(judgement.covering),

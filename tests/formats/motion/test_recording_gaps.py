@@ -188,6 +188,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
     text = changed("file: path.csv", "file: path.csv, gaps: not_measured")
     run = cl.check(load_case(write_case(tmp_path, text, **files)))
     assert run.verdict.headline().endswith(", not measured from 1 to 3 s")
+    assert run.verdict.shade == "near"  # no green for a part
     assert run.verdict.passed
     told = [text for text in run.verdict.warnings if text.startswith("not measured:")]
     assert told == [
