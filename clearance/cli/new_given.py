@@ -28,12 +28,17 @@ _OPTION_OF_PROGRAM = {"link": "--flange", "entry": "--entry", "skip": "--skip"}
 
 _REMEDIES = {
     "robot.srdf: the file": "--srdf FILE",
+    "robot.package_dirs": "--package-dir",
     "trajectory: {program: …, start_state: {joint: …}}": "--start JOINT=VALUE,…",
 }
 """What is valid in a case file, and what the command has in its place."""
 
-_KEYS_OF_PROGRAM = re.compile(r"program: (\{.*\})")
-"""Keys of a program as errors name them."""
+_PATTERNS = {
+    re.compile(r"program: (\{.*\})"): r"--program-keys '\1'",
+    re.compile(r"robot: \{xacro_args: \{(\w+): VALUE\}\}"): r"--xacro-arg \1:=VALUE",
+    re.compile(r"includes: \{\"?(.*?)\"?: skip\} in the case"): r"--include \1=skip",
+}
+"""Keys with values of their own, as errors name them, and what the command has in their place."""
 
 
 def names_in(value: str) -> list[str]:
@@ -88,7 +93,9 @@ def naming_options() -> Iterator[None]:
         error.where = ": ".join([option, *places])
         for key, remedy in _REMEDIES.items():
             error.valid = error.valid.replace(key, remedy)
-        error.valid = _KEYS_OF_PROGRAM.sub(r"--program-keys '\1'", error.valid)
+            error.problem = error.problem.replace(key, remedy)
+        for pattern, ours in _PATTERNS.items():
+            error.valid = pattern.sub(ours, error.valid)
         raise
 
 

@@ -198,7 +198,7 @@ FORMATS = (
     Format("SRDF", Kind.SRDF, (".srdf",), sniff=sniff.is_srdf, what="a MoveIt SRDF",
            hint="name it in a case file: robot: {{srdf: {name}, self_clearance: true}}, beside urdf"),
     Format("SDF", Kind.SCENE, (".sdf", ".world"), "scene.sdf.scene:read_sdf", sniff=sniff.has_root("sdf"),
-           what="an SDF world or model", hint="call it .sdf and name it in a case file: scene: {name}, beside "
+           what="an SDF world or model", hint="name it, as .sdf, in a case file: scene: {name}, beside "
            "robot (as URDF) and trajectory"),
     Format("MJCF", Kind.SCENE, (".mjcf", ".xml"), "scene.mjcf:read_mjcf_scene", sniff=_IS_MJCF,
            extra="mujoco", what="a MuJoCo model", hint=_MJCF),

@@ -12,6 +12,8 @@ from ruamel.yaml import YAML
 
 from clearance import load_case
 from clearance.cli import run
+from clearance.cli.new_given import naming_options
+from clearance.errors import BadSyntax
 from clearance.formats.files.input_files import path_from
 from clearance.formats.text.yaml_text import flow
 from clearance.plain_yaml import parse_yaml
@@ -401,6 +403,20 @@ def test_a_mistake_is_one_line_and_leaves_nothing(capsys, words, says):
     told = capsys.readouterr().err.strip()
     assert says in told and told.count("\n") == 0
     assert sorted(Path().rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("valid", "told"),
+    [
+        ("give its folder in robot.package_dirs", "give its folder in --package-dir"),
+        ("robot: {xacro_args: {name: VALUE}}", "--xacro-arg name:=VALUE"),
+        ('includes: {"model://sun": skip} in the case leaves it out', "--include model://sun=skip leaves it out"),
+    ],
+)  # fmt: skip
+def test_errors_name_options_in_place_of_keys_of_a_case(valid, told):
+    with pytest.raises(BadSyntax) as caught, naming_options():
+        raise BadSyntax("looked for it in robot.package_dirs", where="robot.urdf", valid=valid)
+    assert str(caught.value) == f"--robot: looked for it in --package-dir; {told}"
 
 
 def test_nothing_is_overwritten_unasked(capsys):

@@ -109,6 +109,7 @@ def _on_another_machine(
         MissingFile: no folder of the path is a package that is here.
     """
     parts = PurePosixPath(path).parts[1:] if path.startswith("/") else ()
+    remedy = "give the folder of its package in robot.package_dirs" if parts else ""
     for i, package in enumerate(parts[:-1]):
         for place, variable in _package_folders(package, folder, package_dirs):
             found = place.joinpath(*parts[i + 1 :])
@@ -116,7 +117,8 @@ def _on_another_machine(
                 chosen = not {place, place.parent}.isdisjoint(package_dirs)
                 proven = chosen or _has_manifest(found, place)
                 return MeshPath(found, "" if proven else package, variable, elsewhere=True)
-    remedy = "give the folder of its package in robot.package_dirs" if parts else ""
+            if _is_file(place / "package.xml"):
+                remedy = _other_version(package, parts[i + 1 :])
     raise MissingFile(f"there is no mesh {given!r}", valid=remedy)
 
 
@@ -183,17 +185,25 @@ def package_folder(package: str, folder: Path, package_dirs: Sequence[Path]) -> 
 
 def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
     package, *parts = _parts(rest)
+    remedy = "give its package's folder in robot.package_dirs"
     for folder, variable in _package_folders(package, urdf_folder, package_dirs):
         if _is_file(folder.joinpath(*parts)):
             return MeshPath(folder.joinpath(*parts), variable=variable)
+        if _is_file(folder / "package.xml"):
+            remedy = _other_version(package, parts)
     for n_dropped in range(len(parts)):
         for folder in (*package_dirs, urdf_folder):
             if _is_file(folder.joinpath(*parts[n_dropped:])):
                 return MeshPath(folder.joinpath(*parts[n_dropped:]), package)
     raise MissingFile(
         f"there is no mesh {given!r}; looked for it {_places(urdf_folder, package_dirs)}",
-        valid="give its package's folder in robot.package_dirs",
+        valid=remedy,
     )
+
+
+def _other_version(package: str, parts: Sequence[str]) -> str:
+    """The remedy for a file that is not in its package."""
+    return f"package {package!r} is here, without {'/'.join(parts)}: is it of another version?"
 
 
 def _is_model(path: Path) -> bool:

@@ -93,6 +93,17 @@ def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
     assert "$ROS_PACKAGE_PATH (/opt/ws/src) and $AMENT_PREFIX_PATH (not set)" in told
 
 
+@pytest.mark.parametrize("place", ["package:/", "file:///root/share"])
+def test_an_error_says_that_the_package_is_here_without_the_file(tmp_path, place):
+    package(tmp_path / "given")
+    (tmp_path / "given/meshes/part.stl").rename(tmp_path / "given/meshes/renamed.stl")
+    with pytest.raises(MissingFile) as caught:
+        load_robot(tmp_path, ASKED.replace("package:/", place), [tmp_path])
+    assert "package 'arms' is here, without meshes/part.stl: is it of another version?" in str(
+        caught.value
+    )
+
+
 def package(folder, name="arms"):
     """A package with its manifest and a mesh."""
     part(folder / "meshes" / "part.stl")

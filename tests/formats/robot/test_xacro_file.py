@@ -143,7 +143,16 @@ def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
     ("inner", "fault", "says"),
     [
         ('<link name="${nothing}"/>', BadSyntax, "name 'nothing' is not defined when evaluating"),
-        ('<link name="$(arg nothing)"/>', BadSyntax, "Undefined substitution argument nothing"),
+        (
+            '<link name="$(arg nothing)"/>',
+            BadSyntax,
+            "argument 'nothing' has no value; robot: {xacro_args: {nothing: VALUE}}",
+        ),
+        (
+            "<link name=\"${xacro.load_yaml('')['a']}\"/>",
+            BadSyntax,
+            "xacro: a file cannot be read (is a directory) when evaluating",
+        ),
         ('<xacro:include filename="no.xacro"/>', MissingFile, "there is no file 'no.xacro'"),
         ("<xacro:nothing/>", BadSyntax, "unknown macro name: xacro:nothing"),
         ("<link>", BadSyntax, "arm.urdf.xacro: line 1: xacro: mismatched tag"),

@@ -103,9 +103,18 @@ def evaluated(path: Path, given: dict[str, str]) -> dict[str, Any]:
 
 def _fault(error: Exception, stack: list[str | None]) -> dict[str, Any]:
     """What went wrong, where: the file that was being read, and the line where the parser knows it."""
+    from xacro.substitution_args import ArgException
+
+    inner = _innermost(error)
+    problem, valid = _described(error), getattr(inner, "valid", "")
+    if isinstance(inner, ArgException):
+        problem, valid = (
+            f"argument {str(inner)!r} has no value",
+            f"robot: {{xacro_args: {{{inner}: VALUE}}}}",
+        )
     return {
-        "problem": _described(error),
-        "valid": getattr(_innermost(error), "valid", ""),
+        "problem": problem,
+        "valid": valid,
         "file": next((name for name in reversed(stack) if name), None),
         "line": getattr(error, "lineno", None),
         "missing": _missing(error),
@@ -132,6 +141,8 @@ def _described(error: Exception) -> str:
         return "it is nested too deep, or files or macros call each other without end"
     if isinstance(error, MemoryError):
         return "it needs too much memory"
+    if isinstance(error, OSError):
+        return f"a file cannot be read ({(error.strerror or 'unknown error').lower()})"
     if isinstance(error, KeyError):
         return f"unknown name {error}"
     if hasattr(error, "lineno"):
@@ -139,9 +150,7 @@ def _described(error: Exception) -> str:
     own = str(getattr(error, "problem", "") or Exception.__str__(error))
     own = "" if own == "None" or own.startswith("<class ") else own
     inner = getattr(error, "exc", None)
-    wrapped = (
-        _described(inner) if isinstance(inner, Exception) and not isinstance(inner, OSError) else ""
-    )
+    wrapped = _described(inner) if isinstance(inner, Exception) else ""
     parts = (own, "" if wrapped in own else wrapped, getattr(error, "suffix", None) or "")
     return " ".join(part for part in parts if part) or type(error).__name__
 
