@@ -72,14 +72,14 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         BadInput: with the file and the line.
     """
     with at(asked.shown):
-        main = listing_of(asked.data)
-        others = [listing_of(data, file) for file, data in asked.beside.items()]
-        routines = {one.name: one for one in (*others, main)}
+        main, *blocks = listing_of(asked.data)
+        others = [one for file, data in asked.beside.items() for one in listing_of(data, file)]
+        routines = {one.name: one for one in (*others, *blocks, main)}
         entry = asked.asked.entry
         entry_of("program", [main.name], entry, (entry or "").upper(), main.name)
         language = _Fanuc(asked.asked)
         run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
-        statements = (one for listing in (*others, main) for one in within(listing.body))
+        statements = (one for listing in routines.values() for one in within(listing.body))
         counters = {one.name.name for one in statements if isinstance(one, For)}
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
         run.run_whole(main.body)

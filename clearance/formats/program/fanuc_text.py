@@ -103,7 +103,7 @@ _ASSIGNED = re.compile(r"(?is)((?:R|P|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOO
 _JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
 _TIMED = re.compile(
     r"(?i)\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,\s*"
-    r"(CALL\s+[\w-]+(\s*\([^()]*\))?|\w+\s*\[[^\]]*\]\s*=\s*[^\s,]+)"
+    r"(P-SPS\b|CALL\s+[\w-]+(\s*\([^()]*\))?|\w+\s*\[[^\]]*\]\s*=\s*[^\s,]+)"
 )
 
 
@@ -128,8 +128,8 @@ class Motion:
 _ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
 
 
-def listing_of(data: bytes, file: str = "") -> Routine:
-    """The program in a file; its name is in capitals.
+def listing_of(data: bytes, file: str = "") -> tuple[Routine, ...]:
+    """The program in a file, its name in capitals, and what its motions do on their way.
 
     Args:
         file: as of a `Line`.
@@ -154,8 +154,8 @@ def listing_of(data: bytes, file: str = "") -> Routine:
     rows = text[start.end() : body_end].split("\n")
     first = text.count("\n", 0, start.end()) + 1
     instructions = [*_instructions(rows, first, file), Token(END, "", Line(first, file))]
-    body = _Reader(instructions, positions).all()
-    return Routine(head[1].upper(), Line(1), _ARGUMENTS, body)
+    reader = _Reader(instructions, positions)
+    return Routine(head[1].upper(), Line(1), _ARGUMENTS, reader.all()), *reader.blocks
 
 
 def _instructions(rows: list[str], first: int, file: str) -> Iterator[Token]:
@@ -172,7 +172,7 @@ def _instructions(rows: list[str], first: int, file: str) -> Iterator[Token]:
         parts.append(part)
         if part.endswith(";"):
             text = " ".join(parts)[:-1].strip()
-            if text and not text.startswith(("!", "//", "--")):
+            if text and (not text.startswith(("!", "//", "--")) or not text.strip("-")):
                 yield Token("instruction", text, line)
             parts = []
     if parts:
@@ -194,7 +194,7 @@ class _Reader(BlockReader):
 
     def __init__(self, instructions: Sequence[Token], positions: Mapping[int, Position]) -> None:
         super().__init__(ExpressionReader(_Instructions(instructions), _GRAMMAR))
-        self.positions = positions
+        self.positions, self.blocks = positions, list[Routine]()
 
     def all(self) -> tuple[Statement, ...]:
         """All statements.
@@ -310,13 +310,32 @@ class _Reader(BlockReader):
             raise BadSyntax(fault, where=str(line), valid="as in L P[1] 100mm/sec FINE")
         further = speed[3][end.end() :]
         options = tuple(_TIMED.sub("", further).upper().replace(",", " ").split())
-        timed = (self._simple(line, one[3]) for one in _TIMED.finditer(further))
+        timed = (self._on_the_way(line, one[3]) for one in _TIMED.finditer(further))
         unit = (speed[2] or "").lower()
         motion = Motion(
             tuple(points), self.positions, unit, named(end[1]), options, tuple(chain(*timed))
         )
         args = (Constant(motion), _condition(speed[1], line))
         return Do(line, Call(found[1].upper(), args, {}, line))
+
+    def _on_the_way(self, line: Line, text: str) -> list[Statement]:
+        """What a motion does on its way: one statement, or for `P-SPS` a call of those that follow up to dashes.
+
+        Raises:
+            BadSyntax: there are no dashes.
+        """
+        if text.upper() != "P-SPS":
+            return self._simple(line, text)
+        body = list[Statement]()
+        while not self.cursor.accept("-"):
+            if self.cursor.next.kind == END:
+                raise BadSyntax("P-SPS has no end", where=str(line), valid="a line of dashes")
+            body += self.statement()
+        leaves = [one for one in within(tuple(body)) if isinstance(one, Leave) and one.what != STOP]
+        body += (Unreadable(one.line, one.word, jumps=True) for one in leaves)
+        name = f"P-SPS of {line}"
+        self.blocks.append(Routine(name, line, (), tuple(body)))
+        return [Do(line, Call(name, (), {}, line))]
 
 
 def _first(text: str) -> str:

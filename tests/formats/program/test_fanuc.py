@@ -414,3 +414,34 @@ def test_what_a_called_program_may_change_is_not_known_in_it_nor_behind_it(chang
             cl.ClearanceError, match=r"(given a value before|is set in the program)"
         ):
             names(f"CALL SUB ;\n{after}{go(4)}", beside)
+
+
+def at_point(*block: str) -> str:
+    """A motion with lines that run at its end, as a listing shows them below it."""
+    return "".join(f"{one} ;\n" for one in ("L P[2] 9mm/sec FINE TB .10sec,P-SPS", *block, "------"))
+
+
+def test_lines_that_run_at_the_end_of_a_motion_move_nothing():
+    lines = ("DO[15]=ON", "!a remark", "WAIT (DI[9])", "IF (DI[1]) THEN", "DO[2]=ON", "ENDIF")
+    block = at_point(*lines, "WAIT .10(sec)", "OVERRIDE=50%")
+    assert names(block + go(3)) == ["P[2]", "P[3]"]
+    left_out = " ".join(program(FRAMES + block).left_out)
+    assert "WAIT (line 11)" in left_out and "OVERRIDE (line 16)" in left_out
+    for line in (go(3)[:-3], "END", "JMP LBL[1]", "CALL GRIP", "IF DI[1]=ON,CALL GRIP"):
+        told = r"program 'P-SPS of line 8' moves the robot, or may: (L|END|'END'|JMP|GRIP) at line 10"
+        with pytest.raises(cl.ClearanceError, match=told):
+            names(f"{at_point('DO[1]=ON', line)}LBL[1] ;\n")
+    assert names(at_point("CALL GRIP") + go(3), skip=["GRIP"]) == ["P[2]", "P[3]"]
+    with pytest.raises(cl.ClearanceError, match="line 8: P-SPS has no end; a line of dashes"):
+        names(at_point("DO[1]=ON").replace("------ ;", ""))
+
+
+@pytest.mark.parametrize("changed", ["UFRAME_NUM=2", "R[1]=3", "P[3]=P[2]", "UFRAME[1]=PR[1]"])
+def test_what_lines_at_the_end_of_a_motion_change_is_not_known_behind_it(changed):
+    body = f"R[1]=3 ;\n{at_point(changed)}L P[R[1]] 9mm/sec FINE ;\n"
+    told = "may change it at any time|was taught|is given a value before|is set in the program"
+    if changed == "UFRAME_NUM=2":  # the point says its own, and no controller accepts another
+        assert names(body) == ["P[2]", "P[3]"]
+    else:
+        with pytest.raises(cl.ClearanceError, match=told):
+            names(body)
