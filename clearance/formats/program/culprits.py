@@ -51,4 +51,5 @@ def undecided_branch(one: If, culprits: Sequence[Culprit], why: Unknown, suffix:
     """The error for a branch that moves the robot, or may, and that only the controller decides."""
     fault = f"{one.word} decides on {culprits[0]}, and is not known: {why.why}"
     past = way_past(culprits, suffix)
-    return BadProgram(fault, valid=f"let the file decide it{past and ', or '}{past}")
+    valid = why.valid("let the file decide it")
+    return BadProgram(fault, valid=f"{valid}{past and ', or '}{past}")

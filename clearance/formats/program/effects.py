@@ -41,6 +41,9 @@ from clearance.formats.program.tokens import Line
 from clearance.formats.text.notes import counted
 from clearance.world.notice import listed
 
+KEPT = "{} decides, which the controller keeps between runs"
+"""The doubt on a branch or a loop that a value decides."""
+
 
 @dataclass(frozen=True, eq=False)
 class Effects:
@@ -250,11 +253,11 @@ class Effects:
 
 @dataclass(eq=False)
 class PersistentValues:
-    """Which variables of a run rest on kept values.
+    """Which variables of a run rest on values that may be others: the controller keeps them, or the case has them.
 
     Attributes:
         frames: the run's variables of the whole program, then of each routine that is entered.
-        origins: for each of these, by variable, the kept value that it rests on.
+        origins: for each of these, by variable, what decides with it, as `KEPT`.
     """
 
     effects: Effects
@@ -262,7 +265,7 @@ class PersistentValues:
     origins: list[dict[str, str]] = field(default_factory=lambda: [{}])
 
     def origin_of(self, parts: Iterable[Expression]) -> str:
-        """The kept value that expressions rest on; empty where none is."""
+        """What decides with values that expressions rest on; empty where none is."""
         for name in self.effects.read_by(parts) if any(self.origins) else ():
             origins = self.origins[-1 if name in self.frames[-1] else 0]
             if name in origins:
@@ -285,9 +288,9 @@ class PersistentValues:
         for name, _ in self.effects.changed_in(bodies):
             self.origins[-1 if name in self.frames[-1] else 0][name] = origin
         other = "the way not taken is" if isinstance(one, If) else "other numbers of passes are"
-        text = f"{one.line}: {other} not measured; {origin} decides"
+        text = f"{one.line}: {other} not measured; {origin}"
         moves = any(True for body in bodies for _ in self.effects.deciding(body))
-        return {f"{text}, which the controller keeps between runs": None} if moves else {}
+        return {text: None} if moves else {}
 
 
 def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:
@@ -364,7 +367,7 @@ def unreadable_word(one: Unreadable, may_be_left_out: bool) -> BadProgram:
 
 def undecided(one: While, culprit: Culprit | None, value: Unknown) -> BadProgram:
     """The error for a loop whose condition only the controller knows."""
-    fault, valid = f"{one.word} decides on {culprit}, and", "let the file decide it"
+    fault, valid = f"{one.word} decides on {culprit}, and", value.valid("let the file decide it")
     if culprit is None:
         fault, valid = f"{one.word} waits for what", f"{valid}, or skip: [{one.word}]"
     return BadProgram(f"{fault} is not known: {value.why}", valid=valid)

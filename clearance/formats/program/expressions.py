@@ -31,10 +31,12 @@ class Unknown:
 
     Attributes:
         what: the value that is unknown. hint: what may be meant, slow to find; empty where nothing is near.
+        remedy: the key of the case that gives it, and what it means; empty where there is none.
     """
 
     what: str
     hint: Callable[[], str] = field(default=str, compare=False, repr=False)
+    remedy: str = field(default="", compare=False)
 
     def __repr__(self) -> str:
         return "what is not known"
@@ -44,6 +46,10 @@ class Unknown:
         """Of what it is, with the hint."""
         hint = self.hint()
         return f"{self.what} ({hint})" if hint else self.what
+
+    def valid(self, other: str) -> str:
+        """What is valid in its place, beside another way."""
+        return f"{other}, or {self.remedy}" if self.remedy else other
 
 
 @dataclass(frozen=True)
@@ -181,7 +187,7 @@ def known(value: Any, what: str) -> Any:
         if isinstance(part, list):
             known(part, what)
         if isinstance(part, Unknown):
-            raise BadProgram(f"{what} is not known: {part.why}", valid="a constant")
+            raise BadProgram(f"{what} is not known: {part.why}", valid=part.valid("a constant"))
     return value
 
 

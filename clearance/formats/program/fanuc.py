@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,8 +26,15 @@ from clearance.formats.program.controller_program import (
 )
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown, number
-from clearance.formats.program.fanuc_positions import Position
-from clearance.formats.program.fanuc_text import (
+from clearance.formats.program.fanuc_positions import MM, Position
+from clearance.formats.program.fanuc_registers import (
+    give_registers,
+    known_register,
+    value_of_register,
+)
+from clearance.formats.program.fanuc_text import listing_of
+from clearance.formats.program.fanuc_words import (
+    ANY_REGISTER,
     DECIDING,
     LARGEST_SPEEDS,
     MOVES,
@@ -36,18 +43,12 @@ from clearance.formats.program.fanuc_text import (
     WAIT,
     WAITING,
     Motion,
-    listing_of,
 )
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID, WAITS
 from clearance.formats.program.statements import Assign, Do, For, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
-from clearance.geometry.pose import pose_from_rpy
-
-MM = 1e-3
-
-_POSE, _JOINTS = ("X", "Y", "Z", "W", "P", "R"), ("J1", "J2", "J3", "J4", "J5", "J6")
 
 _METRES = {"mm/sec": MM, "cm/min": 0.01 / 60.0, "inch/min": 0.0254 / 60.0}
 """[m/s] One of each unit."""
@@ -82,6 +83,7 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         statements = (one for listing in routines.values() for one in within(listing.body))
         counters = {one.name.name for one in statements if isinstance(one, For)}
         run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
+        give_registers(asked.asked, run)
         run.run_whole(main.body)
         return language.program_of(run)
 
@@ -114,8 +116,7 @@ class _Fanuc(Language):
 
     def value_of(self, name: str, run: Execution) -> Any:
         """None, or what is known of an input, which only the controller has."""
-        is_own = name.startswith(("R[", "U", "AR["))
-        return None if is_own else Unknown(f"only the controller knows {name}")
+        return value_of_register(name, run)
 
     def instruct(self, call: Call, run: Execution) -> None:
         """A motion or a wait; all else moves nothing.
@@ -142,7 +143,8 @@ class _Fanuc(Language):
         for word in motion.options:
             if not _IDLE.fullmatch(word):
                 fault = f"{word} is not read, and may move the target or the way"
-                raise BadProgram(fault, valid="take it out of the motion")
+                valid = "a motion whose target and way the file decides"
+                raise BadProgram(fault, valid=valid)
             if re.fullmatch(r"ACC(?!100$)\d+", word):
                 run.note(NOT_FOLLOWED, f"{word} ({call.line})")
             elif word.startswith("PSPD"):  # a share of the speed in a process
@@ -150,7 +152,7 @@ class _Fanuc(Language):
         if not kind or len(motion.points) != (2 if kind == "circ" else 1):
             fault = f"{call.name} with {len(motion.points)} points is not read"
             raise BadProgram(fault, valid="J and L with one, C with two")
-        ends = [self._target(point, motion.positions, kind, run) for point in motion.points]
+        ends = [self._target(point, motion, kind, run) for point in motion.points]
         to, tool = ends[-1]
         return ControllerMove(
             line=call.line,
@@ -188,7 +190,7 @@ class _Fanuc(Language):
     def _target(
         self,
         point: tuple[str, Expression],
-        positions: Mapping[int, Position],
+        motion: Motion,
         kind: str,
         run: Execution,
     ) -> tuple[Target, np.ndarray]:
@@ -200,30 +202,61 @@ class _Fanuc(Language):
         word, by = point
         index = number(run.evaluated(by), f"the number of {word}[…]")
         name, is_own = f"{word}[{index:.17g}]", word == "P" and index.is_integer()
-        one = positions.get(int(index)) if is_own else None
-        if name in run.variables or name in run.concurrent:
+        one = motion.positions.get(int(index)) if is_own else None
+        if word == "PR":
+            one = known_register(name, run)
+            numbers = (self._chosen("UFRAME", run), self._chosen("UTOOL", run))
+            if None in numbers:  # it has none of its own
+                one = replace(one, frame=None, tool=None)
+        elif name in run.variables or name in run.concurrent:
             raise BadProgram(
                 f"{name} is given a value before", valid="a point that no line changes"
             )
         if one is None:
-            fault = "a position register" if word == "PR" else "no position of it under /POS"
-            raise BadProgram(f"{name}: {fault}", valid="use P[…] with a position in the file")
+            valid = "use P[…] with a position in the file"
+            raise BadProgram(f"{name}: no position of it under /POS", valid=valid)
         untaught = [key for key, value in one.values.items() if value is None]
-        is_joints = "J1" in one.values
-        missing = [key for key in (_JOINTS if is_joints else _POSE) if key not in one.values]
+        is_joints = one.is_joints
+        missing = [key for key in one.keys if key not in one.values]
         if untaught or missing:
             fault = f"{name} has no {', '.join(untaught or missing)}"
             raise BadProgram(fault, valid="a taught position")
-        tool = self._frame(name, "UTOOL", one.tool, run, kind != "ptp" or not is_joints)
-        values = {key: float(value) for key, value in one.values.items() if value is not None}
+        taught, needed = one.tool, kind != "ptp" or not is_joints
+        if not needed and motion.end != "FINE":  # the corner is where the tool is, whichever it is
+            taught, needed = taught if self._chosen("UTOOL", run) is None else None, True
+        tool = self._frame(name, "UTOOL", taught, run, needed)
         if is_joints:
-            axes = tuple(math.radians(values[key]) for key in _JOINTS)
+            self._shifts(motion, kind, True, run)
+            axes = tuple(math.radians(one.element(i)) for i in range(1, 7))
             return AxisTarget(axes, one.external, name), tool
-        x, y, z, *turns = (values[key] for key in _POSE)
-        pose = pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
         frame = self._frame(name, "UFRAME", one.frame, run, True)
+        shifts = self._shifts(motion, kind, False, run)
+        pose = frame @ shifts["OFFSET"] @ one.pose() @ shifts["TOOL_OFFSET"]
         asked = _configuration(one.configuration) if kind == "ptp" else {}
-        return PoseTarget(frame @ pose, one.external, name=name, **asked), tool
+        if word == "PR" and kind == "ptp" and not one.configuration:
+            asked = {"unchecked": f"the configuration of {name}"}
+        return PoseTarget(pose, one.external, name=name, **asked), tool
+
+    def _shifts(
+        self, motion: Motion, kind: str, is_joints: bool, run: Execution
+    ) -> Mapping[str, np.ndarray]:
+        """(4, 4) [m] How far offsets move the end of a motion: along the user frame, and along the tool.
+
+        Raises:
+            BadProgram: an offset that turns, or of a point that has axes.
+        """
+        found = {word: np.eye(4) for word in ("OFFSET", "TOOL_OFFSET")}
+        for word, by in motion.offsets:
+            name = f"PR[{number(run.evaluated(by), f'the number of {word},PR[…]'):.17g}]"
+            one = known_register(name, run)
+            turns = one.is_joints or any(one.element(i) for i in (4, 5, 6))
+            if turns or one.external or kind == "circ" or is_joints:
+                fault = (
+                    f"{word},{name} is read for lengths along X, Y and Z alone, of J and L to poses"
+                )
+                raise BadProgram(fault, valid="a point that has the offset in it")
+            found[word][:3, 3] += one.pose()[:3, 3]
+        return found
 
     def _frame(
         self, name: str, kind: str, taught: int | None, run: Execution, needed: bool
@@ -233,8 +266,7 @@ class _Fanuc(Language):
         Raises:
             BadProgram: they differ, as no controller accepts.
         """
-        chosen = run.value_of(Name(f"{kind}_NUM", Line(0)))
-        current = None if isinstance(chosen, Unknown) else number(chosen, f"{kind}_NUM")
+        current = self._chosen(kind, run)
         index = taught if current is None else current
         if taught is not None and index != taught and needed:
             fault = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
@@ -246,13 +278,31 @@ class _Fanuc(Language):
         is_changed = key in run.variables or key in run.concurrent
         if index is not None and key in given and not is_changed:
             return np.asarray(given[key].matrix())
+        value = run.value_of(Name(key, Line(0))) if is_changed else None
+        if (
+            isinstance(value, Position)
+            and not value.is_joints
+            and ANY_REGISTER not in run.variables
+        ):
+            return value.pose()
         if not needed:
             return np.eye(4)
         if index is None:
-            fault = f"{name}: no {kind}_NUM is set before"
-            raise BadProgram(fault, valid=f"write {kind}_NUM=1 before it")
-        fault = "is set in the program" if is_changed else "is not in a listing"
-        return np.asarray(run.lack(f"{name}: {key} {fault}", word, key))
+            fault, unset = f"{name}: no {kind}_NUM is set before", run.value_of(_number_of(kind))
+            raise BadProgram(fault, valid=unset.valid(f"write {kind}_NUM=1 before it"))
+        if is_changed:
+            why = value.why if isinstance(value, Unknown) else "it is no pose"
+            valid = "a frame that the file decides"
+            raise BadProgram(
+                f"{name}: {key} is set in the program, and is not known: {why}",
+                valid=value.valid(valid) if isinstance(value, Unknown) else valid,
+            )
+        return np.asarray(run.lack(f"{name}: {key} is not in a listing", word, key))
+
+    def _chosen(self, kind: str, run: Execution) -> float | None:
+        """The number of the frame or the tool in force; None where it is not known."""
+        chosen = run.value_of(_number_of(kind))
+        return None if isinstance(chosen, Unknown) else number(chosen, f"{kind}_NUM")
 
     def _zone(self, end: str, run: Execution) -> float:
         """[m] The radius of the corner at a motion's end.
@@ -267,6 +317,11 @@ class _Fanuc(Language):
                 return self.asked.zones[key]
         fault = f"{end} does not say where the corner begins"
         return float(run.lack(fault, "zones", end, more=f", or {kind} of all"))
+
+
+def _number_of(kind: str) -> Name:
+    """The variable that has the number of the frame or the tool in force."""
+    return Name(f"{kind}_NUM", Line(0))
 
 
 def _speed(kind: str, unit: str, value: Any, call: Call, run: Execution) -> dict[str, Any]:

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from clearance.errors import BadProgram
+from clearance.geometry.pose import pose_from_rpy
+
+MM = 1e-3
+
+POSE, JOINTS = ("X", "Y", "Z", "W", "P", "R"), ("J1", "J2", "J3", "J4", "J5", "J6")
 
 _POSITION = re.compile(r"P\[\s*(\d{1,9})\s*(?::[^\]]*)?\]\s*\{([^{}]*)\}\s*;")
 _VALUE = re.compile(r"\b([A-Z]\d?)\s*=\s*(\*+|[-+]?[0-9]{0,9}\.?[0-9]{1,9})\s*(?:mm|deg)\b")
@@ -28,6 +37,39 @@ class Position:
     values: Mapping[str, float | None]
     external: Mapping[str, float]
     configuration: str = ""
+
+    @property
+    def is_joints(self) -> bool:
+        """Whether it has axes, and no pose."""
+        return "J1" in self.values
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The names of its values in their order."""
+        return JOINTS if self.is_joints else POSE
+
+    def pose(self) -> np.ndarray:
+        """(4, 4) [m] Of the tool, seen from its frame."""
+        x, y, z, *turns = (float(self.values[key] or 0.0) for key in POSE)
+        return pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
+
+    def element(self, number: int) -> float:
+        """One of its values, by a number from 1.
+
+        Raises:
+            TypeError: it is not taught.
+        """
+        return float(self.values[self.keys[number - 1]])  # type: ignore[arg-type]
+
+    def with_element(self, number: int, value: Any) -> Position:
+        """The same with another value.
+
+        Raises:
+            TypeError: no number is given.
+        """
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise TypeError
+        return replace(self, values={**self.values, self.keys[number - 1]: float(value)})
 
 
 def positions_of(text: str) -> dict[int, Position]:
@@ -67,3 +109,15 @@ def _position(text: str) -> Position:
         external,
         "" if configuration is None else configuration[1],
     )
+
+
+def position_of(pose: np.ndarray) -> Position:
+    """The point of a (4, 4) pose [m], in any frame."""
+    x, y, z = pose[:3, 3] / MM
+    turns = (
+        math.atan2(pose[2, 1], pose[2, 2]),
+        math.atan2(-pose[2, 0], math.hypot(pose[0, 0], pose[1, 0])),
+        math.atan2(pose[1, 0], pose[0, 0]),
+    )
+    values = (x, y, z, *(math.degrees(turn) for turn in turns))
+    return Position(None, None, dict(zip(POSE, map(float, values), strict=True)), {})

@@ -9,7 +9,6 @@ import operator
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
 
 from clearance.errors import BadProgram, BadSyntax
@@ -20,9 +19,11 @@ from clearance.formats.program.expressions import (
     Expression,
     ExpressionReader,
     Name,
+    Operation,
     Unknown,
 )
 from clearance.formats.program.fanuc_positions import Position, positions_of
+from clearance.formats.program.fanuc_words import ANY_REGISTER, MOVES, QUIET, WAIT, Motion
 from clearance.formats.program.grammar import Grammar, ranked
 from clearance.formats.program.statements import (
     JUMP,
@@ -41,29 +42,6 @@ from clearance.formats.program.statements import (
     within,
 )
 from clearance.formats.program.tokens import END, Cursor, Line, Token, text_of, tokens_of
-
-MOVES = {"J": "ptp", "L": "lin", "C": "circ", "A": "", "S": ""}
-"""The motions, and the way of each that is read."""
-
-WAIT = "WAIT sec"
-
-OVERRIDE, LARGEST_SPEEDS = "OVERRIDE", ("JOINT_MAX_SPEED", "LINEAR_MAX_SPEED")
-"""Instructions that change speeds: all of them by a share [%], and those that are greater than a value."""
-
-WAITING = ("UALM", "ARC")
-"""Instructions that take time: until a person has reset an alarm, and until an arc burns."""
-
-QUIET = frozenset(
-    (
-        *("DO", "RO", "GO", "AO", "SO", "UO", "F", "M", "TIMER", "SR", "PR", "PAYLOAD", "MESSAGE"),
-        *("UALM", "SKIP", "OFFSET", "TOOL_OFFSET", "ARC", "COL", "LOCK", "UNLOCK", "TC_ONLINE"),
-        *(OVERRIDE, *LARGEST_SPEEDS),
-    )
-)
-"""Instructions that move nothing. Conditions of offsets and skips count only in motions that name them."""
-
-DECIDING = ("P", "R", "UFRAME", "UTOOL", "UFRAME_NUM", "UTOOL_NUM")
-"""What decides where motions go: a line that changes it is never left out. `$MNU…` are frames and tools too."""
 
 _WORD = re.compile(
     r"""(?P<skip>[ \t]+)
@@ -100,29 +78,14 @@ _SPEED = re.compile(
 )
 _END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGNORECASE)
 _ASSIGNED = re.compile(r"(?is)((?:R|P|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)")
+_POINT_CHANGED = re.compile(r"(?i)(?<![A-Z])P\s*\[(?:[^\[\]]|\[[^\]]*\])*\]\s*=(?!=)")
+_REGISTER = re.compile(r"(?is)PR\s*\[\s*(\d+)\s*(?:,\s*([1-6])\s*)?(?::[^\]]*)?\]\s*=(.*)")
+_OFFSET = re.compile(rf"(?i)\b((?:TOOL_)?OFFSET)\s*,\s*PR\s*{_NUMBER}")
 _JUMPS = re.compile(r"\b(?:JMP|LBL|CALL)\b", re.IGNORECASE)
 _TIMED = re.compile(
     r"(?i)\b(TA|TB|DB)\s+[-+0-9.R\[\]]+\s*(sec|mm)\s*,\s*"
     r"(P-SPS\b|CALL\s+[\w-]+(\s*\([^()]*\))?|\w+\s*\[[^\]]*\]\s*=\s*[^\s,]+)"
 )
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A motion instruction.
-
-    Attributes:
-        points: where it goes, an arc by way of the first: P or PR, and its number. positions: that the file has.
-        unit: of its speed. end: how it ends (FINE, CNT50, CR10). options: words behind that. beside: what is
-            done at a time or a place on its way (TB, TA, DB).
-    """
-
-    points: tuple[tuple[str, Expression], ...]
-    positions: Mapping[int, Position]
-    unit: str
-    end: str
-    options: tuple[str, ...]
-    beside: tuple[Statement, ...] = ()
 
 
 _ARGUMENTS = tuple(f"AR[{i}]" for i in range(1, 11))
@@ -195,6 +158,7 @@ class _Reader(BlockReader):
     def __init__(self, instructions: Sequence[Token], positions: Mapping[int, Position]) -> None:
         super().__init__(ExpressionReader(_Instructions(instructions), _GRAMMAR))
         self.positions, self.blocks = positions, list[Routine]()
+        self.moves_points = any(_POINT_CHANGED.search(one.text) for one in instructions)
 
     def all(self) -> tuple[Statement, ...]:
         """All statements.
@@ -284,8 +248,10 @@ class _Reader(BlockReader):
             return _wait(line, text[4:].strip())
         if word == "CALL":
             return [_call(line, text[4:].strip())]
+        if word == "PR" and "=" in text:
+            return [self._register(line, text)]
         assigned = _ASSIGNED.match(text)
-        if assigned is not None:
+        if assigned is not None and "[GP" not in named(assigned[1]):
             name = Name(named(assigned[1]), line)
             return [Assign(line, name, _condition(assigned[2], line), is_of_all=True)]
         if word in QUIET:
@@ -293,6 +259,30 @@ class _Reader(BlockReader):
             args = () if share is None else (_condition(share[1], line),)
             return [Do(line, Call(word, args, {}, line))]
         return [Unreadable(line, word, bool(_JUMPS.search(text)))]
+
+    def _register(self, line: Line, text: str) -> Assign:
+        """A value for a position register, or for one of its values."""
+        found = _REGISTER.fullmatch(text)
+        if found is None:
+            unread = Constant(Unknown(f"{text!r:.40} is not read"))
+            return Assign(line, Name(ANY_REGISTER, line), unread, is_of_all=True)
+        name, value = Name(f"PR[{int(found[1])}]", line), found[3].strip()
+        point = re.fullmatch(rf"(?i)(PR?)\s*{_NUMBER}", value)
+        if found[2]:
+            parts = (name, Constant(int(found[2])), _condition(value, line))
+            given: Expression = Operation(Position.with_element, parts, line)
+        elif point and point[1].upper() == "PR":
+            given = _condition(value, line)
+        elif (
+            point
+            and point[2].strip().isdecimal()
+            and int(point[2]) in self.positions
+            and not self.moves_points
+        ):
+            given = Constant(self.positions[int(point[2])])
+        else:
+            given = Constant(Unknown(f"{value!r:.40} is not read"))
+        return Assign(line, name, given, is_of_all=True)
 
     def _motion(self, line: Line, found: re.Match[str]) -> Do:
         """A motion; its speed is the second argument.
@@ -309,11 +299,21 @@ class _Reader(BlockReader):
             fault = f"{found[0]!r:.60} has no speed and end"
             raise BadSyntax(fault, where=str(line), valid="as in L P[1] 100mm/sec FINE")
         further = speed[3][end.end() :]
+        offsets = tuple(
+            (one[1].upper(), _condition(one[2], line)) for one in _OFFSET.finditer(further)
+        )
+        further = _OFFSET.sub("", further)
         options = tuple(_TIMED.sub("", further).upper().replace(",", " ").split())
         timed = (self._on_the_way(line, one[3]) for one in _TIMED.finditer(further))
         unit = (speed[2] or "").lower()
         motion = Motion(
-            tuple(points), self.positions, unit, named(end[1]), options, tuple(chain(*timed))
+            tuple(points),
+            self.positions,
+            unit,
+            named(end[1]),
+            options,
+            tuple(chain(*timed)),
+            offsets,
         )
         args = (Constant(motion), _condition(speed[1], line))
         return Do(line, Call(found[1].upper(), args, {}, line))

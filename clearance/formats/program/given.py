@@ -22,7 +22,7 @@ from clearance.formats.program.controller_program import (
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
-NAMED = ("tools", "frames", "units", "zones")
+NAMED = ("tools", "frames", "units", "zones", "variables")
 """Keys of a case that give values by name."""
 
 

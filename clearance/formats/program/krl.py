@@ -25,6 +25,7 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
     Target,
 )
+from clearance.formats.program.effects import KEPT
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown
 from clearance.formats.program.krl_expressions import (
@@ -94,7 +95,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         for one in files.declared:
             if isinstance(one, Assign) and isinstance(one.target, Name):
                 name, line = one.target.name, places.setdefault(one.target.name, one.line)
-                run.persistent.put(name, f"{name} ({one.line})", run.variables)
+                run.persistent.put(name, KEPT.format(f"{name} ({one.line})"), run.variables)
                 if line.file != one.line.file and not name.startswith("$"):
                     both = f"{name} is declared at {line} and at {one.line}"
                     run.variables[name] = Unknown(both)

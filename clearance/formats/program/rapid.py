@@ -20,6 +20,7 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
     Target,
 )
+from clearance.formats.program.effects import KEPT
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import (
     Call,
@@ -136,7 +137,7 @@ class Rapid(Language):
                 run.value_of(Name(name, one.line))
         for name, one in self.modules.declared.items():
             if one.kind == "PERS" and name not in self.known_data:
-                run.persistent.put(name, f"{name} ({one.line})", run.variables)
+                run.persistent.put(name, KEPT.format(f"{name} ({one.line})"), run.variables)
 
     def value_of(self, name: str, run: Execution) -> Any:
         """The value of a datum of a module, of the case, or of the controller."""

@@ -31,8 +31,9 @@ class ProgramFile(StrictModel):
     base stands, `axes` says how joints follow axes, `axes_as` that axes turn as on robots of a maker (`plain`:
     joints are the axes). `tools` (on the flange) and `frames` (on the base) are those that the file names and does
     not hold (in RAPID they replace the file's), `units` the frames of mechanical units that move the work. `zones`
-    are radii [m] of corners for which it has a word and no length (`C_PTP`, `CNT50`). `step` is the most that the
-    tool moves between samples [m].
+    are radii [m] of corners for which it has a word and no length (`C_PTP`, `CNT50`). `variables` are what
+    registers hold when the program begins, and inputs all the time. `step` is the most that the tool moves between
+    samples [m].
     """
 
     file: Name
@@ -47,4 +48,5 @@ class ProgramFile(StrictModel):
     frames: dict[Name, Pose] = {}
     units: dict[Name, Frame] = {}
     zones: dict[Name, Annotated[float, Field(gt=0)]] = {}
+    variables: dict[Name, bool | int | float] = {}
     step: Annotated[float, Field(gt=0)] = 0.002

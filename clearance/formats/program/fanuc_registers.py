@@ -1,0 +1,84 @@
+"""Registers, position registers and inputs of FANUC's controllers: what is known of them, and what a case gives.
+
+Not for: how lines change them (`fanuc_text`).
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from clearance.errors import BadProgram
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import Name, Unknown
+from clearance.formats.program.fanuc_positions import Position, position_of
+from clearance.formats.program.fanuc_text import named
+from clearance.formats.program.fanuc_words import ANY_REGISTER
+from clearance.formats.program.tokens import Line
+from clearance.formats.schema.program_file import ProgramFile
+
+_GIVEN = re.compile(r"(R\[\d+\]|U(?:FRAME|TOOL)_NUM)|([DRGAUS]I)\[\d+\]")
+"""Registers, and inputs: a case may give what they hold."""
+
+_SIGNALS = ("DI", "RI", "UI", "SI")
+"""Inputs that are on or off."""
+
+
+def give_registers(asked: ProgramFile, run: Execution) -> None:
+    """Gives registers and inputs the values that a case says.
+
+    Raises:
+        BadProgram: another name or value.
+    """
+    for given, value in asked.variables.items():
+        name, found = named(given), _GIVEN.fullmatch(named(given))
+        if found is None or isinstance(value, bool) != (found[2] in _SIGNALS):
+            valid = "a number for R[1], UFRAME_NUM or GI[1], true or false for inputs as DI[1]"
+            raise BadProgram(f"{value} is given", where=f"variables: {given}", valid=valid)
+        run.variables[name] = value
+        holds = "" if found[1] else ", which is taken to hold that all the time"
+        run.persistent.put(name, f"{name} of the case decides{holds}", run.variables)
+    for given, frame in asked.frames.items():
+        if re.fullmatch(r"PR\[\d+\]", named(given)):
+            run.variables[named(given)] = position_of(frame.matrix())
+
+
+def value_of_register(name: str, run: Execution) -> Any:
+    """What is known of a register or an input that no line gives a value; None where nothing is to be said."""
+    if element := re.fullmatch(r"PR\[(\d+),([1-6])\]", name):
+        one = _position_register(f"PR[{int(element[1])}]", run)
+        return one if isinstance(one, Unknown) else one.element(int(element[2]))
+    if re.fullmatch(r"PR\[\d+\]", name):
+        key = f'program: {{frames: {{"{name}": {{xyz: […], rpy: […]}}}}}} in m and rad'
+        return Unknown(f"{name} is in no listing", remedy=key)
+    if found := _GIVEN.fullmatch(name):
+        value = "true" if found[2] in _SIGNALS else "0"
+        holds = "at the start" if found[1] else "all the time"
+        key = f'program: {{variables: {{"{name}": {value}}}}}, if it holds that {holds}'
+        text = f"{name!r} is in no file that is given"
+        return Unknown(text if found[1] else f"only the controller knows {name}", remedy=key)
+    is_own = name.startswith(("R[", "U", "AR["))
+    return None if is_own else Unknown(f"only the controller knows {name}")
+
+
+def known_register(name: str, run: Execution) -> Position:
+    """A position register.
+
+    Raises:
+        BadProgram: it is not known.
+    """
+    one = _position_register(name, run)
+    if isinstance(one, Position):
+        return one
+    if name in run.variables or name in run.concurrent or not one.remedy:
+        fault = f"{name}, a position register, is not known: {one.why}"
+        raise BadProgram(fault, valid=one.valid("use P[…] with a position in the file"))
+    pose = run.lack(f"{name}: a position register is not in a listing", "frames", name)
+    return position_of(pose)
+
+
+def _position_register(name: str, run: Execution) -> Position | Unknown:
+    if ANY_REGISTER in run.variables or ANY_REGISTER in run.concurrent:
+        return run.value_of(Name(ANY_REGISTER, Line(0)))
+    one = run.value_of(Name(name, Line(0)))
+    return one if isinstance(one, Position | Unknown) else Unknown(f"{name} is no position")
