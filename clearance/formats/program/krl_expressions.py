@@ -239,3 +239,29 @@ def called_beside(words: Sequence[Token]) -> tuple[Expression, ...]:
         if do.text.upper() == "DO" and mark.text == "(":
             return (Constant(GRAMMAR.folded(name.text)),)
     return ()
+
+
+def move_of(word: str, line: Line, read: Expressions) -> Call:
+    """A move: its target, or the two of an arc; words for its end; what holds with it (`WITH $VEL.CP = 0.1`)."""
+    cursor = read.cursor
+    cursor.take()
+    targets = [read.expression()]
+    if cursor.accept(","):
+        targets.append(read.expression())
+    named = dict[str, Expression]()
+    while cursor.accept(",") or cursor.next.kind != NEWLINE:
+        if cursor.accept("WITH"):
+            while True:
+                target = read.expression()
+                cursor.expect("=")
+                named[f"WITH {len(named)}"] = Constant((target, read.expression()))
+                if not cursor.accept(","):
+                    break
+            continue
+        word_after = cursor.expect_kind("name", "a word for the corner").text.upper()
+        if not word_after.startswith("C_") and word_after not in ("#TOOL", "#BASE"):
+            raise BadSyntax(
+                f"{word_after} is not read", where=str(line), valid="C_DIS, C_PTP, WITH, or nothing"
+            )
+        named[word_after] = Constant(True)
+    return Call(word, tuple(targets), named, line)

@@ -35,6 +35,7 @@ from clearance.formats.program.krl_expressions import (
     as_integer,
     as_real,
     called_beside,
+    move_of,
     parameters_of,
 )
 from clearance.formats.program.krl_settings import FIRST
@@ -216,7 +217,7 @@ class _Reader(BlockReader):
         if word == "WAIT":
             return [self._wait(line, read)]
         if word in MOVES:
-            return [Do(line, _move(word, line, read))]
+            return [Do(line, move_of(word, line, read))]
         target = read.expression()
         if cursor.accept("="):
             return [self._assign(line, target, read)]
@@ -272,32 +273,6 @@ class _Reader(BlockReader):
         if cursor.expect("SEC", "FOR").text.upper() == "SEC":
             return Do(line, Call(WAIT, (read.expression(),), {}, line))
         return While(line, "WAIT FOR", read.expression(), (), at_end=True)
-
-
-def _move(word: str, line: Line, read: Expressions) -> Call:
-    """A move: its target, or the two of an arc; words for its end; what holds with it (`WITH $VEL.CP = 0.1`)."""
-    cursor = read.cursor
-    cursor.take()
-    targets = [read.expression()]
-    if cursor.accept(","):
-        targets.append(read.expression())
-    named = dict[str, Expression]()
-    while cursor.accept(",") or cursor.next.kind != NEWLINE:
-        if cursor.accept("WITH"):
-            while True:
-                target = read.expression()
-                cursor.expect("=")
-                named[f"WITH {len(named)}"] = Constant((target, read.expression()))
-                if not cursor.accept(","):
-                    break
-            continue
-        word_after = cursor.expect_kind("name", "a word for the corner").text.upper()
-        if not word_after.startswith("C_") and word_after not in ("#TOOL", "#BASE"):
-            raise BadSyntax(
-                f"{word_after} is not read", where=str(line), valid="C_DIS, C_PTP, WITH, or nothing"
-            )
-        named[word_after] = Constant(True)
-    return Call(word, tuple(targets), named, line)
 
 
 def _declared(one: Statement) -> str:
