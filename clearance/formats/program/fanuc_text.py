@@ -171,10 +171,10 @@ class _Reader(BlockReader):
             fault = f"{last.text!r:.60} ends nothing"
             raise BadSyntax(fault, where=str(last.line), valid="a whole file")
         labels = [one for one in within(found) if isinstance(one, Label)]
-        numbers = Counter(one.number for one in labels)
+        numbers = Counter(one.name for one in labels)
         for one in labels:
-            if numbers[one.number] > 1:
-                fault = f"LBL[{one.number}] stands in several lines"
+            if numbers[one.name] > 1:
+                fault = f"LBL[{one.name}] stands in several lines"
                 raise BadSyntax(fault, where=str(one.line), valid="one line for each label")
         return found
 

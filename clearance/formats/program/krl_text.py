@@ -41,19 +41,20 @@ from clearance.formats.program.krl_expressions import (
 from clearance.formats.program.krl_settings import FIRST
 from clearance.formats.program.statements import (
     BREAK,
+    JUMP,
     RETURN,
     Assign,
     Do,
+    Label,
     Leave,
     Routine,
     Statement,
     Unreadable,
     While,
     assigned,
+    within,
 )
 from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token, text_of, tokens_of
-
-_JUMPS = ("RETURN", "EXIT", "GOTO", "RESUME")  # decide which lines run
 
 _BLOCKS = ("IF", "SWITCH", "WHILE", "FOR", "REPEAT", "LOOP", SPLINE, "PTP_SPLINE")
 
@@ -140,6 +141,12 @@ class _Reader(BlockReader):
         self._in_routine = False
         cursor.take()
         own = tuple(one for one in body if _declared(one) not in parameters)
+        labels = dict[float | str, Line]()
+        for one in (one for one in within(body) if isinstance(one, Label)):
+            if labels.setdefault(one.name, one.line) != one.line:
+                fault, first = f"label {one.name} is there twice", labels[one.name]
+                valid = f"one of them: the other is at {first}"
+                raise DuplicateName(fault, where=str(one.line), valid=valid)
         return Routine(names[-1].text, head.line, parameters, own, returned=returned)
 
     def _row(self) -> list[Token]:
@@ -177,7 +184,8 @@ class _Reader(BlockReader):
             if "=" in marks and "(" not in marks:
                 unread = Constant(Unknown(f"{word} is given what is not read"))
                 return [Assign(line, Name(word, line), unread)]
-            return [Unreadable(line, word, word in _JUMPS)] if self._in_routine else []
+            jumps = word in ("RETURN", "EXIT", "GOTO", "RESUME")
+            return [Unreadable(line, word, jumps)] if self._in_routine else []
 
     def _block(self, word: str, line: Line) -> Statement:
         """The statement that a block is, whose first word is taken."""
@@ -207,12 +215,17 @@ class _Reader(BlockReader):
         """A statement of one line."""
         cursor = read.cursor
         if cursor.after(1).text == ":" and cursor.after(2).kind == NEWLINE:
-            return []  # the target of a jump
+            return [Label(line, word)] if self._in_routine else []
         if word in ("RETURN", "EXIT"):
             cursor.take()
             value = read.expression() if cursor.next.kind != NEWLINE else None
             return [Leave(line, word, RETURN if word == "RETURN" else BREAK, value)]
-        if word in _JUMPS:
+        if word == "GOTO":
+            cursor.take()
+            label = GRAMMAR.folded(cursor.expect_kind("name", "a label").text)
+            _require_end(cursor)
+            return [Leave(line, word, JUMP, Constant(label))]
+        if word == "RESUME":
             return [Unreadable(line, word, True)]
         if word == "WAIT":
             return [self._wait(line, read)]

@@ -66,7 +66,7 @@ class Jumps:
         if left is None or left.what != JUMP:
             return left, at
         label, places = _label_of(left, self.run), enumerate(self.body)
-        labels = (i for i, one in places if isinstance(one, Label) and one.number == label)
+        labels = (i for i, one in places if isinstance(one, Label) and one.name == label)
         place = next(labels, None)
         if place is None:
             return left, at
@@ -85,14 +85,13 @@ def without_jump(left: Leave | None, run: Any) -> Leave | None:
         BadProgram: a jump.
     """
     if left is not None and left.what == JUMP:
-        fault = (
-            f"{left.word} goes to label {_label_of(left, run):g}, which is in no block around it"
-        )
+        fault = f"{left.word} goes to label {_label_of(left, run)}, which is in no block around it"
         valid = "a label of the same program that stands in no other IF or FOR"
         raise BadProgram(fault, where=str(left.line), valid=valid)
     return left
 
 
-def _label_of(one: Leave, run: Any) -> float:
+def _label_of(one: Leave, run: Any) -> float | str:
     assert one.value is not None
-    return number(run.evaluated(one.value), f"the label of {one.word}")
+    label = run.evaluated(one.value)
+    return label if isinstance(label, int | str) else number(label, f"the label of {one.word}")

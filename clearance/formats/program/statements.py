@@ -77,10 +77,10 @@ class Leave:
 
 @dataclass(frozen=True)
 class Label:
-    """A place that jumps go to."""
+    """A place that jumps go to, by its number or its name."""
 
     line: Line
-    number: int
+    name: float | str
 
 
 @dataclass(frozen=True)

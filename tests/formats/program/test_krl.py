@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -462,7 +463,7 @@ ENDDAT
 WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
 
 
-@pytest.mark.parametrize("body", ["GOTO over", "RESUME", "IF $IN[1] THEN\nGOTO over\nENDIF"])
+@pytest.mark.parametrize("body", ["RESUME", "IF $IN[1] THEN\nGOTO over\nENDIF"])
 def test_what_decides_which_lines_run_is_never_left_out(body):
     with pytest.raises(cl.ClearanceError, match=r"line [78]") as caught:
         program(f"{body}\nPTP XHOME\nover:", skip=["GOTO", "RESUME"])
@@ -481,6 +482,41 @@ def test_what_runs_beside_the_program_moves_nothing(body):
     assert len(found.moves) == 1 and any(
         "LAMP (line 7), IR_STOPM (line 8)" in x for x in found.notes
     )
+
+
+def angles(body: str, **asked) -> list[float]:
+    """A1 [degrees] at the ends of moves; `go(1)` in a body is a move."""
+    text = re.sub(r"go\((\w+)\)", r"PTP {A1 \1,A2 0,A3 0,A4 0,A5 0,A6 0}", body)
+    return [round(math.degrees(one.to.axes[0]), 6) for one in program(text, **asked).moves]
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("go(1)\nGOTO over\ngo(2)\nOver:\ngo(3)", [1, 3]),
+        ("n=0\nagain:\nn=n+1\ngo(n)\nIF n<3 THEN\ngoto again\nENDIF", [1, 2, 3]),
+        ("FOR n=1 TO 5\ngo(n)\nIF n==2 THEN\nGOTO out\nENDIF\nENDFOR\nout:\ngo(9)", [1, 2, 9]),
+        ("again:\ngo(1)\ngo(2)\nGOTO again", [1, 2, 1, 2]),
+        ("s()\ngo(3)\nEND\nDEF s()\nGOTO l\ngo(1)\nl:", [3]),
+    ],
+)
+def test_jumps_go_to_the_labels_of_their_subprogram(body, found):
+    assert angles(body) == found
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ("GOTO in\nIF TRUE THEN\nin:\ngo(1)\nENDIF", "line 7: GOTO goes to label IN, which is in no"),
+        ("go(1)\nGOTO far\nEND\nDEF s()\nfar:", "line 8: GOTO goes to label FAR, which is in no"),
+        ("a:\ngo(1)\nA:\nGOTO a", "line 9: label A is there twice; one of them: the other is at line 7"),
+        ("IF $IN[1] THEN\nGOTO a\nENDIF\ngo(1)\na:", "line 7: IF decides on GOTO at line 8, and is not"),
+        ("GOTO a b\na:\ngo(1)", "line 7: 'GOTO' is not understood, and decides which"),
+    ],
+)  # fmt: skip
+def test_jumps_that_the_file_does_not_decide_are_refused(body, told):
+    with pytest.raises(cl.ClearanceError, match=told):
+        angles(body, skip=["GOTO"])
 
 
 def test_an_interrupt_that_brakes_stops_the_robot_on_its_way_and_is_told():
