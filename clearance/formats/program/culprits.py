@@ -27,7 +27,7 @@ def unknown_word(name: str, suffix: str, moves: bool | None = None) -> BadProgra
         suffix: of the file that may have it.
     """
     if moves:
-        fault = f"{name} moves the robot, and has no value"
+        fault = f"{name} moves the robot, and its value is not read"
         return BadProgram(fault, valid="write the move as a statement of its own")
     fault = f"{name!r} is no known instruction, and may move the robot"
     return BadProgram(fault, valid=way_past([Culprit("", name)], suffix))

@@ -38,7 +38,7 @@ from clearance.formats.program.krl_expressions import (
     PACKAGES,
     PAUSES,
     QUIET,
-    SPLINE,
+    REFUSED,
     SYSTEM,
     WAIT,
     Aggregate,
@@ -127,7 +127,7 @@ class _Krl(Language):
     root: RobotRoot = field(default_factory=RobotRoot)
     is_automatic: bool = False
     maker, suffix = "kuka", ".src"
-    moving = frozenset((*MOVES, SPLINE, "BAS"))
+    moving = frozenset((*MOVES, *REFUSED, "BAS"))
     still = frozenset((*QUIET, *FUNCTIONS, AGGREGATE, WAIT))
     timed = retiming = (WAIT, *PAUSES)
     stopping = ("BRAKE",)
@@ -202,8 +202,8 @@ class _Krl(Language):
         elif call.name == "BAS":
             command, *value = [run.evaluated(one) for one in call.args] or [Unknown("nothing")]
             Settings(run, call.line).bas(command, value[0] if value else 0)
-        elif call.name == SPLINE:
-            raise BadProgram("a spline is not read", valid="PTP, LIN and CIRC")
+        elif call.name in REFUSED:
+            raise BadProgram(REFUSED[call.name], valid="PTP, LIN and CIRC")
         elif call.name == "BRAKE":
             fault = "BRAKE stands outside of what an interrupt calls"
             raise BadProgram(fault, valid="BRAKE in a procedure that an interrupt calls")

@@ -110,6 +110,12 @@ MOVES = {
 WAIT, SPLINE = "WAIT SEC", "SPLINE"
 """Calls that stand for a wait, and for a spline, which is not read."""
 
+REFUSED = {
+    SPLINE: "a spline is not read",
+    "RSI_MOVECORR": "RSI_MOVECORR moves the robot by sensors",
+}
+"""Moves that are not read, and why."""
+
 PAUSES = ("HALT", "BRAKE")
 """Instructions that stop the robot on its way, until it goes on along it: at a key, or at an interrupt's end."""
 

@@ -171,6 +171,10 @@ class _Reader(BlockReader):
         if word == "IMPORT" and len(row) > 3:  # `IMPORT INT n IS /R1/other..n`
             unread = Constant(Unknown("IMPORT is not read"))
             return [Assign(line, Name(GRAMMAR.folded(row[2].text), line), unread)]
+        if word == "SIGNAL" and len(row) > 3:  # `SIGNAL gripper_open $IN[5]`
+            unread = Constant(Unknown(f"only the controller knows the signal {row[1].text}"))
+            name = Name(GRAMMAR.folded(row[1].text), line)
+            return [Assign(line, name, unread, self._in_routine)]
         if word in QUIET:
             return [Do(line, Call(word, called_beside(row), {}, line))]
         if word in NOTHING:

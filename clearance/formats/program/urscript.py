@@ -157,10 +157,11 @@ def _written(matrix: np.ndarray) -> ToolPose:
     return ToolPose([*matrix[:3, 3].tolist(), *rotation_vector(matrix[:3, :3]).tolist()])
 
 
-def _three(value: list[Any]) -> list[float]:
-    """Angles about the fixed x, y and z, in this order [rad]."""
-    roll, pitch, yaw = (number(one, "an angle") for one in value)
-    return [roll, pitch, yaw]
+def _turned(*rpy: Any) -> Any:
+    """The rotation vector of angles about the fixed x, then y, then z [rad]."""
+    unknown = next((one for one in rpy if isinstance(one, Unknown)), None)
+    turn = [number(one, "an angle") for one in rpy] if unknown is None else [0.0, 0.0, 0.0]
+    return unknown or rotation_vector(pose_from_rpy([0.0, 0.0, 0.0], turn)[:3, :3]).tolist()
 
 
 def _of_poses(act: Callable[..., np.ndarray]) -> Callable[..., ToolPose]:
@@ -189,9 +190,7 @@ _VALUES: Mapping[str, Callable[..., Any]] = {
     "pose_trans": _of_poses(lambda a, b: a @ b),
     "pose_inv": _of_poses(inverse),
     "pose_add": _of_poses(_added),
-    "rpy2rotvec": lambda rpy: rotation_vector(
-        pose_from_rpy([0.0, 0.0, 0.0], _three(rpy))[:3, :3]
-    ).tolist(),
+    "rpy2rotvec": lambda angles: _turned(*angles),
     "point_dist": lambda a, b: math.dist(a[:3], b[:3]),
 }
 

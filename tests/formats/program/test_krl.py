@@ -289,6 +289,12 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "INTERRUPT 'OFF' moves the robot, or may",
         ),
         (FRAMES + "SPLINE\nSPL XP1\nENDSPLINE", "line 9: a spline is not read"),
+        ("RSI_MOVECORR()", "line 7: RSI_MOVECORR moves the robot by sensors"),
+        ("n=RSI_MOVECORR()", "line 7: RSI_MOVECORR moves the robot, and its value is not read"),
+        (
+            "SIGNAL open $IN[7]\nIF open THEN\nPTP XHOME\nENDIF",
+            "line 8: IF decides on PTP at line 9, and is not known: only the controller knows the signal open",
+        ),
         (
             "WAIT FOR $IN[3]",
             "line 7: WAIT FOR waits for what is not known: only the controller knows $IN;",
@@ -551,5 +557,6 @@ def test_what_a_line_that_is_left_out_may_have_changed_is_unknown(line):
 
 
 def test_a_move_is_never_left_out():
-    with pytest.raises(cl.ClearanceError, match="PTP moves the robot"):
-        program("PTP XHOME", skip=["ptp"])
+    for word in ("ptp", "RSI_MOVECORR"):
+        with pytest.raises(cl.ClearanceError, match=f"skip: {word.upper()} moves the robot"):
+            program("PTP XHOME", skip=[word])

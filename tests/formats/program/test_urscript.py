@@ -157,7 +157,8 @@ FAULTS = {
     + Q
     + "\nend": "entry: several functions are there: f, g",
     "def f():\nf()\nend\nf()": "more than 40 routines call one another",
-    "x = " + Q: "line 1: movej moves the robot, and has no value; write the move as a statement",
+    "x = "
+    + Q: "line 1: movej moves the robot, and its value is not read; write the move as a statement",
     "movej(1 / 0)": "line 1: '/' has no value for 1 and 0",
     TOOL + "q=get_inverse_kin(p[0.4,0.2,0.3,3,0,0],[1,2,3,4,5,6])\nq[5]=q[5]+1": (
         "line 3: one axis of get_inverse_kin is asked for, and they are not worked out; six numbers"
@@ -175,6 +176,10 @@ FAULTS = {
 def test_angles_about_fixed_axes_become_a_rotation_vector():
     """A quarter turn about x, then one about z, is a third of a turn about (1, 1, 1)."""
     (move,) = moves_of(TOOL + "r=rpy2rotvec([pi/2,0,pi/2])\nmovel(p[0,0,0,r[0],r[1],r[2]])")
+    unknown = "r=rpy2rotvec([0,0,get_analog_in(1)])\n"
+    assert len(moves_of(f"{unknown}{Q}")) == 1
+    with pytest.raises(cl.ClearanceError, match="target is not known: get_analog_in"):
+        moves_of(f"{TOOL}{unknown}movel(p[0,0,0,r[0],r[1],r[2]])")
     turn = move.to.pose[:3, :3]
     assert turn == pytest.approx(np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]), abs=1e-12)
 
