@@ -45,6 +45,7 @@ from clearance.formats.program.krl_expressions import (
     as_real,
     frame_of,
     is_number,
+    is_real,
     matrix_of,
     why,
 )
@@ -177,13 +178,13 @@ class _Krl(Language):
         if not isinstance(value, dict):
             raise TypeError
         key = key_of(by)
-        value[key] = as_real(new) if _is_real(str(key)) else new
+        value[key] = as_real(new) if is_real(str(key)) else new
 
     def result_of(self, call: Call, run: Execution) -> Any:
         """The value of an aggregate, or of a function that inline forms call."""
         if call.name == AGGREGATE:
             found = {name: run.evaluated(one) for name, one in call.named.items()}
-            return {key: as_real(one) if _is_real(key) else one for key, one in found.items()}
+            return {key: as_real(one) if is_real(key) else one for key, one in found.items()}
         if call.name not in FUNCTIONS:
             return Unknown(f"{call.name}() at {call.line}")
         args = [run.evaluated(one) for one in call.args]
@@ -277,7 +278,7 @@ class _Krl(Language):
             raise BadProgram(fault, valid="write a move to them")
         if any(key in AXES for key in way):
             if self.axes is None:
-                fault = "the axes before this move are not known"
+                fault = f"the axes before this move are not known{_ended('a pose', self.pose)}"
                 raise BadProgram(fault, valid="write PTP to axes before it")
             return {key: self.axes[key] + _numeric(way.get(key, 0.0)) for key in AXES}
         if any(way.get(key, 0.0) != 0.0 for key in "ABC"):
@@ -291,7 +292,7 @@ class _Krl(Language):
     def _now(self, settings: Settings) -> np.ndarray:
         """(4, 4) `base_from_tool` [m] before a move, in the frames that hold for it."""
         if self.pose is None or self.unit != settings.unit:
-            fault = "the tool's pose before this move is not known, and this move counts from it"
+            fault = f"the tool's pose before this move is not known{_ended('axes', self.axes)}"
             raise BadProgram(fault, valid="X, Y, Z, A, B and C, or a move to a pose before it")
         base, tool = settings.frame("$BASE", "frames"), settings.frame("$TOOL", "tools")
         return np.asarray(inverse(base) @ self.pose @ tool)
@@ -312,7 +313,7 @@ class _Krl(Language):
         full = {**(self.axes or {}), **{key: _numeric(given[key]) for key in AXES if key in given}}
         missing = [key for key in AXES if key not in full]
         if missing:
-            fault = f"no {', '.join(missing)}, and where it is before is not known"
+            fault = f"no {', '.join(missing)}, and where it is before is not known{_ended('a pose', self.pose)}"
             raise BadProgram(fault, valid="all six axes")
         return AxisTarget(tuple(math.radians(full[key]) for key in AXES), external, name)
 
@@ -342,11 +343,6 @@ class _Krl(Language):
             pose = before @ move.tool
             pose[:3, 3] = move.to.pose[:3, 3]
             self.pose = pose @ inverse(move.tool)
-
-
-def _is_real(key: str) -> bool:
-    """True for a part of a position, which is never an integer."""
-    return key in FRAME or re.fullmatch("[AE][1-6]", key) is not None
 
 
 def _configuration(given: Aggregate, settings: Settings) -> dict[str, Any]:
@@ -387,6 +383,11 @@ def _aggregate(value: Any) -> Aggregate:
         valid = "a target that this file, or one beside it, gives as numbers"
         raise BadProgram(f"the target is not known: {why(value)}", valid=valid)
     return value
+
+
+def _ended(form: str, known: object) -> str:
+    """Why it is not known where the robot is; empty if nobody knows it in the other form either."""
+    return "" if known is None else f": the one before ends at {form}, not converted here"
 
 
 def _name_of(one: Expression) -> str:

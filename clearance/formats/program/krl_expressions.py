@@ -94,6 +94,11 @@ def as_real(value: Any) -> Any:
     return float(value) if is_number(value) else value
 
 
+def is_real(key: str) -> bool:
+    """True for a part of a position, which is never an integer."""
+    return key in FRAME or re.fullmatch("[AE][1-6]", key) is not None
+
+
 def why(value: object) -> str:
     """Why a value is not known, or that it does not fit."""
     return value.why if isinstance(value, Unknown) else f"{value!r:.40} is given"

@@ -279,7 +279,12 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {
         for name in "VARSTATE SLOAD SACC_CP SACC_JOINT SJERK STRLEN CAST_FROM CAST_TO".split()
     },
     **{name: _of_number(act) for name, act in (("ABS", abs), ("SQRT", math.sqrt))},
-    **{name: _of_number(act, math.radians) for name, act in (("SIN", math.sin), ("COS", math.cos))},
+    **{
+        name: _of_number(act, math.radians)
+        for name, act in (("SIN", math.sin), ("COS", math.cos), ("TAN", math.tan))
+    },
+    "ACOS": _of_number(lambda value: math.degrees(math.acos(value))),
+    "ATAN2": lambda settings, *_: Unknown("ATAN2 is not read"),
 }
 
 

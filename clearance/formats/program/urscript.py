@@ -5,6 +5,7 @@ Sources: Universal Robots, The URScript programming language (moves, `pose_trans
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -278,12 +279,14 @@ class _UrScript(Language):
 
     def result_of(self, call: Call, run: Execution) -> Any:
         """The value of a function."""
-        if call.name in ("get_actual_tcp_pose", "get_target_tcp_pose"):
-            if isinstance(self.last, ToolPose):
-                return ToolPose(self.last)
-        elif call.name in ("get_actual_joint_positions", "get_target_joint_positions"):
-            if isinstance(self.last, list) and not isinstance(self.last, ToolPose):
-                return [*self.last]
+        asks_pose = call.name in ("get_actual_tcp_pose", "get_target_tcp_pose")
+        if asks_pose or call.name in ("get_actual_joint_positions", "get_target_joint_positions"):
+            if isinstance(self.last, ToolPose) == asks_pose and isinstance(self.last, list):
+                return copy.copy(self.last)
+            if isinstance(self.last, list):
+                form = "joints" if asks_pose else "a pose"
+                text = f"the move before ends at {form}; joints and poses are not converted"
+                return Unknown(f"{call.name}() at {call.line} ({text})")
         elif call.name == "get_inverse_kin":
             names = ("x", "qnear", "maxPositionError", "maxOrientationError", "tcp")
             given = dict(zip(names, call.args, strict=False)) | dict(call.named)

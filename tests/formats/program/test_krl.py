@@ -283,6 +283,20 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         (FRAMES + "$ORI_TYPE=#JOINT\nLIN XP1", "line 10: $ORI_TYPE is #JOINT"),
         (FRAMES + "LIN XHOME", "line 9: axes are given; X, Y, Z, A, B and C"),
         (FRAMES + LINE + "\nLIN_REL {X 1,E1 5}", "line 10: a relative move of external axes"),
+        (
+            FRAMES + "PTP XHOME\nLIN_REL {Z 100}",
+            "line 10: the tool's pose before this move is not known: the one before ends at axes",
+        ),
+        (
+            FRAMES + LINE + "\nPTP_REL {A6 15}",
+            "line 10: the axes before this move are not known: the one before ends at a pose",
+        ),
+        (
+            FRAMES + LINE + "\nPTP {A1 15}",
+            "A6, and where it is before is not known: the one before",
+        ),
+        (FRAMES + "PTP {A1 15}", "A6, and where it is before is not known; all six axes"),
+        ("PTP {A1 ATAN2(1,1)}", "line 7: a position is not known: ATAN2 is not read"),
         (FRAMES + f"CIRC $POS_ACT,{{X 0,Y 9,Z 0,{DOWN}}}", "line 9: the target is not known"),
         (
             "INTERRUPT DECL 4 WHEN $IN[1] DO off()\nEND\nDEF off()\nPTP XHOME",
@@ -305,6 +319,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "line 7: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.src]}",
         ),
         ("BRAKE", "line 7: BRAKE stands outside of what an interrupt calls"),
+        ("n=ACOS(2)", "line 7: ACOS is given data of another kind"),
         ("n=SQRT(-1)", "line 7: SQRT is given data of another kind"),
         ("n=STOOL2()", "line 7: STOOL2 is given data of another kind"),
         ("FOR n={X 1} TO 3\nENDFOR", "line 7: the range of 'N' is {'X': 1.0}; a number"),
@@ -523,6 +538,10 @@ def test_jumps_go_to_the_labels_of_their_subprogram(body, found):
 def test_jumps_that_the_file_does_not_decide_are_refused(body, told):
     with pytest.raises(cl.ClearanceError, match=told):
         angles(body, skip=["GOTO"])
+
+
+def test_functions_of_angles_are_in_degrees():
+    assert angles("n=ACOS(0.5)\ngo(n)\nn=TAN(45)\ngo(n)") == [60, 1]
 
 
 def test_an_interrupt_that_brakes_stops_the_robot_on_its_way_and_is_told():

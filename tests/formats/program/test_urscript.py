@@ -164,6 +164,9 @@ FAULTS = {
         "line 3: one axis of get_inverse_kin is asked for, and they are not worked out; six numbers"
     ),
     "a=[[1,2,3,4,5,6],[1,2,3,4,5,6],[1,2,3,4,5,6]]*0.5": "'*' has no value for a list of 3 and 0.5",
+    TOOL + Q + "\nmovel(pose_trans(get_actual_tcp_pose(), p[0,0,0.1,0,0,0]))": (
+        "get_actual_tcp_pose() at line 3 (the move before ends at joints; joints and poses are not converted)"
+    ),
     "a=[get_actual_tcp_pose()]+0": "'+' has no value for [what is not known] and 0",
     "thread t():\n" + Q + "\nend\nrun t()": "thread 't' moves the robot",
     "RPC = rpc_factory(1)\nRPC.grip(20)": "line 2: 'RPC.grip' is no known instruction",
