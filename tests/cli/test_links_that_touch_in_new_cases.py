@@ -52,6 +52,18 @@ def checked(text, capsys):
     return code, json.loads(capsys.readouterr().out)
 
 
+def test_a_base_on_its_floor_is_a_comment_too_where_links_are_not_measured_against_each_other(
+    capsys,
+):
+    text = new("--scene", "scene.yaml")
+    assert "hand" not in text.partition("allow:")[2]
+    assert "these pairs touch at every step: base - table;" in capsys.readouterr().out
+    code, told = checked(text, capsys)
+    assert (code, told["verdict"]) == (1, "contact")
+    code, told = checked(uncovered(text), capsys)
+    assert (code, told["verdict"]) == (0, "clear")
+
+
 @pytest.mark.slow
 def test_links_that_touch_at_every_step_are_a_comment_and_a_contact_until_it_is_uncovered(capsys):
     text = new()
@@ -77,4 +89,5 @@ def test_what_stands_on_something_is_proposed_with_them(capsys):
 
 def test_where_nothing_touches_or_links_are_not_asked_about_nothing_is_proposed():
     assert "touch at every step" not in new(robot="plain.urdf")
+    Path("scene.yaml").write_text(FOOT.replace("-0.2]", "-0.3]"))
     assert "touch at every step" not in new("--scene", "scene.yaml", "--force")
