@@ -276,3 +276,12 @@ def move_of(word: str, line: Line, read: Expressions) -> Call:
             )
         named[word_after] = Constant(True)
     return Call(word, tuple(targets), named, line)
+
+
+def assigned_beside(words: Sequence[Token]) -> str:
+    """The variable that an interrupt or a trigger gives a value: `DO n = 2`; empty where it is an output."""
+    texts = [one.text.upper() for one in words]
+    behind = [*words][texts.index("DO") + 1 :] if "DO" in texts else []
+    is_given = any(one.text == "=" for one in behind) and behind[0].kind == "name"
+    name = GRAMMAR.folded(behind[0].text) if is_given else ""
+    return "" if name in ("$OUT", "$ANOUT") else name

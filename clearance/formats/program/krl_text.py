@@ -34,6 +34,7 @@ from clearance.formats.program.krl_expressions import (
     Expressions,
     as_integer,
     as_real,
+    assigned_beside,
     called_beside,
     move_of,
     parameters_of,
@@ -109,7 +110,7 @@ class _Reader(BlockReader):
     ) -> None:
         super().__init__(expressions)
         self._types, self._own, self._in_routine = types, dict[str, str](), False
-        self._public = public
+        self._public, self._beside = public, dict[str, Routine]()
 
     def module(self) -> Module:
         """All of it."""
@@ -122,7 +123,8 @@ class _Reader(BlockReader):
                 name = GRAMMAR.folded(routine.name)
                 _add(routines, {name: routine})
                 public.update([name] if is_public else [])
-        return Module(routines, (*public, *[*routines][:1]), tuple(declared))
+        first = [*routines][:1]
+        return Module({**routines, **self._beside}, (*public, *first), tuple(declared))
 
     def _routine(self) -> Routine:
         """A procedure or a function, at whose head this is."""
@@ -176,7 +178,12 @@ class _Reader(BlockReader):
             name = Name(GRAMMAR.folded(row[1].text), line)
             return [Assign(line, name, unread, self._in_routine)]
         if word in QUIET:
-            return [Do(line, Call(word, called_beside(row), {}, line))]
+            called = called_beside(row)
+            if not called and (given := assigned_beside(row)):  # a routine that only gives a value
+                body = (Assign(line, Name(given, line), Constant(Unknown(f"{word} gives it"))),)
+                name = f"{given} at {line}"
+                self._beside[name], called = Routine(name, line, (), body), (Constant(name),)
+            return [Do(line, Call(word, called, {}, line))]
         if word in NOTHING:
             return []
         try:

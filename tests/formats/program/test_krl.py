@@ -544,6 +544,14 @@ def test_functions_of_angles_are_in_degrees():
     assert angles("n=ACOS(0.5)\ngo(n)\nn=TAN(45)\ngo(n)") == [60, 1]
 
 
+def test_what_a_trigger_gives_a_value_may_change_at_any_time():
+    for body in (f"go(1)\nn=1\n\n{WHEN} n=90", f"IF $IN[1] THEN\n{WHEN} n=90 PRIO=-1\nENDIF\nn=1"):
+        told = r"line 11: .* TRIGGER 'N at line \d+' may change it at any time"
+        with pytest.raises(cl.ClearanceError, match=told):
+            angles(f"{body}\ngo(n)")
+    assert angles(f"n=1\n{WHEN} $OUT[3]=TRUE\n{WHEN} m=2\ngo(n)") == [1]
+
+
 def test_an_interrupt_that_brakes_stops_the_robot_on_its_way_and_is_told():
     body = "INTERRUPT DECL 20 WHEN $IN[20]==FALSE DO paro()\nPTP XHOME\nEND\nDEF paro()\n"
     stop = (
