@@ -181,8 +181,8 @@ class _Reader(BlockReader):
             called = called_beside(row)
             if not called and (given := assigned_beside(row)):  # a routine that only gives a value
                 body = (Assign(line, Name(given, line), Constant(Unknown(f"{word} gives it"))),)
-                name = f"{given} at {line}"
-                self._beside[name], called = Routine(name, line, (), body), (Constant(name),)
+                text = f"{given} at {line}"
+                self._beside[text], called = Routine(text, line, (), body), (Constant(text),)
             return [Do(line, Call(word, called, {}, line))]
         if word in NOTHING:
             return []
