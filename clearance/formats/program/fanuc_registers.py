@@ -12,10 +12,11 @@ from clearance.errors import BadProgram
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Name, Unknown
 from clearance.formats.program.fanuc_positions import Position, position_of
-from clearance.formats.program.fanuc_text import named
-from clearance.formats.program.fanuc_words import ANY_REGISTER
+from clearance.formats.program.fanuc_words import ANY_REGISTER, QUIET, WAIT, named
+from clearance.formats.program.remarks import LEFT_OUT
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
+from clearance.world.notice import listed
 
 _GIVEN = re.compile(r"(R\[\d+\]|U(?:FRAME|TOOL)_NUM)|([DRGAUS]I)\[\d+\]")
 """Registers, and inputs: a case may give what they hold."""
@@ -69,6 +70,11 @@ def known_register(name: str, run: Execution) -> Position:
     """
     one = _position_register(name, run)
     if isinstance(one, Position):
+        words, left_out = {*QUIET, WAIT, "WAIT"}, run.noted(LEFT_OUT)
+        programs = [place for place in left_out if place.partition(" (")[0] not in words]
+        if programs:
+            text = f"{name} is taken not to be changed by what is left out"
+            run.doubts[f"{text}: {listed(programs, 6)}"] = None
         return one
     if name in run.variables or name in run.concurrent or not one.remedy:
         fault = f"{name}, a position register, is not known: {one.why}"

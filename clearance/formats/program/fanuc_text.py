@@ -23,7 +23,7 @@ from clearance.formats.program.expressions import (
     Unknown,
 )
 from clearance.formats.program.fanuc_positions import Position, positions_of
-from clearance.formats.program.fanuc_words import ANY_REGISTER, MOVES, QUIET, WAIT, Motion
+from clearance.formats.program.fanuc_words import ANY_REGISTER, MOVES, QUIET, WAIT, Motion, named
 from clearance.formats.program.grammar import Grammar, ranked
 from clearance.formats.program.statements import (
     JUMP,
@@ -53,11 +53,6 @@ _WORD = re.compile(
 )
 
 
-def named(text: str) -> str:
-    """The name of a register without its remark: `R[1]` for `R[1:count]`."""
-    return re.sub(r":[^\]]*", "", re.sub(r"\s+", "", text)).upper()
-
-
 _GRAMMAR = Grammar(
     binary=ranked("OR", "AND", "= <> < > <= >=", "+ -", "* / DIV MOD"),
     unary={"!": (6, operator.not_), "-": (6, operator.neg)},
@@ -66,7 +61,8 @@ _GRAMMAR = Grammar(
     fold=named,
 )
 
-_NUMBER = r"\[\s*(A?R\s*\[(?:[^\[\]]|\[[^\]]*\])*\]|[^\]:\[]*)(?::[^\]]*)?\]"
+_REGISTERED = r"A?R\s*\[(?:[^\[\]]|\[[^\]]*\])*\]"
+_NUMBER = r"\[((?:[^\[\]:]|\[(?:[^\[\]]|\[[^\]]*\])*\])*)(?::[^\]]*)?\]"
 _POINT = rf"(PR?)\s*{_NUMBER}"
 _LABEL, _JUMP = (
     re.compile(rf"{word}\s*{_NUMBER}", re.IGNORECASE) for word in ("LBL", r"JMP\s+LBL")
@@ -238,7 +234,7 @@ class _Reader(BlockReader):
         if (label := _LABEL.fullmatch(text)) and label[1].strip().isdecimal():
             return [Label(line, int(label[1]))]
         if jump := _JUMP.fullmatch(text):
-            return [Leave(line, word, JUMP, _condition(jump[1], line))]
+            return [Leave(line, word, JUMP, _index(jump[1], line))]
         if word in ("END", "ABORT"):
             return [Leave(line, word, RETURN if word == "END" else STOP)]
         if word == "IF":
@@ -290,18 +286,16 @@ class _Reader(BlockReader):
         Raises:
             BadSyntax: no speed, or no end, as in a file that is cut off.
         """
-        points = [(found[2].upper(), _condition(found[3], line))]
+        points = [(found[2].upper(), _index(found[3], line))]
         if found[4] is not None:
-            points.append((found[4].upper(), _condition(found[5], line)))
+            points.append((found[4].upper(), _index(found[5], line)))
         speed = _SPEED.fullmatch(found[6])
         end = None if speed is None else _END.match(speed[3])
         if speed is None or end is None:
             fault = f"{found[0]!r:.60} has no speed and end"
             raise BadSyntax(fault, where=str(line), valid="as in L P[1] 100mm/sec FINE")
         further = speed[3][end.end() :]
-        offsets = tuple(
-            (one[1].upper(), _condition(one[2], line)) for one in _OFFSET.finditer(further)
-        )
+        offsets = tuple((one[1].upper(), _index(one[2], line)) for one in _OFFSET.finditer(further))
         further = _OFFSET.sub("", further)
         options = tuple(_TIMED.sub("", further).upper().replace(",", " ").split())
         timed = (self._on_the_way(line, one[3]) for one in _TIMED.finditer(further))
@@ -354,6 +348,13 @@ def _split(text: str) -> tuple[str, str]:
     return text, ""
 
 
+def _index(text: str, line: Line) -> Expression:
+    """The number of a point, a label or a register: as it is, or in a register."""
+    if re.fullmatch(rf"(?i)\s*(\d+|{_REGISTERED})\s*", text):
+        return _condition(text, line)
+    return Constant(Unknown(f"{text.strip()!r:.40} is not read"))
+
+
 def _condition(text: str, line: Line) -> Expression:
     """The expression in a text; what cannot be read is not known."""
     tokens = [one._replace(line=line) for one in tokens_of(text.strip(), _WORD)]
@@ -384,7 +385,7 @@ def _wait(line: Line, text: str) -> list[Statement]:
     in_time = Constant(
         Unknown(f"only the controller knows whether {condition.strip()} comes in time")
     )
-    jump = Leave(line, "TIMEOUT", JUMP, _condition(label[1], line))
+    jump = Leave(line, "TIMEOUT", JUMP, _index(label[1], line))
     return [If(line, "TIMEOUT", ((in_time, (jump,)),)), waits]
 
 

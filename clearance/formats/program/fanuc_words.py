@@ -1,7 +1,8 @@
-"""Words of FANUC's listings, by what they do, and motions. Not for: reading them (`fanuc_text`)."""
+"""Words of FANUC's listings, by what they do, motions, and names. Not for: reading them (`fanuc_text`)."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -54,3 +55,8 @@ class Motion:
     options: tuple[str, ...]
     beside: tuple[Statement, ...] = ()
     offsets: tuple[tuple[str, Expression], ...] = ()
+
+
+def named(text: str) -> str:
+    """The name of a register without its remark: `R[1]` for `R[1:count]`."""
+    return re.sub(r":[^\]]*", "", re.sub(r"\s+", "", text)).upper()

@@ -58,6 +58,10 @@ class Remarks:
         """Keeps something to tell, each place once."""
         self._passed.setdefault(what, {})[where] = None
 
+    def noted(self, what: str) -> list[str]:
+        """The places that are kept with something to tell."""
+        return [*self._passed.get(what, ())]
+
     def lack(self, fault: str, key: str, name: str, before: str = "", more: str = "") -> Any:
         """Any tool, frame or radius, for one of a name that no file has: `require_all` then refuses the program.
 

@@ -155,6 +155,8 @@ CALL SUB(3) ;
         ("R[1]=9 ;", "L P[R[1]] 9mm/sec FINE ;", "P[9]: no position of it under /POS"),
         ("R[1]=2 ;", "L PR[R[1]] 9mm/sec FINE ;", "PR[2]: a position register"),
         ("R[1]=2 ;\nP[2]=P[3] ;", "L P[R[1]] 9mm/sec FINE ;", "P[2] is given a value before"),
+        ("", "L P[R[3]+1] 9mm/sec FINE ;", "the number of P[…] is not known: 'R[3]+1' is not read"),
+        ("", "L P[...] 9mm/sec FINE ;", "the number of P[…] is not known: '...' is not read"),
         ("", "L P[2 9mm/sec FINE ;", "'L' is not understood"),
         ("R[2]=2 ;", "L P[R[R[2]]] 9mm/sec FINE ;", "the number of P[…] is not known: 'R[R[2]]'"),
     ],
@@ -591,3 +593,10 @@ def test_a_joint_move_to_axes_needs_the_tool_where_it_ends_in_a_corner():
         f"UFRAME_NUM=1 ;\n{body.format('CNT50')}", tools={**CASE["tools"], **two}, **corner
     ).moves
     assert move.tool[2, 3] == 0.3
+
+
+def test_a_program_that_is_left_out_may_change_position_registers():
+    body = f"{FRAMES}PR[5]=P[2] ;\nCALL FOLGE(5) ;\n{L5}"
+    (told,) = program(body, skip=["FOLGE"]).doubts
+    assert told == "PR[5] is taken not to be changed by what is left out: FOLGE (line 9)"
+    assert program(f"{FRAMES}PR[5]=P[2] ;\nWAIT DI[1]=ON ;\n{L5}", skip=["WAIT"]).doubts == ()
