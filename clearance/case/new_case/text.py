@@ -88,6 +88,8 @@ def _robot(case: CaseText) -> Iterator[str]:
     for key, value in case.robot.items():
         remark = case.remarks.get(key) or _REMARKS.get(key, "")
         yield f"{key}: {flow(value)}" + (f"  # {remark}" if remark else "")
+    if "base" not in case.robot:  # an SRDF moves it, and each check warns until this is said
+        yield f"# base: {{xyz: [0.0, 0.0, 0.0], rpy: [0.0, 0.0, 0.0]}}{_remark(case, 'base')}"
     yield from _resting(case)
     if "self_clearance" not in case.robot:
         yield "# self_clearance: true  # links of the robot against each other, too"
