@@ -17,6 +17,7 @@ from clearance.simulate.answers.handling import gap_between, handling_hints
 from clearance.simulate.measure.sections import SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
+from clearance.world.kinematic_chain import chain_between
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.notice import listed
@@ -106,7 +107,10 @@ def standing_hint(record: Record) -> list[str]:
     parts = [hint for hint in handling_hints(record) if hint.pair not in known]
     hints = [
         *_hint(standing, "all the time, since the link never moves"),
-        *_hint(links, "at every step, link against link"),
+        *(
+            one + _on_resting(record.case, links)
+            for one in _hint(links, "at every step, link against link")
+        ),
         *_hint([pair for pair in always if pair not in links], "whenever they are measured"),
         *map(str, sorted(parts, key=lambda hint: not hint.is_deeper)),
     ]
@@ -119,6 +123,26 @@ def standing_hint(record: Record) -> list[str]:
         )
         hints[-1] += f"; where that is meant, add to {lines}"
     return hints
+
+
+def _on_resting(case: Case, pairs: list[tuple[str, str]]) -> str:
+    """What else may part links, as fingers that nobody opens: the joints between them that nobody gives."""
+    found: dict[str, None] = {}
+    for i, placed in enumerate(case.robots):
+        bodies = placed.robot.bodies
+        links = {BodyIndex(i, k).name_in(case): body.name for k, body in enumerate(bodies)}
+        given = {*placed.trajectory.joint_names} if placed.trajectory else set()
+        for a, b in (pair for pair in pairs if links.keys() >= {*pair}):
+            between = chain_between(placed.robot, links[a], links[b]).masters
+            found |= {
+                one.name: None
+                for one in between
+                if one.name not in given | {*placed.fixed_positions}
+            }
+    if not found:
+        return ""
+    are = "is given by nobody and stays" if len(found) == 1 else "are given by nobody and stay"
+    return f"; {listed([*map(repr, found)])} between them {are} at 0: robot: {{joints: …}} may part them"
 
 
 def _are_links(case: Case, pair: tuple[str, str]) -> bool:

@@ -15,7 +15,9 @@ from clearance.report.topics.certainty import notes_of
 from clearance.simulate.answers.handling import handling_hints
 from clearance.simulate.answers.standing import always_in_contact, standing_contacts, standing_hint
 from clearance.world.carry import Carry
+from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.mount import Mount
+from clearance.world.robot import Joint, JointKind
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.formats.making import CASE, write_case
@@ -175,3 +177,20 @@ def test_a_part_far_from_what_picks_it_up_stands_in_the_headline():
         "of its carry [CL428]"
     )
     assert not any("picks it up" in one for one in cl.check(case).verdict.warnings)
+
+
+@pytest.mark.parametrize("fixed", [{}, {"left_finger": 0.0}])
+def test_fingers_that_rest_closed_at_nobodys_word_are_told_by_their_joint(fixed):
+    """A hand slides on, its two fingers 0.1 m thick and side by side; one of them can open."""
+    joints = (
+        Joint("rail", JointKind.PRISMATIC, "base", "right", at(z=1.0)),
+        Joint("left_finger", JointKind.PRISMATIC, "right", "left", at(y=0.1)),
+    )
+    bodies = tuple(cl.Body(name, cl.box((0.1, 0.1, 0.1))) for name in ("base", "right", "left"))
+    robot = cl.Robot("hand", ("base", "right", "left"), joints, bodies)
+    path = cl.Trajectory(np.arange(3.0), ("rail",), np.arange(3.0)[:, None])
+    asked = cl.SelfClearance(CollisionMatrix())
+    placed = cl.PlacedRobot(robot, path, self_clearance=asked, fixed_positions=fixed)
+    (told,) = standing_hint(cl.check(cl.Case("own", (placed,), ())).record)
+    says = "link against link: left - right; 'left_finger' between them is given by nobody and stays at 0"
+    assert (says in told) == (not fixed) and "add to the case: allow" in told
