@@ -22,6 +22,7 @@ from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.notice import listed
 from clearance.world.pairs import BodyIndex
+from clearance.world.self_pairs import neighbours
 
 
 def standing_contacts(record: Record) -> list[tuple[str, str]]:
@@ -108,7 +109,7 @@ def standing_hint(record: Record) -> list[str]:
     hints = [
         *_hint(standing, "all the time, since the link never moves"),
         *(
-            one + _on_resting(record.case, links)
+            one + _on_links(record.case, links)
             for one in _hint(links, "at every step, link against link")
         ),
         *_hint([pair for pair in always if pair not in links], "whenever they are measured"),
@@ -125,24 +126,30 @@ def standing_hint(record: Record) -> list[str]:
     return hints
 
 
-def _on_resting(case: Case, pairs: list[tuple[str, str]]) -> str:
-    """What else may part links, as fingers that nobody opens: the joints between them that nobody gives."""
-    found: dict[str, None] = {}
+def _on_links(case: Case, pairs: list[tuple[str, str]]) -> str:
+    """Why links may touch that need not: an SRDF does not excuse neighbours unless it says so, and nobody opens
+    fingers whose joint nobody gives."""
+    unexcused, resting = [], dict[str, None]()
     for i, placed in enumerate(case.robots):
-        bodies = placed.robot.bodies
+        bodies, matrix = placed.robot.bodies, placed.self_clearance and placed.self_clearance.matrix
         links = {BodyIndex(i, k).name_in(case): body.name for k, body in enumerate(bodies)}
-        given = {*placed.trajectory.joint_names} if placed.trajectory else set()
+        given = {*(placed.trajectory.joint_names if placed.trajectory else ())}
+        given |= {*placed.fixed_positions}
+        joined = neighbours(placed.robot) if matrix else frozenset()
         for a, b in (pair for pair in pairs if links.keys() >= {*pair}):
+            unexcused += [f"{a} - {b}"] * (frozenset((links[a], links[b])) in joined)
             between = chain_between(placed.robot, links[a], links[b]).masters
-            found |= {
-                one.name: None
-                for one in between
-                if one.name not in given | {*placed.fixed_positions}
-            }
-    if not found:
-        return ""
-    are = "is given by nobody and stays" if len(found) == 1 else "are given by nobody and stay"
-    return f"; {listed([*map(repr, found)])} between them {are} at 0: robot: {{joints: …}} may part them"
+            resting |= {one.name: None for one in between if one.name not in given}
+    said = ""
+    if unexcused:
+        said += f"; the SRDF does not excuse the neighbours {listed(unexcused)}"
+    if resting:
+        are = (
+            "is given by nobody and stays" if len(resting) == 1 else "are given by nobody and stay"
+        )
+        names = listed([*map(repr, resting)])
+        said += f"; {names} between them {are} at 0: robot: {{joints: …}} may part them"
+    return said
 
 
 def _are_links(case: Case, pair: tuple[str, str]) -> bool:
