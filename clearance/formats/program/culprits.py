@@ -44,7 +44,7 @@ def way_past(culprits: Iterable[Culprit], suffix: str) -> str:
     else:
         file = f"program: {{beside: [{files}]}}"
     does = "it neither moves nor sets" if len(names) == 1 else "they neither move nor set"
-    return f"{file}, or skip: [{', '.join(names)}] if {does} tool or frame"
+    return f"{file}, or skip: [{', '.join(names)}] if {does} tool, frame or variables"
 
 
 def undecided_branch(one: If, culprits: Sequence[Culprit], why: Unknown, suffix: str) -> BadProgram:

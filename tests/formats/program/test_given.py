@@ -50,6 +50,8 @@ def check(name, text, beside=(), **asked):
         ("weld.src", KRL, CONFIG, {**PTP, "tools": {"TOOL_DATA[1]": AT}}, f"tools.TOOL_DATA[1]: {IDLE}"),
         ("weld.src", KRL, CONFIG, {"zones": {"C_PTP": 0.05, "C_DIS": 0.3}}, f"zones.C_DIS: {IDLE}without"),
         ("CELL.LS", LISTING, (), {"zones": {"CNT": 0.05, "CNT5": 0.3}}, f"CNT5: {IDLE}did you mean 'CNT50'?"),
+        ("CELL.LS", LISTING, (), {"zones": {"CNT": 0.05}, "variables": {"R[1]": 3}}, f"variables.R[1]: {IDLE}"),
+        ("weld.src", KRL, CONFIG, {**PTP, "variables": {"N": 3}}, f"variables.N: {IDLE}without it"),
         ("CELL.LS", LISTING, (), {"entry": "MAIN"}, "entry: there is no program 'MAIN'; valid: CELL"),
     ],
 )  # fmt: skip
