@@ -49,8 +49,12 @@ class Position:
         return JOINTS if self.is_joints else POSE
 
     def pose(self) -> np.ndarray:
-        """(4, 4) [m] Of the tool, seen from its frame."""
-        x, y, z, *turns = (float(self.values[key] or 0.0) for key in POSE)
+        """(4, 4) [m] Of the tool, seen from its frame.
+
+        Raises:
+            TypeError: it is not taught.
+        """
+        x, y, z, *turns = (self.element(number) for number in range(1, 7))
         return pose_from_rpy([x * MM, y * MM, z * MM], [math.radians(turn) for turn in turns])
 
     def element(self, number: int) -> float:

@@ -247,7 +247,7 @@ class _Reader(BlockReader):
         if word == "PR" and "=" in text:
             return [self._register(line, text)]
         assigned = _ASSIGNED.match(text)
-        if assigned is not None and "[GP" not in named(assigned[1]):
+        if assigned is not None and not re.search(r"\[GP|,", named(assigned[1])):
             name = Name(named(assigned[1]), line)
             return [Assign(line, name, _condition(assigned[2], line), is_of_all=True)]
         if word in QUIET:

@@ -525,12 +525,15 @@ def test_a_position_register_of_the_case_is_seen_from_the_frame_in_force():
          "UFRAME[1] is set in the program, and is not known: it is no pose"),
         ("UFRAME[1]=PR[5] ;\nL P[2] 9mm/sec FINE ;",
          'not known: PR[5] is in no listing; a frame that the file decides, or program: {frames: {"PR[5]'),
+        ("P[2,1]=P[3] ;\nL P[2] 9mm/sec FINE ;", "'P' is not understood"),
+        ("PR[5]=P[6] ;\nL P[2] 9mm/sec FINE Offset,PR[5] ;", "L is given data of another kind"),
         ("UFRAME[GP1:1]=PR[5] ;\nL P[2] 9mm/sec FINE ;", "'UFRAME' is not understood"),
     ],
 )  # fmt: skip
 def test_a_position_register_that_the_file_does_not_decide_is_refused(body, told):
+    untaught = SHIFT.replace("P[5:", "P[6:").replace("   10.000  mm", " ********  mm")
     with pytest.raises(cl.ClearanceError) as caught:
-        places(body, POINTS + SHIFT)
+        places(body, POINTS + SHIFT + untaught)
     assert told in str(caught.value)
 
 
