@@ -174,9 +174,9 @@ class _Reader(BlockReader):
             unread = Constant(Unknown("IMPORT is not read"))
             return [Assign(line, Name(GRAMMAR.folded(row[2].text), line), unread)]
         if word == "SIGNAL" and len(row) > 3:  # `SIGNAL gripper_open $IN[5]`
-            unread = Constant(Unknown(f"only the controller knows the signal {row[1].text}"))
             name = Name(GRAMMAR.folded(row[1].text), line)
-            return [Assign(line, name, unread, self._in_routine)]
+            (self._own if self._in_routine else self._types)[name.name] = word
+            return [Assign(line, name, self._of_type(name, name), self._in_routine)]
         if word in QUIET:
             called = called_beside(row)
             if not called and (given := assigned_beside(row)):  # a routine that only gives a value
@@ -279,6 +279,8 @@ class _Reader(BlockReader):
         """A value as a variable of its type takes it."""
         name = assigned(target)
         kind = "" if name is None else self._own.get(name.name) or self._types.get(name.name, "")
+        if name is not None and kind == "SIGNAL":  # others may set the same output by its number
+            return Constant(Unknown(f"only the controller knows the signal {name.name}"))
         act = {"INT": as_integer, "REAL": as_real}.get(kind)
         return value if act is None or name is None else Operation(act, (value,), name.line)
 
@@ -292,9 +294,8 @@ class _Reader(BlockReader):
         return Assign(line, target, self._of_type(target, value))
 
     def _wait(self, line: Line, read: Expressions) -> Statement:
-        cursor = read.cursor
-        cursor.take()
-        if cursor.expect("SEC", "FOR").text.upper() == "SEC":
+        read.cursor.take()
+        if read.cursor.expect("SEC", "FOR").text.upper() == "SEC":
             return Do(line, Call(WAIT, (read.expression(),), {}, line))
         return While(line, "WAIT FOR", read.expression(), (), at_end=True)
 

@@ -307,7 +307,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("n=RSI_MOVECORR()", "line 7: RSI_MOVECORR moves the robot, and its value is not read"),
         (
             "SIGNAL open $IN[7]\nIF open THEN\nPTP XHOME\nENDIF",
-            "line 8: IF decides on PTP at line 9, and is not known: only the controller knows the signal open",
+            "line 8: IF decides on PTP at line 9, and is not known: only the controller knows the signal OPEN",
         ),
         (
             "WAIT FOR $IN[3]",
@@ -542,6 +542,20 @@ def test_jumps_that_the_file_does_not_decide_are_refused(body, told):
 
 def test_functions_of_angles_are_in_degrees():
     assert angles("n=ACOS(0.5)\ngo(n)\nn=TAN(45)\ngo(n)") == [60, 1]
+
+
+def test_a_signal_is_not_known_by_what_it_was_given():
+    """The same output may have been set by its number, or by another name."""
+    body = "SIGNAL lamp $OUT[3]\nlamp=TRUE\n$OUT[3]=FALSE\nIF lamp THEN\ngo(1)\nENDIF"
+    with pytest.raises(
+        cl.ClearanceError, match="not known: only the controller knows the signal LAMP"
+    ):
+        angles(body)
+    data = POINTS.replace("ENDDAT", "SIGNAL lamp $OUT[3]\nENDDAT")
+    with pytest.raises(
+        cl.ClearanceError, match="not known: only the controller knows the signal LAMP"
+    ):
+        angles(body.partition("\n")[2], points=data)
 
 
 def test_what_a_trigger_gives_a_value_may_change_at_any_time():
