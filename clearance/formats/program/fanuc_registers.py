@@ -79,7 +79,8 @@ def known_register(name: str, run: Execution) -> Position:
     if name in run.variables or name in run.concurrent or not one.remedy:
         fault = f"{name}, a position register, is not known: {one.why}"
         raise BadProgram(fault, valid=one.valid("use P[…] with a position in the file"))
-    pose = run.lack(f"{name}: a position register is not in a listing", "frames", name)
+    seen = ", as seen from the user frame in force"
+    pose = run.lack(f"{name}: a position register is not in a listing", "frames", name, more=seen)
     return position_of(pose)
 
 

@@ -29,11 +29,11 @@ class ProgramFile(StrictModel):
     """A program's file. All else is for languages of controllers: `entry` is the procedure that runs, `beside` are
     further files, `skip` are instructions to leave out, `link` is the flange, `base` is where the controller's
     base stands, `axes` says how joints follow axes, `axes_as` that axes turn as on robots of a maker (`plain`:
-    joints are the axes). `tools` (on the flange) and `frames` (on the base) are those that the file names and does
-    not hold (in RAPID they replace the file's), `units` the frames of mechanical units that move the work. `zones`
-    are radii [m] of corners for which it has a word and no length (`C_PTP`, `CNT50`). `variables` are what
-    registers hold when the program begins, and inputs all the time. `step` is the most that the tool moves between
-    samples [m].
+    joints are the axes). `tools` (on the flange) and `frames` (on the base; position registers in the user frame)
+    are those that the file names and does not hold (in RAPID they replace the file's), `units` the frames of
+    mechanical units that move the work. `zones` are radii [m] of corners for which it has a word and no length
+    (`C_PTP`, `CNT50`). `variables` are what registers hold when the program begins, and inputs all the time.
+    `step` is the most that the tool moves between samples [m].
     """
 
     file: Name

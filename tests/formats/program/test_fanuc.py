@@ -234,7 +234,7 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
         (FRAMES + "L P[9] 100mm/sec FINE ;", "line 8: P[9]: no position of it under /POS"),
         (
             FRAMES + "L PR[1] 9mm/sec FINE ;",
-            'program: {frames: {"PR[1]": {xyz: […], rpy: […]}}} in m',
+            '{"PR[1]": {xyz: […], rpy: […]}}} in m and rad, as seen from the user frame in force',
         ),
         ("!pick\n 2:" + L2 + " ;", "line 6: '!pick' has no end; ';'"),
         (L2 + " TB .1sec,CALL X(1) Offset,PR[1] ;", "line 8: PR[1]: a position register is not in"),
