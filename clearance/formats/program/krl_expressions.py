@@ -21,9 +21,11 @@ from clearance.formats.program.expressions import (
     Constant,
     Expression,
     ExpressionReader,
+    Name,
     Unknown,
 )
 from clearance.formats.program.grammar import Grammar, Spelled, numeric, ranked
+from clearance.formats.program.statements import Assign, Do, Routine, Statement, assigned
 from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
 from clearance.geometry.pose import pose_from_rpy
 
@@ -278,10 +280,21 @@ def move_of(word: str, line: Line, read: Expressions) -> Call:
     return Call(word, tuple(targets), named, line)
 
 
-def assigned_beside(words: Sequence[Token]) -> str:
-    """The variable that an interrupt or a trigger gives a value: `DO n = 2`; empty where it is an output."""
+def routines_beside(words: Sequence[Token]) -> list[Routine]:
+    """What an interrupt or a trigger may change, as a routine: `DO n = 2`, or `DO sub(n)` of a procedure."""
     texts = [one.text.upper() for one in words]
     behind = [*words][texts.index("DO") + 1 :] if "DO" in texts else []
-    is_given = any(one.text == "=" for one in behind) and behind[0].kind == "name"
-    name = GRAMMAR.folded(behind[0].text) if is_given else ""
-    return "" if name in ("$OUT", "$ANOUT") else name
+    if len(behind) < 2 or behind[0].kind != "name":
+        return []
+    name, line, body = GRAMMAR.folded(behind[0].text), behind[0].line, list[Statement]()
+    if behind[1].text == "(" and name not in (*PACKAGES, SYSTEM):
+        call = Expressions(Cursor(behind, folds=True), GRAMMAR).expression()
+        if isinstance(call, Call) and any(assigned(one) for one in call.args):
+            body.append(Do(line, call))
+    elif (
+        behind[1].text != "("
+        and any(one.text == "=" for one in behind)
+        and name not in ("$OUT", "$ANOUT")
+    ):
+        body += [Assign(line, Name(name, line), Constant(Unknown("it is given beside")))]
+    return [Routine(f"{name} at {line}", line, (), tuple(body))] if body else []

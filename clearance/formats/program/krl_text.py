@@ -34,10 +34,10 @@ from clearance.formats.program.krl_expressions import (
     Expressions,
     as_integer,
     as_real,
-    assigned_beside,
     called_beside,
     move_of,
     parameters_of,
+    routines_beside,
 )
 from clearance.formats.program.krl_settings import FIRST
 from clearance.formats.program.statements import (
@@ -178,12 +178,10 @@ class _Reader(BlockReader):
             (self._own if self._in_routine else self._types)[name.name] = word
             return [Assign(line, name, self._of_type(name, name), self._in_routine)]
         if word in QUIET:
-            called = called_beside(row)
-            if not called and (given := assigned_beside(row)):  # a routine that only gives a value
-                body = (Assign(line, Name(given, line), Constant(Unknown(f"{word} gives it"))),)
-                text = f"{given} at {line}"
-                self._beside[text], called = Routine(text, line, (), body), (Constant(text),)
-            return [Do(line, Call(word, called, {}, line))]
+            more = routines_beside(row)
+            self._beside |= {one.name: one for one in more}
+            calls = (called_beside(row), *((Constant(one.name),) for one in more))
+            return [Do(line, Call(word, one, {}, line)) for one in calls]
         if word in NOTHING:
             return []
         try:

@@ -563,6 +563,14 @@ def test_what_a_trigger_gives_a_value_may_change_at_any_time():
         told = r"line 11: .* TRIGGER 'N at line \d+' may change it at any time"
         with pytest.raises(cl.ClearanceError, match=told):
             angles(f"{body}\ngo(n)")
+    sub = "END\nDEF c(x:%s, y)\nINT x\nx=90\n"
+    for passed, told in (("OUT", "may change it at any time"), ("IN", "")):
+        text = f"INTERRUPT DECL 4 WHEN $IN[2] DO c(n,2)\nn=1\ngo(n)\n{sub % passed}"
+        if not told:
+            assert angles(text) == [1]
+            continue
+        with pytest.raises(cl.ClearanceError, match=told):
+            angles(text)
     assert angles(f"n=1\n{WHEN} $OUT[3]=TRUE\n{WHEN} m=2\ngo(n)") == [1]
 
 
