@@ -89,8 +89,8 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
 
 
 BEYOND = 0.06
-"""[m] How far a visual shape of this size and more may reach beyond its link's collision shapes. The meshes of 174
-public robots reach 40 mm and less, or their links are measured in part only."""
+"""[m] How far a visual shape of this size and more may reach beyond its link's collision shapes. In 145 of 170
+files of public robots none reaches farther. In the others, 61 to 614 mm of a link are not measured."""
 
 
 LARGEST = 10_000_000
