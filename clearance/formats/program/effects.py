@@ -23,6 +23,7 @@ from clearance.formats.program.expressions import (
     number,
 )
 from clearance.formats.program.language import Language
+from clearance.formats.program.remarks import UNSAID, WAITS
 from clearance.formats.program.statements import (
     STOP,
     Assign,
@@ -96,14 +97,16 @@ class Effects:
             if not own and self._culprit(call, call.line, entered):
                 yield call
 
-    def waiting(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
-        """What in bodies takes a time, or is left out whatever time it takes, and where."""
+    def timing(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[tuple[str, str]]:
+        """A remark, and where, on what in bodies takes a time, is left out whatever it takes, or sets speeds."""
         for one in (one for body in bodies for one in self._run_in(body)):
             if isinstance(one, While):
-                yield f"{one.word} ({one.line})"
+                yield WAITS, f"{one.word} ({one.line})"
             for call in _calls_of(one):
                 if call.name in self.skip or self.language.waits(call):
-                    yield f"{call.name} ({call.line})"
+                    yield WAITS, f"{call.name} ({call.line})"
+                elif call.name in self.language.retiming:
+                    yield UNSAID, f"{call.name} ({call.line})"
 
     def _run_in(
         self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()

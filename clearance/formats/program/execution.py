@@ -336,8 +336,8 @@ class Execution(Remarks):
         if culprits := [found for body in bodies for found in self.effects.deciding(body)]:
             raise undecided_branch(one, culprits, why, self.language.suffix)
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
-        for waiting in self.effects.waiting(bodies):
-            self.note(WAITS, waiting)
+        for remark in self.effects.timing(bodies):
+            self.note(*remark)
         self._forget_changed(bodies)
 
     def _while(self, one: While) -> Leave | None:

@@ -45,7 +45,7 @@ from clearance.formats.program.fanuc_words import (
     Motion,
 )
 from clearance.formats.program.language import Language, entry_of
-from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID, WAITS
+from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID
 from clearance.formats.program.statements import Assign, Do, For, within
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
@@ -59,6 +59,9 @@ _SECONDS = {"sec": 1.0, "msec": 1e-3}
 _IDLE = re.compile(r"ACC\d+|PTH|BREAK|PSPD\d+|RT_LD\d+|AP_LD\d+|EV\d+%?|INDEV\d+%?")
 """Options of a motion that change nothing of its way, or only how near to its corner it is rounded."""
 
+
+UNSET = "is not set before"
+"""Why the number of a frame or a tool is not known where no line sets it: that of each point counts."""
 
 _ROUNDING = math.radians(0.1)
 """Of a pose in a listing: axes are known no better."""
@@ -82,7 +85,7 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
         statements = (one for listing in routines.values() for one in within(listing.body))
         counters = {one.name.name for one in statements if isinstance(one, For)}
-        run.variables.update({name: Unknown(f"{name} is not set before") for name in counters})
+        run.variables.update({name: Unknown(f"{name} {UNSET}") for name in counters})
         give_registers(asked.asked, run)
         run.run_whole(main.body)
         return language.program_of(run)
@@ -183,8 +186,8 @@ class _Fanuc(Language):
             else:
                 name, what = one.call.name, "programs that motions call on their way (TB, TA, DB)"
                 run.run_concurrently("program", name)
-                for waiting in run.effects.waiting([(one,)]):
-                    run.note(LEFT_OUT if name in run.skip else WAITS, waiting)
+                for remark, where in run.effects.timing([(one,)]):
+                    run.note(LEFT_OUT if name in run.skip else remark, where)
                 run.note(f"{what}: they move nothing", f"{name} ({call.line})")
 
     def _target(
@@ -271,6 +274,10 @@ class _Fanuc(Language):
         if taught is not None and index != taught and needed:
             fault = f"{name} was taught in {kind} {taught}, and {kind}_NUM is {current:g}"
             raise BadProgram(fault, valid=f"write {kind}_NUM={taught} before it")
+        set_to = run.value_of(_number_of(kind))
+        if needed and isinstance(set_to, Unknown) and not set_to.what.endswith(UNSET):
+            text = f"{name} is taken in the {kind} that it was taught in: {set_to.why}"
+            run.doubts[f"{run.line}: {text}"] = None
         if index == 0:
             return np.eye(4)
         key, word = f"{kind}[{index or 0:g}]", "frames" if kind == "UFRAME" else "tools"

@@ -54,6 +54,15 @@ def place(move) -> list[float]:
     return move.to.pose[:3, 3].tolist()
 
 
+def test_a_tool_that_only_the_controller_knows_is_that_of_the_point_and_told():
+    body = FRAMES + "J P[1] 50% FINE ;\nIF DI[1]=ON,UTOOL_NUM=2 ;\nL P[2] 200mm/sec FINE ;"
+    (told,) = (one for one in program(body).doubts if "UTOOL" in one)
+    assert "P[2] is taken in the UTOOL that it was taught in: 'UTOOL_NUM' is given a value" in told
+    assert not [
+        one for one in program(body.replace("UTOOL_NUM=2", "DO[1]=ON")).doubts if "UTOOL" in one
+    ]
+
+
 def test_motions_in_frames_and_by_axes_become_moves_with_their_lines():
     body = (
         FRAMES

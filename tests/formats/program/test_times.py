@@ -138,6 +138,8 @@ UR_MOVE, RAPID_MOVE, FANUC_MOVE = (
         (lambda: fanuc(FANUC_MOVE, "DO[1]=ON"), []),
         (lambda: fanuc("LINEAR_MAX_SPEED=200", FANUC_MOVE), ["the speed of LINEAR_MAX_SPEED (line 3)"]),
         (lambda: fanuc("L P[2] R[1]mm/sec FINE"), ["the speed of line 3"]),
+        (lambda: fanuc("IF DI[1]=ON,OVERRIDE=10%", FANUC_MOVE), ["the speed of OVERRIDE (line 3)"]),
+        (lambda: rapid("IF DI1=1 THEN", "VelSet 10,5000;", "ENDIF", RAPID_MOVE), ["the speed of VelSet (line 6)"]),
         (lambda: fanuc("L P[2] R[1]sec FINE"), ["the speed of line 3"]),
         (lambda: fanuc(FANUC_MOVE + " PSPD50"), ["the speed of line 3"]),
         (lambda: fanuc(FANUC_MOVE + " ACC20"), ["what ACC20 (line 3) sets"]),
