@@ -28,8 +28,9 @@ def view(folder: Path, case: str | None) -> None:
         return
     from clearance.case.packed import unpacked
     from clearance.progress import doing
-    from clearance.view import page_in, show
+    from clearance.view import PAGE, page_in, show
 
+    folder = folder.parent if folder.name == PAGE else folder
     with unpacked(folder) as packed:
         place = folder if packed is None else packed.entry
         page = _checked(folder).encode() if place.is_file() else page_in(place)

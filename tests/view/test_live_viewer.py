@@ -13,6 +13,7 @@ from urllib.request import ProxyHandler, build_opener
 import numpy as np
 import pytest
 
+from clearance import cli
 from clearance.cli import view
 from clearance.errors import BadSyntax, MissingFile
 from clearance.view import Playback, page_in
@@ -45,6 +46,14 @@ def test_a_folder_is_shown_as_its_page(tmp_path):
         assert playback.url.startswith("http://127.0.0.1")
         page = build_opener(ProxyHandler({})).open(playback.url, timeout=120).read()
     assert page == (tmp_path / "out" / "report.html").read_bytes()
+
+
+def test_the_page_itself_may_be_named(tmp_path, monkeypatch):
+    (tmp_path / "report.html").write_text("<html></html>")
+    seen = []
+    monkeypatch.setattr("clearance.view.show", lambda name, page: seen.append(page))
+    assert cli.run(["view", str(tmp_path / "report.html")]) == 0
+    assert seen == [b"<html></html>"]
 
 
 def test_the_verdict_of_a_case_is_printed_and_its_run_shown(capsys):

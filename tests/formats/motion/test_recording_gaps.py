@@ -1,5 +1,7 @@
 """Holes in recordings: found by what is usual, never bridged without a word, and treated as the case says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,9 +12,11 @@ from clearance.errors import BadInput
 from clearance.formats.motion.joint_states import JointState, trajectory_of_states
 from clearance.formats.motion.recording_gaps import tracks_of
 from clearance.report.motion_file import motion_content
+from clearance.world.body import Body, Obstacle
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import selected_pairs
 from clearance.world.plausibility import notices_of
+from clearance.world.pose_table import PoseTable
 from clearance.world.timeline import timeline_of
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed
@@ -181,6 +185,22 @@ def test_what_is_not_measured_says_nothing_of_how_far_a_joint_was_off(tmp_path):
     assert found.robots[0].recording.joints[0].greatest < 1e-12
     with pytest.raises(BadInput, match=r"joint 'shoulder' is 0\.25 rad off"):
         with_recorded(case, tmp_path / "run.csv", gaps="linear")
+
+
+def test_steps_at_which_nothing_is_measured_have_no_status(tmp_path):
+    """Those of a door that moves while the arm's positions are not known."""
+    text = changed("file: path.csv", "file: path.csv, gaps: not_measured")
+    case = load_case(write_case(tmp_path, text, urdf=TWO_JOINTS, trajectory=LOG))
+    places, stands = np.full((9, 3), 9.0), np.tile([0.0, 0.0, 0.0, 1.0], (9, 1))
+    door = Obstacle(
+        Body("door", cl.box((0.1, 0.1, 0.1))),
+        moves=PoseTable(np.linspace(0.0, 4.0, 9), places, stands),
+    )
+    run = cl.check(replace(case, obstacles=(door,)))
+    status, times = run.steps["status"].to_pylist(), run.steps["time"].to_pylist()
+    hole = [1.0 < time < 3.0 for time in times]
+    assert sum(hole) == 3 and [one is None for one in status] == hole
+    assert run.summary["status_counts"]["clear"] == len(times) - 3
 
 
 def test_a_case_says_what_a_hole_means(tmp_path):
