@@ -50,11 +50,15 @@ class RunAnswer:
 
     def sample_codes(self, steps: slice) -> np.ndarray:
         """(k,) the status of each of some steps by itself, the worst of all rules; -1 where a bound does not
-        decide.
+        decide, or no rule has a pair to measure.
         """
+        found = [rule.measurement for rule in self.rules]
         codes = np.array([sample_codes(r.measurement, r.limits, steps) for r in self.rules])
         undecided = (codes < 0).any(axis=0) & (codes.max(axis=0) <= 0)
-        return np.where(undecided, -1, codes.max(axis=0))
+        empty = np.all(
+            [(m.pair[steps] < 0) & np.isinf(m.lower_bound[steps]) for m in found], axis=0
+        )
+        return np.where(undecided | empty, -1, codes.max(axis=0))
 
     def motion_codes(self, steps: slice) -> np.ndarray:
         """(k,) what is proven of the motion from each of some steps to the next, the worst of all rules."""
