@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from clearance.codes import codes
 from clearance.world.case import Case
 from clearance.world.extents import metres
 from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN
-from clearance.world.notice import START, WRAP, Notice, Severity
+from clearance.world.notice import START, WRAP, Notice, Severity, listed
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import time_text
@@ -35,11 +36,15 @@ def notices_on_tables(case: Case) -> list[Notice]:
             halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
     notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
     notices += [Notice(Severity.SUSPECT, WRAP, text) for text in halves]
-    return [*notices, *(Notice(Severity.WARNING, START, text) for text in backs)]
+    if backs:
+        text = f"tables that begin again (after: loop) elsewhere than they end: {listed(backs, 4)}"
+        says = f"no way back is measured; accept: [{codes()[START]}] says that it is another part each time"
+        notices.append(Notice(Severity.WARNING, START, f"{text}; {says}"))
+    return notices
 
 
 def _back_to_start(what: str, table: PoseTable) -> Iterator[str]:
-    """How far a table that begins again is then from its end: the next part of a line is, a door is not."""
+    """How far a table that begins again is then from its end: as the next part of a line, not as a door."""
     if table.timing.after != "loop":
         return
     last, first = table.quaternions[-1], table.quaternions[0]
@@ -51,10 +56,7 @@ def _back_to_start(what: str, table: PoseTable) -> Iterator[str]:
         if way[0] > least
     ]
     if told:
-        yield (
-            f"{what} is {' and '.join(told)} away when its table begins again (after: loop): "
-            "no way back is measured; if it is another part each time, accept: [start] says so"
-        )
+        yield f"{what} by {' and '.join(told)}"
 
 
 def _half_turns(what: str, table: PoseTable) -> list[str]:
