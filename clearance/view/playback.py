@@ -22,8 +22,7 @@ PAGE = "report.html"
 class Playback:
     """A page that is served until `close`, or as a context manager until its end."""
 
-    def __init__(self, name: str, page: bytes) -> None:
-        self.name = name
+    def __init__(self, page: bytes) -> None:
         self._server = PageServer(page)
 
     @property
@@ -50,7 +49,7 @@ class Playback:
 
 def show(name: str, page: bytes, open_browser: bool = True) -> None:
     """Serves a page until the user interrupts; prints its address."""
-    with Playback(name, page) as playback, _until_interrupted():
+    with Playback(page) as playback, _until_interrupted():
         print(f"{name} is playing at {playback.url} (Ctrl-C ends it)", flush=True)
         if open_browser:
             webbrowser.open(playback.url, new=2)

@@ -29,7 +29,7 @@ RUN = with_contacts(record())
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_it_shows_the_verdict_and_plays_the_replay():
     replay = replay_of(RUN)
-    with Playback("run", run_of(RUN).page().encode()) as playback, chromium() as page:
+    with Playback(run_of(RUN).page().encode()) as playback, chromium() as page:
         page.open(playback.url, "window.clearance")
         page.settle()
         state = page.run("window.clearance.state()")
@@ -42,7 +42,7 @@ def test_it_shows_the_verdict_and_plays_the_replay():
 
 def test_a_folder_is_shown_as_its_page(tmp_path):
     write(RUN, tmp_path / "out")
-    with Playback("out", page_in(tmp_path / "out")) as playback:
+    with Playback(page_in(tmp_path / "out")) as playback:
         assert playback.url.startswith("http://127.0.0.1")
         page = build_opener(ProxyHandler({})).open(playback.url, timeout=120).read()
     assert page == (tmp_path / "out" / "report.html").read_bytes()

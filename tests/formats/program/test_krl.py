@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 
 import numpy as np
 import pytest
@@ -465,6 +464,13 @@ def test_names_that_are_like_an_unknown_one_are_sought_only_to_be_told(monkeypat
     assert len(program("n=nowhere\nb[1].x=elsewhere\nPTP XHOME").moves) == 1
 
 
+MACHINE = """DEFDAT $MACHINE PUBLIC
+$ROBROOT={X 0.0,Y 0.0,Z 800.0,A 0.0,B 0.0,C 0.0}
+$SERVO_MODE=1
+ENDDAT
+"""
+
+
 def test_system_variables_that_are_not_followed_are_doubted():
     quiet = "$ADVANCE=3\n$TECH[1].MODE=#OFF\n$TECH[2].CLASS=#PATH\n$OUT[1]=TRUE\nPTP XHOME"
     assert program(quiet).doubts == ()
@@ -474,138 +480,3 @@ def test_system_variables_that_are_not_followed_are_doubted():
     beside = {"weld.dat": POINTS.encode(), "machine.dat": MACHINE.encode()}
     (told,) = read("weld.src", f"{HEAD}{FRAMES}PTP XP1\nEND\n", beside, **world).doubts
     assert told.endswith("base in the program is taken for $WORLD")
-
-
-MACHINE = """DEFDAT $MACHINE PUBLIC
-$ROBROOT={X 0.0,Y 0.0,Z 800.0,A 0.0,B 0.0,C 0.0}
-$SERVO_MODE=1
-ENDDAT
-"""
-WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
-
-
-@pytest.mark.parametrize("body", ["RESUME", "IF $IN[1] THEN\nGOTO over\nENDIF"])
-def test_what_decides_which_lines_run_is_never_left_out(body):
-    with pytest.raises(cl.ClearanceError, match=r"line [78]") as caught:
-        program(f"{body}\nPTP XHOME\nover:", skip=["GOTO", "RESUME"])
-    assert "skip" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "body", ["INTERRUPT DECL 10 WHEN $IN[1] DO", "GLOBAL INTERRUPT DECL 9 WHEN $IN[1] DO", WHEN]
-)
-def test_what_runs_beside_the_program_moves_nothing(body):
-    beside = "END\nDEF away()\nBRAKE\nLIN XP1\nEND\nDEF lamp()\n$OUT[1]=TRUE\n"
-    for name, told in (("away", "LIN at line 12"), ("off", "it is in no file that is given")):
-        with pytest.raises(cl.ClearanceError, match=f"line 7: .* or may: {told}"):
-            program(f"{body} {name}()\nPTP XHOME\n{beside}")
-    found = program(f"{body} lamp()\n{body} IR_STOPM()\nPTP XHOME\n{beside}")
-    assert len(found.moves) == 1 and any(
-        "LAMP (line 7), IR_STOPM (line 8)" in x for x in found.notes
-    )
-
-
-def angles(body: str, **asked) -> list[float]:
-    """A1 [degrees] at the ends of moves; `go(1)` in a body is a move."""
-    text = re.sub(r"go\((\w+)\)", r"PTP {A1 \1,A2 0,A3 0,A4 0,A5 0,A6 0}", body)
-    return [round(math.degrees(one.to.axes[0]), 6) for one in program(text, **asked).moves]
-
-
-@pytest.mark.parametrize(
-    ("body", "found"),
-    [
-        ("go(1)\nGOTO over\ngo(2)\nOver:\ngo(3)", [1, 3]),
-        ("n=0\nagain:\nn=n+1\ngo(n)\nIF n<3 THEN\ngoto again\nENDIF", [1, 2, 3]),
-        ("FOR n=1 TO 5\ngo(n)\nIF n==2 THEN\nGOTO out\nENDIF\nENDFOR\nout:\ngo(9)", [1, 2, 9]),
-        ("again:\ngo(1)\ngo(2)\nGOTO again", [1, 2, 1, 2]),
-        ("s()\ngo(3)\nEND\nDEF s()\nGOTO l\ngo(1)\nl:", [3]),
-    ],
-)
-def test_jumps_go_to_the_labels_of_their_subprogram(body, found):
-    assert angles(body) == found
-
-
-@pytest.mark.parametrize(
-    ("body", "told"),
-    [
-        ("GOTO in\nIF TRUE THEN\nin:\ngo(1)\nENDIF", "line 7: GOTO goes to label IN, which is in no"),
-        ("go(1)\nGOTO far\nEND\nDEF s()\nfar:", "line 8: GOTO goes to label FAR, which is in no"),
-        ("a:\ngo(1)\nA:\nGOTO a", "line 9: label A is there twice; one of them: the other is at line 7"),
-        ("IF $IN[1] THEN\nGOTO a\nENDIF\ngo(1)\na:", "line 7: IF decides on GOTO at line 8, and is not"),
-        ("GOTO a b\na:\ngo(1)", "line 7: 'GOTO' is not understood, and decides which"),
-    ],
-)  # fmt: skip
-def test_jumps_that_the_file_does_not_decide_are_refused(body, told):
-    with pytest.raises(cl.ClearanceError, match=told):
-        angles(body, skip=["GOTO"])
-
-
-def test_functions_of_angles_are_in_degrees():
-    assert angles("n=ACOS(0.5)\ngo(n)\nn=TAN(45)\ngo(n)") == [60, 1]
-
-
-def test_a_signal_is_not_known_by_what_it_was_given():
-    """The same output may have been set by its number, or by another name."""
-    body = "SIGNAL lamp $OUT[3]\nlamp=TRUE\n$OUT[3]=FALSE\nIF lamp THEN\ngo(1)\nENDIF"
-    with pytest.raises(
-        cl.ClearanceError, match="not known: only the controller knows the signal LAMP"
-    ):
-        angles(body)
-    data = POINTS.replace("ENDDAT", "SIGNAL lamp $OUT[3]\nENDDAT")
-    with pytest.raises(
-        cl.ClearanceError, match="not known: only the controller knows the signal LAMP"
-    ):
-        angles(body.partition("\n")[2], points=data)
-
-
-def test_what_a_trigger_gives_a_value_may_change_at_any_time():
-    for body in (f"go(1)\nn=1\n\n{WHEN} n=90", f"IF $IN[1] THEN\n{WHEN} n=90 PRIO=-1\nENDIF\nn=1"):
-        told = r"line 11: .* TRIGGER 'N at line \d+' may change it at any time"
-        with pytest.raises(cl.ClearanceError, match=told):
-            angles(f"{body}\ngo(n)")
-    sub = "END\nDEF c(x:%s, y)\nINT x\nx=90\n"
-    for passed, told in (("OUT", "may change it at any time"), ("IN", "")):
-        text = f"INTERRUPT DECL 4 WHEN $IN[2] DO c(n,2)\nn=1\ngo(n)\n{sub % passed}"
-        if not told:
-            assert angles(text) == [1]
-            continue
-        with pytest.raises(cl.ClearanceError, match=told):
-            angles(text)
-    assert angles(f"n=1\n{WHEN} $OUT[3]=TRUE\n{WHEN} m=2\ngo(n)") == [1]
-
-
-def test_an_interrupt_that_brakes_stops_the_robot_on_its_way_and_is_told():
-    body = "INTERRUPT DECL 20 WHEN $IN[20]==FALSE DO paro()\nPTP XHOME\nEND\nDEF paro()\n"
-    stop = (
-        "BRAKE (line 11) of INTERRUPT PARO may stop the robot: it is taken to go on along its way"
-    )
-    found = program(f"{body}BRAKE F\nHALT\nINTERRUPT ON 20")
-    assert len(found.moves) == 1 and found.doubts == (stop,)
-    assert found.left_out == (
-        "BRAKE (line 11) in INTERRUPT PARO",
-        "HALT (line 12) in INTERRUPT PARO",
-    )
-    unknown = f"{body}BRAKE\nlights()"
-    with pytest.raises(
-        cl.ClearanceError, match=r"INTERRUPT 'PARO' .*LIGHTS at line 12; .*skip: \[LIGHTS\]"
-    ):
-        program(unknown)
-    for name in ("PARO", "lights"):
-        found = program(unknown, skip=[name])
-        assert len(found.moves) == 1 and found.doubts == (stop,)
-    assert "PARO (line 7)" in program(unknown, skip=["PARO"]).left_out
-    for last, told in (("RESUME", "or may: RESUME at line 12"), ("LIN XP1", "skip: PARO moves")):
-        with pytest.raises(cl.ClearanceError, match=told):
-            program(f"{body}BRAKE\n{last}", skip=["PARO"])
-
-
-@pytest.mark.parametrize("line", ["FIND(XP1)", "N=FIND(1,XP1)", "XP1=A(1) WHATEVER"])
-def test_what_a_line_that_is_left_out_may_have_changed_is_unknown(line):
-    with pytest.raises(cl.ClearanceError, match="'XP1' is given a value"):
-        program(f"{FRAMES}{line}\nLIN XP1", skip=["FIND", "XP1"])
-
-
-def test_a_move_is_never_left_out():
-    for word in ("ptp", "RSI_MOVECORR"):
-        with pytest.raises(cl.ClearanceError, match=f"skip: {word.upper()} moves the robot"):
-            program("PTP XHOME", skip=[word])
