@@ -28,6 +28,8 @@ from clearance.record.status import STATUSES, Status
 from clearance.record.wording import mm, of_rule
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
+from clearance.world.plausible_recordings import not_measured
+from clearance.world.unproven_motion import not_proven
 from clearance.world.waiver import Waiver
 
 NOT_WORKED_OUT = "the remaining clearance with tolerances was not computed"
@@ -148,7 +150,7 @@ def tolerance_lines(record: Record) -> tuple[str, ...]:
 
 def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
-    basis = "the samples only" if one.between is None else "the motion"
+    basis = "the samples only" if one.between is None else _motion_text(record)
     waived = " (waived pairs among them)" if record.case.waivers else ""
     remaining = f"at least {mm(proven)} mm remain{waived}"
     if proven <= 0.0:
@@ -158,6 +160,13 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
         spread = f"{budget.coverage:g} sigma, estimate{'' if one.between is not None else ' at the samples'}"
         line += f" Expected ({spread}): {mm(expected)} mm."
     return line
+
+
+def _motion_text(record: Record) -> str:
+    """The motion, less what of it is not proven or not measured."""
+    if not_proven(record.case):
+        return "the motion, less its unproven stretches"
+    return "the motion that is measured" if not_measured(record.case) else "the motion"
 
 
 def least_expected(one: RuleBudget) -> float | None:

@@ -94,7 +94,8 @@ def more_curves(record: Record) -> Iterator[MoreCurve]:
     if record.budget:
         times, between = record.motions[0].times, least_between(record.budget)
         proven = least_proven(record.budget)
-        proven = proven if between is None else np.minimum(proven, between)
+        if between is not None:  # no bound where no pair is measured up to the next step
+            proven = np.where(np.isinf(between), np.nan, np.minimum(proven, between))
         expected = np.maximum(least_expected(record.budget), proven)  # as it is told in words
         if between is None:
             yield _least("proven with tolerances, at the samples", times, proven, "dash")

@@ -6,6 +6,8 @@ Everything slides along x or z at z = 0.5 [m], so every clearance can be worked 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 import clearance as cl
@@ -13,12 +15,13 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Limits
 from clearance.world.mount import Mount
+from clearance.world.notice import NOT_MEASURED
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import Allowance, Rule
 from clearance.world.timing import Timing, Window
-from clearance.world.trajectory import Trajectory
+from clearance.world.trajectory import Hole, Trajectory
 from tests.made_cases import at
 
 UNTURNED = (0.0, 0.0, 0.0, 1.0)
@@ -97,4 +100,12 @@ def cell(rules=RULES, robots=None, obstacles=None, carries=None, **changes) -> C
     )
 
 
-__all__ = ["Allowance", "box", "cell", "slider", "sliding", "table_of"]
+def with_a_hole() -> Case:
+    """A slider of which nothing is known from 0.3 to 1.1 s passes a post that stands in between."""
+    placed = sliding("arm", [(0.1 * i, 0.1 * i) for i in (0, 1, 2, 3, 11, 12, 13)])
+    hole = Hole(("s",), placed.trajectory.times[3], placed.trajectory.times[4], 0.1, NOT_MEASURED)
+    placed = replace(placed, trajectory=replace(placed.trajectory, holes=(hole,)))
+    return Case("gap", (placed,), (box("post", (0.1,) * 3, at(0.7, z=0.5)),))
+
+
+__all__ = ["Allowance", "box", "cell", "slider", "sliding", "table_of", "with_a_hole"]

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.world.notice import NOT_MEASURED
+from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
-from clearance.world.trajectory import Hole
 from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
-from tests.report.cells import box, cell, sliding
+from tests.report.cells import box, cell, sliding, with_a_hole
 
 pytestmark = [
     pytest.mark.browser,
@@ -117,12 +116,20 @@ def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path
         assert page.errors == []
 
 
+def test_nothing_is_drawn_as_proven_with_tolerances_where_a_recording_is_not_measured(tmp_path):
+    budget = Budget(obstacles={"post": ObstacleTolerance(surface=0.001)})
+    cl.check(replace(with_a_hole(), tolerance=budget)).save(tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        lines = "[...document.querySelectorAll('path.filled, g > .curve.more')]"
+        drawn = page.run(f"{lines}.map((one) => one.getAttribute('d').split('M').length - 1)")
+        assert drawn == [2, 2, 2]
+
+
 def test_the_curve_has_a_gap_where_a_recording_is_not_measured(tmp_path):
-    """A slider of which nothing is known from 0.3 to 1.1 s passes a post that stands in between."""
-    placed = sliding("arm", [(0.1 * i, 0.1 * i) for i in (0, 1, 2, 3, 11, 12, 13)])
-    hole = Hole(("s",), placed.trajectory.times[3], placed.trajectory.times[4], 0.1, NOT_MEASURED)
-    placed = replace(placed, trajectory=replace(placed.trajectory, holes=(hole,)))
-    run = cl.check(cl.Case("gap", (placed,), (box("post", (0.1,) * 3, at(0.7, z=0.5)),)))
+    case = with_a_hole()
+    (hole,) = case.robots[0].trajectory.holes
+    run = cl.check(case)
     bounds = run.steps.select(["lower_bound", "upper_bound"]).to_pylist()
     assert [row["lower_bound"] is None for row in bounds] == [i == 3 for i in range(7)]
     assert bounds[3] == {"lower_bound": None, "upper_bound": None}

@@ -19,11 +19,13 @@ from clearance.report import curves
 from clearance.report.annotations import annotation_lines
 from clearance.report.curves import more_curves
 from clearance.report.topics.tolerances import largest_text, source_lines
-from clearance.world.budget import ObstacleTolerance
+from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.case import Limits
+from clearance.world.trajectory import UnprovenSpan
 from tests.budget.part_cases import passing
 from tests.findings.test_verdict import UNITS, made, printed
 from tests.report.budgets import with_budget
+from tests.report.cells import with_a_hole
 from tests.report.made import (
     finding_list_of,
     findings_of,
@@ -236,3 +238,26 @@ def test_a_bound_of_the_motion_is_drawn_level_from_step_to_step(parts, least, mo
     assert np.all(bound.times == expected.times) and np.all(bound.values <= expected.values)
     sampled, _ = more_curves(with_budget(NEAR))
     assert sampled.kind == "dash" and sampled.name == "proven with tolerances, at the samples"
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({}, "the motion that is measured"),
+        (
+            {"holes": (), "unproven": (UnprovenSpan("movel", 0.3, 1.1, "why"),)},
+            "the motion, less its unproven stretches",
+        ),
+        ({"holes": ()}, "the motion"),
+    ],
+)
+def test_a_motion_of_which_a_part_is_not_measured_or_proven_is_not_called_proven(changes, told):
+    case = with_a_hole()
+    (placed,) = case.robots
+    assert placed.trajectory is not None
+    placed = dataclasses.replace(
+        placed, trajectory=dataclasses.replace(placed.trajectory, **changes)
+    )
+    errors = Budget(obstacles={"post": ObstacleTolerance(surface=0.001)})
+    run = cl.check(dataclasses.replace(case, robots=(placed,), tolerance=errors))
+    assert any(f"; proven for {told}." in line for line in run.verdict.with_tolerances)

@@ -123,12 +123,16 @@ class Chart {
     return drawn("path", {class: `curve ${kind}`, d: this.path(x, y)});
   }
 
-  // The space to the curve before.
+  // The space to the curve before, in one piece for each stretch in which both have values.
   fill({x, y, filled}, i) {
     if (!filled) return [];
-    const before = this.told.curves[i - 1], known = [...x.keys()].filter((k) => Number.isFinite(y[k]) && Number.isFinite(before.y[k]));
-    const corners = [...known.map((k) => [x[k], y[k]]), ...known.reverse().map((k) => [before.x[k], before.y[k]])];
-    return [drawn("path", {class: "filled", d: this.path(corners.map(([time]) => time), corners.map(([, value]) => value)) + "Z"})];
+    const before = this.told.curves[i - 1], stretches = [[]];
+    for (const k of x.keys()) Number.isFinite(y[k]) && Number.isFinite(before.y[k]) ? stretches.at(-1).push(k) : stretches.push([]);
+    const piece = (known) => {
+      const corners = [...known.map((k) => [x[k], y[k]]), ...known.reverse().map((k) => [before.x[k], before.y[k]])];
+      return this.path(corners.map(([time]) => time), corners.map(([, value]) => value)) + "Z";
+    };
+    return [drawn("path", {class: "filled", d: stretches.filter((known) => known.length).map(piece).join("")})];
   }
 
   band({start, end, kind}) {
