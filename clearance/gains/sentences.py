@@ -1,13 +1,14 @@
 """A gain in plain lines, and no more than is proven: the terminal and the page say it in these words.
 
-Lengths in millimetres, angles in degrees. Clearances and bounds are rounded down. Not for: the layout of the page.
+Lengths in millimetres, angles in degrees. Clearances and bounds are rounded down, changes away from zero.
+Not for: the layout of the page.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from decimal import ROUND_FLOOR, Decimal
+from decimal import ROUND_FLOOR, ROUND_UP, Decimal
 
 from clearance.gains.change_parts import (
     ChangePart,
@@ -24,7 +25,7 @@ from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
 from clearance.gains.result import Gain
 from clearance.gains.turn import ARM
-from clearance.record.wording import depth_mm, limit_mm, mm, moment_text
+from clearance.record.wording import NOISE, depth_mm, limit_mm, mm, moment_text
 from clearance.run import Run
 from clearance.world.case import index_of_robot
 
@@ -160,13 +161,15 @@ def changed_lines(gain: Gain) -> list[str]:
     if gain.request.slow_down:
         rate = 1.0 / (1.0 + gain.size)
         return [
-            f"robot {gain.who} takes {amount_text(parts[0])} longer for its path: {rate:.4f} times as fast, "
+            f"robot {gain.who} takes {amount_text(parts[0])} longer for its path: {_down(rate)} times as fast, "
             "from its table's time 0 on"
         ]
     if gain.request.kind == "timing":
         return [f"robot {gain.who} begins {amount_text(parts[0])} later"]
     who = f"{'robot' if gain.request.kind == 'base' else 'obstacle'} {gain.who}"
-    axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts if part.unit == "m")
+    axes = ", ".join(
+        f"{part.name} {signed_text(part).removesuffix(' mm')}" for part in parts if part.unit == "m"
+    )
     turned = [f", turned {signed_text(part)}{_about(gain)}" for part in parts if part.unit == "rad"]
     joints = ""
     if gain.request.kind == "base":
@@ -217,7 +220,7 @@ def amount_text(part: ChangePart) -> str:
         "share": (100.0, "%"),
     }
     factor, unit = units[part.unit]
-    return f"{_figure(abs(part.amount) * factor)} {unit}"
+    return f"{_up(abs(part.amount) * factor)} {unit}"
 
 
 def signed_text(part: ChangePart) -> str:
@@ -229,7 +232,7 @@ def signed_text(part: ChangePart) -> str:
 def size_text(gain: Gain) -> str:
     """The size of the change."""
     factor, unit = size_unit(gain)
-    return f"{_figure(gain.size * factor)} {unit}"
+    return f"{_up(gain.size * factor)} {unit}"
 
 
 def bound_text(gain: Gain) -> str:
@@ -278,9 +281,9 @@ def _not_in_time(gain: Gain) -> str:
     if searched + finest >= most:
         searched, more = most, ""
     how = (
-        f"slow-down to {1.0 + searched:.4g} times its duration"
+        f"slow-down to {_down(1.0 + searched)} times its duration"
         if slow
-        else f"delay up to {searched:.4g} s"
+        else f"delay up to {_down(searched)} s"
     )
     return f"no {how} was found with which every rule holds{more}"
 
@@ -311,21 +314,13 @@ def _joint(part: ChangePart) -> str:
     return f"{text} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
 
 
-def _signed(part: ChangePart) -> str:
-    figure = _figure(part.amount * 1e3)
-    return f"+{figure}" if part.amount > 0.0 and figure != "0" else figure
-
-
-def _figure(value: float) -> str:
-    """Four digits, at most four places."""
-    if abs(value) < 5e-5:
-        return "0"
-    return f"{value:.{max(0, min(4, 3 - math.floor(math.log10(abs(value)))))}f}"
-
-
 def _up(value: float) -> str:
-    """Four places, rounded up; 0 for what is rounding."""
-    return "0" if value < 1e-9 else f"{math.ceil(value * 1e4) / 1e4:.4f}"
+    """Four digits, three or four places, rounded away from zero: enough of a change. 0 for what is rounding."""
+    if abs(value) < 1e-9:
+        return "0"
+    exact = Decimal(repr(value * (1.0 - NOISE)))
+    places = max(3, min(4, 3 - exact.adjusted()))
+    return f"{exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_UP):f}"
 
 
 def _down(value: float) -> str:

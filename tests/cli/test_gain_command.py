@@ -25,14 +25,14 @@ def test_a_change_that_is_enough_is_told_and_written(slot, tmp_path, capsys):
     code, text, _ = said(capsys, slot, "--kind", "obstacle", "--obstacle", "left", "--out", out)
     assert code == 0
     assert "before    tool and left: 19.99 mm" in text
-    assert "changed   obstacle left moved 20.00 mm: x 0, y +20.00, z 0" in text
+    assert "changed   obstacle left moved 20.001 mm: x 0, y +20.001, z 0" in text
     assert "bound     at least 19.99 mm is needed; this change is within 0.1 % of the least" in text
     assert run(["check", str(out / "case.yaml")]) == 0
 
 
 def test_a_margin_is_kept_and_said_not_to_be_in_the_case(slot, capsys):
     code, text, _ = said(capsys, slot, "--kind", "base", "--margin-mm", "3")
-    assert code == 0 and "moved 23.00 mm" in text and "by 3 mm more than its limit" in text
+    assert code == 0 and "moved 23.001 mm" in text and "by 3 mm more than its limit" in text
     assert "not written into the changed case" in text
 
 
@@ -40,7 +40,7 @@ def test_a_shift_keeps_within_its_room(slot, capsys):
     code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,19,0")
     assert code == 1 and "no change within what is allowed is large enough" in text
     code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,-21:0,0")
-    assert code == 0 and "moved 20.00 mm: x 0, y -20.00, z 0" in text
+    assert code == 0 and "moved 20.001 mm: x 0, y -20.001, z 0" in text
 
 
 @pytest.mark.slow

@@ -52,7 +52,7 @@ def test_a_change_whose_case_is_not_passed_is_not_kept(tmp_path):
     assert "not kept" in page and "every rule holds" not in page
     assert "case.yaml is the changed case, which is not passed" in page
     row = table_lines([Trial("base", found)])[1]
-    assert row.split()[:4] == ["base", "no", "20.00", "mm"]
+    assert row.split()[:4] == ["base", "no", "20.001", "mm"]
     assert row.endswith("; the changed case is not passed: violated")
 
 
