@@ -28,21 +28,22 @@ from clearance.batch.store import Store
 from clearance.codes import coded_of
 from clearance.findings.doubts import UNUSED_WAIVER, WARNING
 from clearance.findings.finding import NOT_PROVEN
+from clearance.record.wording import count
+from clearance.world.notice import listed
 
 STATUSES = (
     "clear", "near", WARNING, UNUSED_WAIVER, NOT_PROVEN, "violated", "contact", "suspect", ERROR,
 )  # fmt: skip
 """As a case's status can be, the better before the worse."""
 
-BASES = {
-    "motion": "proven for the motion",
-    "samples": "measured at the samples only",
-    "pose": "of a single pose",
-}
-"""What verdicts can rest on, in words."""
+PASSING = STATUSES[:2]
+"""Those of cases that pass as far as they are measured."""
+
+SHADES = ("clear", "near", "violated", "contact", "suspect", ERROR)
+"""As a case can be coloured, the better before the worse."""
 
 MOST_WORST = 10
-"""Failing cases that a summary names."""
+"""Failing cases, and kinds of reservations, that a summary names."""
 
 PART = 512
 """Rows that are read from a store at a time."""
@@ -109,13 +110,54 @@ class BatchAnswer:
     def status(self) -> str:
         """The worst of all cases; "unused waiver" where that is all that fails."""
         worst = next(reversed(self.counts), "clear")
-        return UNUSED_WAIVER if self.waiver_faults and worst in ("clear", "near") else worst
+        return UNUSED_WAIVER if self.waiver_faults and worst in PASSING else worst
+
+    @property
+    def shade(self) -> str:
+        """The worst colour of all cases; nothing is green that fails, or of which only a part is measured."""
+        shades = {shade or ERROR for shade in self.column("shade")}
+        worst = next((one for one in reversed(SHADES) if one in shades), "clear")
+        return "violated" if self.exit_code and worst in PASSING else worst
+
+    @property
+    def counted(self) -> str:
+        """How many cases have each status, the worst first; of those that pass what their headlines reserve."""
+        parts = [self._counted(status) for status in reversed(self.counts)]
+        return ("; " if any("," in part for part in parts) else ", ").join(parts) or "none"
+
+    def _counted(self, status: str) -> str:
+        n, texts = self.counts[status], self._headlines[status]
+        if status not in PASSING:
+            return f"{n:,} {status}"
+        if len(texts) == 1:
+            return f"{n:,} {next(iter(texts))}"
+        n_reserved = n - len(texts.get(status, ()))
+        return f"{n:,} {status} ({n_reserved:,} with reservations)"
 
     @cached_property
-    def bases(self) -> dict[str, int]:
-        """What verdicts rest on: how many on the motion, on the samples only, on a single pose."""
-        found = Counter(self.column("basis"))
-        return {basis: found[basis] for basis in BASES if found[basis]}
+    def _headlines(self) -> dict[str, dict[str, list[str]]]:
+        """The names of cases by status and headline."""
+        found = defaultdict[str, dict[str, list[str]]](dict)
+        columns = map(self.column, ("status", "text", "case"))
+        for status, text, case in zip(*columns, strict=True):
+            found[status].setdefault(text, []).append(case)
+        return found
+
+    @property
+    def reservations(self) -> list[str]:
+        """What else the headlines of passing cases say where they differ, and what was not checked, with the
+        cases."""
+        differing = [
+            (text, cases)
+            for status in reversed(self.counts)
+            for text, cases in self._headlines[status].items()
+            if status in PASSING and text != status and len(self._headlines[status]) > 1
+        ]
+        scopes = defaultdict[str, list[str]](list)
+        for case, scope in zip(self.column("case"), self.column("scope"), strict=True):
+            if scope:
+                scopes["; ".join(scope)].append(case)
+        return [*_with_cases(differing), *_with_cases([*scopes.items()])]
 
     @property
     def n_waived(self) -> int:
@@ -134,9 +176,9 @@ class BatchAnswer:
         return sum(map(bool, self.column("exit_code")))
 
     @property
-    def least(self) -> dict[str, Any] | None:
-        """The first case of least clearance, or deepest in contact, as columns of its row; None where none is
-        measured."""
+    def critical(self) -> dict[str, Any] | None:
+        """The case whose most critical moment has the least clearance, or is deepest in contact, as columns of its
+        row; the first of several, None where none is measured."""
         known = [(reach, i) for i, reach in enumerate(self.reached) if reach is not None]
         return self.row(min(known)[1]) if known else None
 
@@ -158,6 +200,14 @@ class BatchAnswer:
 
     def _worst_first(self, cases: Iterable[int]) -> list[int]:
         return sorted(cases, key=lambda i: (self.reached[i] or 0.0, i))
+
+
+def _with_cases(found: Sequence[tuple[str, Sequence[str]]]) -> Iterator[str]:
+    """Each text with the cases that it is of; some of them where there are many."""
+    for text, cases in found[:MOST_WORST]:
+        yield f"{text} ({count(len(cases), 'case')}: {listed(cases)})"
+    if len(found) > MOST_WORST:
+        yield f"and {count(len(found) - MOST_WORST, 'more reservation')}, see the page"
 
 
 def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchAnswer:

@@ -13,7 +13,7 @@ from clearance.batch.answer import FAULT, BatchAnswer
 from clearance.batch.rows import ERROR
 from clearance.report.junit import TestResult, write_junit
 
-_COLUMNS = ["case", "status", "exit_code", "text", "reasons", "waived"]
+_COLUMNS = ["case", "status", "exit_code", "text", "reasons", "reservations"]
 
 
 def write_batch_junit(answer: BatchAnswer, name: str, path: Path) -> None:
@@ -35,9 +35,13 @@ def _results(answer: BatchAnswer) -> Iterator[TestResult]:
 
 def _of_case(row: dict[str, Any]) -> TestResult:
     if not row["exit_code"]:
-        waived = "; ".join(f"waived: {line}" for line in row["waived"] or ())
-        return TestResult("batch", row["case"], waived)
+        return TestResult("batch", row["case"], _text(row))
     kind = {ERROR: "BadInput", "suspect": "SuspectInput"}.get(row["status"], "NotPassed")
     kind = "Fault" if row["exit_code"] == FAULT else kind
-    text = "; ".join(row["reasons"] or [row["text"]])
-    return TestResult("batch", row["case"], text, kind, errs=row["status"] == ERROR)
+    return TestResult("batch", row["case"], _text(row), kind, errs=row["status"] == ERROR)
+
+
+def _text(row: dict[str, Any]) -> str:
+    """The headline, why, and what a reader must know beside it, each once."""
+    lines = (row["text"], *(row["reasons"] or ()), *(row["reservations"] or ()))
+    return "; ".join(dict.fromkeys(lines))

@@ -1,7 +1,7 @@
 """The page of a batch: all cases in one table that sorts and filters, in one file that needs no network.
 
 Numbers go as columns, curves as one byte a number, and only the rows that are in view are drawn: 10,000 cases are
-2 MB and open at once. Not for: its data (`page_data`), and the page of one case (`report.page`).
+2.5 MB and open at once. Not for: its data (`page_data`), and the page of one case (`report.page`).
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from clearance.batch.answer import BASES, STATUSES, BatchAnswer
+from clearance.batch.answer import STATUSES, BatchAnswer
 from clearance.batch.case_page import FOLDER, folder_of
-from clearance.batch.rows import CURVE
+from clearance.batch.rows import CURVE, ERROR
 from clearance.findings.finding import NOT_PROVEN
+from clearance.record.status import Status
 from clearance.record.wording import count
 from clearance.report.rendering import render
 
@@ -37,11 +38,12 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     """
     return render(
         "batch.html",
-        title=f"{place.name}: {_counted(answer)}",
+        title=f"{place.name}: {_headline(answer)}",
         name=place.name,
-        verdict=_counted(answer),
-        worst=answer.status.split()[0],
-        basis="; ".join([_basis(answer), *answer.waiver_faults]),
+        verdict=_headline(answer),
+        shade=answer.shade,
+        lines=[*answer.reservations, *answer.waiver_faults],
+        beside=_beside(answer),
         data=page_data(answer, place),
     )
 
@@ -51,17 +53,13 @@ def unfinished_page(name: str, text: str) -> str:
     return render("batch_unfinished.html", title=f"{name}: not finished", name=name, text=text)
 
 
-def _counted(answer: BatchAnswer) -> str:
-    counted = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
-    return f"{count(answer.n_cases, 'case')}: {counted or 'none'}"
+def _headline(answer: BatchAnswer) -> str:
+    return f"{count(answer.n_cases, 'case')}: {answer.counted}"
 
 
-def _basis(answer: BatchAnswer) -> str:
-    parts = [f"{n:,} {BASES[basis]}" for basis, n in answer.bases.items()] or ["nothing measured"]
-    for n, what in ((answer.n_waived, "with waivers"), (len(answer.warned), "with warnings")):
-        if n:
-            parts.append(f"{n:,} {what}")
-    return ", ".join(parts)
+def _beside(answer: BatchAnswer) -> str:
+    counts = ((answer.n_waived, "with waivers"), (len(answer.warned), "with warnings"))
+    return ", ".join(f"{n:,} {what}" for n, what in counts if n)
 
 
 def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
@@ -70,14 +68,19 @@ def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     Args:
         place: the store's folder; a case whose own page lies in it is linked.
     """
-    column, statuses, bodies, rules = answer.column, _statuses(answer), _Texts(), _Texts()
+    column, statuses = answer.column, _statuses(answer)
+    bodies, rules, headlines = _Texts(), _Texts(), _Texts()
     return {
         "store": place.name,
         "statuses": statuses,
         "names": column("case"),
         "status": [*map(statuses.index, column("status"))],
+        "headline": headlines.numbers(_badges(answer)),
+        "headlines": headlines.texts,
+        "shade": [shade or ERROR for shade in column("shade")],
+        "touches": [int(measured == Status.CONTACT) for measured in column("measured")],
         "clearance": _millimetres(answer.reached),
-        "bound": _millimetres(column("lower_bound")),
+        "bound": _millimetres(column("proven")),
         "time": [None if time is None else round(time, 3) for time in column("time")],
         "steps": column("n_steps"),
         "a": bodies.numbers(column("body_a")),
@@ -86,8 +89,7 @@ def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "bodies": bodies.texts,
         "rules": rules.texts,
         "reasons": [lines or [] for lines in column("reasons")],
-        "notes": [*map(_notes, column("warnings"), column("waived"))],
-        "waived": [int(bool(lines)) for lines in column("waived")],
+        "notes": [lines or [] for lines in column("reservations")],
         "levels": _levels(column("fail"), column("warn")),
         "curves": base64.b64encode(_curves(answer.rows)).decode(),
         "n_curve": CURVE,
@@ -113,10 +115,10 @@ def _statuses(answer: BatchAnswer) -> list[str]:
     return [one for one in STATUSES if one != NOT_PROVEN or one in answer.counts]
 
 
-def _notes(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
-    return [f"warning: {line}" for line in warnings or ()] + [
-        f"waived: {line}" for line in waived or ()
-    ]
+def _badges(answer: BatchAnswer) -> list[str]:
+    """The headline of each case; of one without an answer its status."""
+    rows = zip(answer.column("status"), answer.column("text"), strict=True)
+    return [ERROR if status == ERROR else text for status, text in rows]
 
 
 class _Texts:

@@ -58,6 +58,7 @@ VERDICT = pa.schema(
         ("status", pa.string()),
         ("exit_code", pa.int8()),
         ("text", pa.string()),
+        ("shade", pa.string()),
         ("measured", pa.string()),
         ("basis", pa.string()),
         ("need", pa.string()),
@@ -78,7 +79,8 @@ VERDICT = pa.schema(
         ("end", pa.float64()),
         ("reasons", _TEXTS),
         ("warnings", _TEXTS),
-        ("not_checked", _TEXTS),
+        ("scope", _TEXTS),
+        ("reservations", _TEXTS),
         ("waived", _TEXTS),
         ("waivers", _TEXTS),
         ("curve", pa.list_(pa.float32())),
@@ -105,13 +107,15 @@ def row_of(run: Run) -> dict[str, Any]:
         "status": verdict.status,
         "exit_code": verdict.exit_code,
         "text": verdict.headline(),
+        "shade": verdict.shade,
         "measured": verdict.measured,
         "basis": verdict.basis,
         "need": record.need,
         "clearance": worst.clearance,
         "penetration": None if worst.depth is None else worst.depth.penetration,
         "lower_bound": None if certificate is None else float(certificate.lower_bound.min()),
-        **_with_tolerances(record),
+        "proven": _proven(record),
+        "expected": _expected(record),
         "time": worst.time,
         "step": worst.step,
         "body_a": worst.link,
@@ -124,7 +128,8 @@ def row_of(run: Run) -> dict[str, Any]:
         "end": float(times[-1]),
         "reasons": list(verdict.reasons),
         "warnings": list(verdict.warnings),
-        "not_checked": list(verdict.not_checked),
+        "scope": list(verdict.scope),
+        "reservations": list(verdict.reservations),
         "waived": list(verdict.waived),
         "waivers": _needed(run),
         "curve": curve_of(record).tolist(),
@@ -139,14 +144,19 @@ def row_of(run: Run) -> dict[str, Any]:
     }
 
 
-def _with_tolerances(record: Record) -> dict[str, float | None]:
-    """The least that tolerances leave, proven and expected [m], of all rules; None without any."""
-    found = record.budget or ()
-    expected = [one for one in map(least_expected, found) if one is not None]
-    return {
-        "proven": min((one.least for one in found), default=None),
-        "expected": min(expected, default=None),
-    }
+def _proven(record: Record) -> float | None:
+    """[m] The least clearance that is proven of the motion, with the tolerances that the case has."""
+    if record.certificate is None:
+        return None
+    if record.case.tolerance is None:
+        return float(record.certificate.lower_bound.min())
+    return min((one.least for one in record.budget or ()), default=None)
+
+
+def _expected(record: Record) -> float | None:
+    """[m] The least that tolerances are expected to leave, of all rules; None without any."""
+    found = map(least_expected, record.budget or ())
+    return min((one for one in found if one is not None), default=None)
 
 
 def _needed(run: Run) -> list[str]:

@@ -23,8 +23,8 @@ from clearance.batch.store_files import FILE, parts_in, require_place
 from clearance.batch.stored_row import COLUMNS, N_VALUES, is_whole, read_row, sealed, stored
 from clearance.errors import BadBatch, BadInput, ClearanceError, Incomplete, Unwritable, unwritable
 
-FORMAT = 2
-"""Of the tables; the parquet segments of older versions were 1."""
+FORMAT = 3
+"""Of the tables: 1 were parquet segments, 2 had no reservations, and are not read."""
 
 APPLICATION = 0x636C7242
 """Marks a SQLite file as a store."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from clearance.batch.answer import BASES, BatchAnswer
+from clearance.batch.answer import BatchAnswer
 from clearance.batch.output import PAGE
 from clearance.batch.status import BatchStatus
 from clearance.batch.store import Store
@@ -58,14 +58,12 @@ def _headline(answer: BatchAnswer) -> str:
     worst = answer.status.upper() if answer.counts else "NOTHING"
     if answer.exit_code == 0 and answer.n_waived:
         worst += " with waivers"
-    return f"{worst}  {count(answer.n_cases, 'case')}: {_counted(answer)}"
-
-
-def _counted(answer: BatchAnswer) -> str:
-    return ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items())) or "none"
+    return f"{worst}  {count(answer.n_cases, 'case')}: {answer.counted}"
 
 
 def _print_facts(answer: BatchAnswer) -> None:
+    for text in answer.reservations:
+        click.echo(shown(f"              {text}"))
     for text in answer.waiver_faults:
         click.echo(shown(f"  waivers     {text}"))
     if n_waived := answer.n_waived:
@@ -75,15 +73,13 @@ def _print_facts(answer: BatchAnswer) -> None:
     if warned := answer.warned:
         line = f"  warnings    {count(len(warned), 'case')}, see the page: {listed(warned)}"
         click.echo(shown(line))
-    for basis, n in answer.bases.items():
-        click.echo(f"  basis       {count(n, 'case')} {BASES[basis]}")
-    least = answer.least
-    if least is not None:
-        near = near_mm(least["clearance"], least["measured"], " mm")
-        if least["penetration"] is not None:
-            near = f"contact, at most {depth_mm(least['penetration'])} mm deep"
-        near += f", {least['body_a']} - {least['body_b']}"
-        click.echo(shown(f"  least       {least['case']}: {near} at {least['time']:.3f} s"))
+    critical = answer.critical
+    if critical is not None:
+        near = near_mm(critical["clearance"], critical["measured"], " mm")
+        if critical["penetration"] is not None:
+            near = f"contact, at most {depth_mm(critical['penetration'])} mm deep"
+        near += f", {critical['body_a']} - {critical['body_b']}"
+        click.echo(shown(f"  critical    {critical['case']}: {near} at {critical['time']:.3f} s"))
 
 
 def _print_worst(answer: BatchAnswer) -> None:
@@ -95,7 +91,9 @@ def _print_worst(answer: BatchAnswer) -> None:
 
 
 def _reason(row: dict[str, Any]) -> str:
-    """Why a case does not pass: of suspect input what is suspect, whatever is measured with it."""
+    """What the headline of a case says beside its status, and why it does not pass: of suspect input what is
+    suspect, whatever is measured with it."""
     reasons = row["reasons"] or [row["text"]]
     decisive = (one for one in reasons if one.startswith(f"{row['status']} "))
-    return next(decisive, reasons[0])
+    reason = next(decisive, reasons[0])
+    return reason if row["text"] in (row["status"], reason) else f"{row['text']}; {reason}"

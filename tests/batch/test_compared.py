@@ -73,8 +73,8 @@ def test_a_pose_in_place_of_a_motion_is_less(folder, capsys):
     path = folder / "t000.csv"
     path.write_text("".join(path.read_text().splitlines(keepends=True)[:2]))
     assert run(["batch", "batch.yaml", "--out", "new", "--jobs", "1"]) == 1
-    assert "  basis       1 case of a single pose" in capsys.readouterr().out.splitlines()
-    assert "1 of a single pose" in (folder / "new" / "batch.html").read_text()
+    assert "at a single pose" in capsys.readouterr().out.splitlines()[0]
+    assert "clear at a single pose" in (folder / "new" / "batch.html").read_text()
     code, lines = compared(capsys)
     assert (code, lines[1]) == (
         1, "less is known: a motion was checked, and now only a single pose is (t000)"

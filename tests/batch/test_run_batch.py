@@ -176,7 +176,8 @@ def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
     for was, now in zip(first, column(found, "proven"), strict=True):
         assert now == pytest.approx(was - 0.009, abs=2e-4)
     told, found = run_with(0.01, tolerance=None)
-    assert len(told.measured) == 5 and column(found, "proven") == [None] * 5
+    assert len(told.measured) == 5 and column(found, "expected") == [None] * 5
+    assert column(found, "proven") == column(found, "lower_bound")
 
 
 def test_a_recorded_run_is_part_of_what_a_row_is_of(manifest, tmp_path):

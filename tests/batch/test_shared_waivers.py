@@ -52,7 +52,7 @@ TABLE = {
         waiver() + waiver("[slider, wal]"), 1, "UNUSED WAIVER", "no body is called 'wal'; did you mean 'wall'?",
     ),
     "of a case": (
-        waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers",
+        waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", '<p class="faint">1 with waivers</p>',
     ),
     "of another case": (
         waiver() + waiver(case="t000"), 1, "UNUSED WAIVER",
@@ -104,11 +104,15 @@ def test_what_is_waived_stays_in_sight(folder):
     (folder / "waivers.yaml").write_text(waiver())
     assert batch("--quiet") == 0
     row = pq.read_table(folder / "store" / "cases.parquet").to_pylist()[2]
-    assert '"waived": [0, 0, 1]' in (folder / "store" / "batch.html").read_text()
+    page = (folder / "store" / "batch.html").read_text()
+    assert (
+        '"headline": [0, 0, 1]' in page and '"headlines": ["clear", "clear with 1 waiver"]' in page
+    )
     assert row["text"] == "clear with 1 waiver" and "39.99 mm" in row["waived"][0]
     assert row["waivers"] == ["waiver slider - wall (waivers.yaml: waivers[0])"]
-    (told,) = valid_suite(folder / "store" / "junit.xml").iter("system-out")
-    assert told.text.startswith("waived: 39.99 mm, below the fail limit")
+    told = [one.text for one in valid_suite(folder / "store" / "junit.xml").iter("system-out")]
+    assert told[2].startswith("clear with 1 waiver; ") and "waived: " not in told[0] + told[1]
+    assert "; waived: 39.99 mm, below the fail limit" in told[2]
     found = pq.read_table(folder / "store" / "findings.parquet").to_pylist()
     (of_case,) = (one for one in found if one["case"] == "t002")
     assert (of_case["waived"], of_case["code"]) == ("soft (N. N.)", "CL501")

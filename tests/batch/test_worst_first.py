@@ -16,16 +16,17 @@ def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch)
     manifest = write_cell(tmp_path / "in", [-0.01, -0.03, 0.5, -0.02])
     _, found = run_here(manifest, tmp_path / "out")
     assert [row["case"] for row in found.worst] == ["t001", "t003", "t000"]
-    assert found.least["case"] == "t001"
+    assert found.critical["case"] == "t001"
     depths = {row["case"]: row["penetration"] for row in cases(tmp_path / "out")}
     right = {"t000": approx(0.01), "t001": approx(0.03), "t002": None, "t003": approx(0.02)}
     assert depths == right
     page = page_data(found, tmp_path / "out")
     assert page["clearance"] == approx([-10.0, -30.0, 400.0, -20.0], abs=0.002)
+    assert page["touches"] == [1, 1, 0, 1]
     with open_store(tmp_path / "out") as store:
         print_answer(found, store, 0, None)
     told = capsys.readouterr().out
-    assert "least       t001: contact, at most 30.00 mm deep, slider - wall" in told
+    assert "critical    t001: contact, at most 30.00 mm deep, slider - wall" in told
     assert "contact     t001: contact 30.00 mm deep: slider - wall" in told
 
 

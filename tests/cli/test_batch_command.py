@@ -25,11 +25,11 @@ def test_the_exit_code_is_that_of_the_worst(folder, capsys):
     told = capsys.readouterr()
     lines = told.out.splitlines()
     assert lines[0] == "VIOLATED  3 cases: 1 violated, 1 near, 1 clear" and told.err == ""
-    assert "  basis       3 cases proven for the motion" in lines
     assert any("  violated    t002: 39.99 mm, below the fail limit of 50 mm" in x for x in lines)
     assert lines[-1] == "  page        store/batch.html"
     assert batch("batch.yaml", "--out", "store", "--fail-mm", "10", "--samples-only") == 0
-    assert "basis       3 cases measured at the samples only" in capsys.readouterr().out
+    samples = capsys.readouterr().out.splitlines()
+    assert samples[0].endswith("3 cases: 2 near at the samples only, 1 clear at the samples only")
     assert batch("batch.yaml", "--out", "store", "--quiet") == 1
     assert capsys.readouterr().out == ""
 

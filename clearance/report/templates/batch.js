@@ -69,7 +69,7 @@
 
   // The clearance; of a contact how deep it is at most, if that is known.
   function least(i) {
-    const least = data.clearance[i], touches = data.statuses[data.status[i]] === "contact";
+    const least = data.clearance[i], touches = data.touches[i];
     return least < 0 ? `${(-least).toFixed(3)} deep` : touches ? "contact" : shown(least, 3);
   }
 
@@ -99,15 +99,15 @@
   }
 
   function row(i) {
-    const made = document.createElement("div"), status = data.statuses[data.status[i]];
+    const made = document.createElement("div");
     made.className = "row";
     made.setAttribute("role", "row");
     made.setAttribute("aria-selected", String(i === chosen));
     made.dataset.case = data.names[i];
     const tag = cell("");
     const badge = document.createElement("b");
-    badge.className = `tag ${status}`;
-    badge.textContent = data.waived[i] ? `${status}, waived` : status;
+    badge.className = `tag ${data.shade[i]}`;
+    badge.textContent = badge.title = text(data.headlines, data.headline[i]);
     tag.append(badge);
     made.append(
       cell(data.names[i]), tag, cell(least(i), "number"), cell(shown(data.bound[i], 3), "number"),
@@ -132,7 +132,7 @@
     chosen = i;
     byId("chosen").hidden = false;
     byId("chosen-name").textContent = data.names[i];
-    const lines = [...data.reasons[i], ...data.notes[i]];
+    const lines = [...new Set([text(data.headlines, data.headline[i]), ...data.reasons[i], ...data.notes[i]])];
     byId("chosen-reasons").replaceChildren(
       ...lines.map((line) => {
         const made = document.createElement("li");

@@ -1,0 +1,96 @@
+"""A case of a batch says all that its own check says beside its status: in the terminal, page, JUnit and table."""
+
+import pytest
+
+from clearance.batch.page import page_data, page_of
+from clearance.batch.store import open_store
+from clearance.cli.batch_verdict import print_answer
+from clearance.run import check
+from tests.batch.batches import cases, run_here, write_cell
+from tests.report.junit_schema import valid_suite
+
+HELD = "time,rail\n" + "".join(f"{i / 100:.2f},0\n" for i in range(201) if not 60 < i < 140)
+
+
+def printed(answer, place, capsys) -> list[str]:
+    with open_store(place) as store:
+        print_answer(answer, store, 0, None)
+    return capsys.readouterr().out.splitlines()
+
+
+def data_of(answer, place):
+    page = page_data(answer, place)
+    return page, [page["headlines"][i] for i in page["headline"]]
+
+
+def test_time_that_is_not_measured_stands_in_every_answer(tmp_path, capsys):
+    manifest = write_cell(tmp_path / "in", [0.5])
+    (tmp_path / "run.csv").write_text(HELD)
+    asked = dict(motion="recorded", recorded=tmp_path / "run.csv", recorded_gaps="not_measured")
+    _, found = run_here(manifest, tmp_path / "store", changes=asked | {"unproven_ok": True})
+    (row,) = cases(tmp_path / "store")
+    assert row["text"].endswith(", not measured from 0.6 to 1.4 s") and row["shade"] == "near"
+    assert found.shade == "near"
+    first = printed(found, tmp_path / "store", capsys)[0]
+    assert first == f"CLEAR  1 case: 1 {row['text']}"
+    page, headlines = data_of(found, tmp_path / "store")
+    assert headlines == [row["text"]] and page["shade"] == ["near"]
+    assert f'<p class="verdict near">1 case: 1 {row["text"]}</p>' in page_of(
+        found, tmp_path / "store"
+    )
+    (told,) = valid_suite(tmp_path / "store" / "junit.xml").iter("system-out")
+    assert told.text.startswith(f"{row['text']}; ")
+
+
+def test_all_that_a_case_reserves_is_told_where_headlines_differ(tmp_path, capsys):
+    """Of two clear cases one is at a single pose; neither measures links against each other."""
+    manifest = write_cell(tmp_path / "in", [0.5, 0.6])
+    (tmp_path / "in" / "t001.csv").write_text("time,rail\n0,0\n")
+    _, found = run_here(manifest, tmp_path / "store")
+    lines = printed(found, tmp_path / "store", capsys)
+    assert lines[0] == "CLEAR  2 cases: 2 clear (1 with reservations)"
+    assert lines[1] == "              clear at a single pose (1 case: t001)"
+    page = page_of(found, tmp_path / "store")
+    assert "<p>clear at a single pose (1 case: t001)</p>" in page
+
+
+def test_what_was_not_checked_is_told_as_by_check(tmp_path, capsys):
+    _, found = run_here(write_cell(tmp_path / "in", [0.5, 0.6]), tmp_path / "store")
+    cell = tmp_path / "in" / "cell.yaml"
+    cell.write_text(cell.read_text() + "trajectory: {file: t000.csv}\n")
+    scope = list(check(cell).verdict.scope)
+    assert scope and [row["scope"] for row in cases(tmp_path / "store")] == [scope, scope]
+    line = f"{'; '.join(scope)} (2 cases: t000, t001)"
+    assert f"              {line}" in printed(found, tmp_path / "store", capsys)
+    assert line in page_of(found, tmp_path / "store")
+    told = valid_suite(tmp_path / "store" / "junit.xml").iter("system-out")
+    assert all(scope[0] in one.text for one in told)
+
+
+def test_the_proven_clearance_counts_tolerances(tmp_path):
+    manifest = write_cell(tmp_path / "in", [0.4])
+    cell = tmp_path / "in" / "cell.yaml"
+    cell.write_text(cell.read_text() + "tolerance: {base: {xyz: 0.01}}\n")
+    _, found = run_here(manifest, tmp_path / "store")
+    (row,) = cases(tmp_path / "store")
+    page, headlines = data_of(found, tmp_path / "store")
+    assert headlines == ["clear with tolerances"]
+    assert page["bound"] == [pytest.approx(390.0, abs=0.2)] and row["lower_bound"] > 0.399
+
+
+def test_a_nearer_moment_than_the_most_critical_one_is_told(tmp_path):
+    manifest = write_cell(tmp_path / "in", [0.04])
+    cell = tmp_path / "in" / "cell.yaml"
+    waiver = (
+        "- {between: [slider, wall], at_least: 0.03, until: 2999-01-01, reason: soft, by: N. N.}\n"
+    )
+    (tmp_path / "in" / "waivers.yaml").write_text(waiver)
+    post = "- {name: post, box: {size: [0.2, 0.1, 1]}, pose: {xyz: [1.06, 0, 0]}}\n"
+    text = cell.read_text().replace("limits:", f"  {post}limits:")
+    cell.write_text(f"{text}waivers: [waivers.yaml]\n")
+    _, found = run_here(manifest, tmp_path / "store")
+    page, headlines = data_of(found, tmp_path / "store")
+    assert headlines == ["near with 1 waiver"] and page["clearance"][0] > page["bound"][0]
+    assert any(line.startswith("nearest of all 39.99 mm") for line in page["notes"][0])
+    shown = page_of(found, tmp_path / "store")
+    assert "Critical mm" in shown and "Least mm" not in shown
