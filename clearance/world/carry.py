@@ -37,7 +37,7 @@ class Carry:
     exact_grasp: bool = False
 
     def __post_init__(self) -> None:
-        require_types(self, part=str, by=str, window=Window)
+        require_types(self, part=str, by=str, window=Window, touch=[str])
         if not math.isfinite(self.window.start):
             raise BadTime(f"part {self.part!r} is carried from no time", valid="from: seconds")
         if self.part == self.by:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from numbers import Real
 from typing import TYPE_CHECKING, overload
 
@@ -192,7 +191,7 @@ COMMON = Clock()
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """Robots, obstacles, trajectories, limits.
+    """Robots, obstacles, trajectories, limits: as they are when it is made; `dataclasses.replace` makes another.
 
     Attributes:
         robots: at least one.
@@ -238,7 +237,7 @@ class Case:
         require_types(
             self, name=str, robots=[PlacedRobot], obstacles=[Obstacle], limits=Limits, carries=[Carry],
             clock=Clock, tolerance=(Budget, None), waivers=[Waiver], profiles=[ReservedSpace],
-            accept=[str], allow=[object],
+            accept=[str], allow=[object], sources=[Source], notes=[str], notices=[Notice],
         )  # fmt: skip
         checked_name(self.name)
         allow = (
@@ -261,7 +260,7 @@ class Case:
         """Where the files were found that it was made from."""
         return tuple(one.read_from for one in self.sources if one.is_file)
 
-    @cached_property
+    @property
     def cell(self) -> Cell:
         """The part of it that no trajectory changes, as a key."""
         objects: list[object] = [*self.obstacles]

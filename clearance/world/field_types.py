@@ -1,4 +1,4 @@
-"""What a constructor is given: the types, in one line each, and arrays of the object's own.
+"""What a constructor is given: the types, in one line each, and arrays and tuples of the object's own.
 
 Not for: values, which each type checks itself.
 """
@@ -20,7 +20,7 @@ Kind = type | list[type] | tuple[type, None]
 
 
 def require_types(made: object, **kinds: Kind) -> None:
-    """Nothing, if each field of an object is of its type.
+    """Nothing, if each field of an object is of its type. Sequences become tuples: callers use their lists again.
 
     Raises:
         BadInput: the first that is not: its class and name, what is given, and what is needed.
@@ -42,6 +42,7 @@ def _require_each(made: object, name: str, given: Any, kind: type) -> None:
     for one in given:
         if not isinstance(one, kind):
             raise _wrong(made, name, one, _article(kind))
+    object.__setattr__(made, name, tuple(given))
 
 
 def owned(array: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 from clearance.errors import UnknownJoint, nearest_name
 from clearance.world.body import Body
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.field_types import require_types
 from clearance.world.notice import Notice
 
 WORLD_LINK = "world"
@@ -86,6 +87,9 @@ class Robot:
     own_matrix: CollisionMatrix | None = None
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     reference: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        require_types(self, link_names=[str], joints=[Joint], bodies=[Body])
 
     def __repr__(self) -> str:
         n_links, n_joints = len(self.bodies), len(self.moving_joints)

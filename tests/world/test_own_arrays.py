@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,6 +49,45 @@ def test_a_dict_that_is_used_again_changes_no_robot_made_before() -> None:
     made = cl.PlacedRobot(slider("axis"), fixed_positions=given)
     given["s"] = 0.9
     assert made.fixed_positions == {"s": 0.5}
+
+
+def test_a_list_that_is_used_again_changes_nothing_made_before() -> None:
+    """What is worked out of a case once is asked for again: a list that changes would be answered as it was."""
+    robot, motion = slider("axis"), cl.Trajectory([0.0], joints := ["s"], [[0.0]])
+    robots = [cl.PlacedRobot(robot, motion, exclude_links=(excluded := []))]
+    rules, touch = [cl.Rule(("*", "cube"), fail=0.1)], ["*"]
+    carry = cl.Carry("cube", "axis", cl.Window(0.0, 1.0), touch=touch)
+    limits, obstacles = cl.Limits(rules=rules), [cl.Obstacle(CUBE)]
+    case = cl.Case("case", robots, obstacles, limits)
+    own = (
+        case.robots,
+        case.obstacles,
+        limits.rules,
+        carry.touch,
+        motion.joint_names,
+        robots[0].exclude_links,
+    )
+    before = [*own]
+    for given in (robots, obstacles, rules, touch, joints):
+        given.clear()
+    excluded.append("axis")
+    assert all(isinstance(one, tuple) for one in own) and [*own] == before
+    assert case.obstacles and replace(robot, joints=[*robot.joints]).joints == robot.joints
+
+
+def test_a_new_checker_answers_for_the_case_as_it_is() -> None:
+    near, far = np.eye(4), np.eye(4)
+    near[0, 3], far[0, 3] = 1.0, 2.0
+    obstacles = [cl.Obstacle(CUBE, far)]
+    case = cl.Case("case", [placed(np.eye(4))], obstacles)
+    before = cl.Checker(case).distance([0.0]).distance
+    obstacles[0] = cl.Obstacle(CUBE, near)
+    obstacles.append(obstacles[0])
+    assert cl.Checker(case).distance([0.0]).distance == before
+    (robot,) = case.robots
+    link = robot.robot.bodies[0].name
+    robot.padding[link] = 0.25
+    assert cl.Checker(case).distance([0.0]).distance == pytest.approx(before - 0.25)
 
 
 @pytest.mark.parametrize(
