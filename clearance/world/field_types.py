@@ -15,6 +15,9 @@ from clearance.errors import BadInput, BadShape
 
 _NAMES: dict[type, str] = {Real: "number", Mapping: "mapping"}
 
+_NAMING = ("column_names", "columns", "_fields", "keys")
+"""What has the names of a table of Arrow, a table of pandas, a named tuple, and a row of pandas."""
+
 Kind = type | list[type] | tuple[type, None]
 """A type; a list of one for a sequence of such; a pair with None where it may be None."""
 
@@ -54,19 +57,23 @@ def owned(array: np.ndarray) -> np.ndarray:
 
 
 def numbers_of(given: object, names: Sequence[str] = (), where: str = "") -> np.ndarray:
-    """What is given as numbers. Where a table names its columns, as one of pandas does, they are `names` in order.
+    """What is given as numbers; the last axis is that of `names`, whatever order a named row or table has.
 
     Raises:
-        BadInput: no numbers, masked ones, times of a calendar, or columns of other names or in another order.
+        BadInput: no numbers, masked ones, times of a calendar, or values of other names.
     """
     if type(given) is np.ndarray and given.dtype == np.float64:
         return given
-    columns = [*getattr(given, "columns", ())]
-    if names and any(isinstance(one, str) for one in columns) and columns != [*names]:
-        told = ", ".join(map(str, columns))
-        in_order = f"{', '.join(names)}, in this order"
-        raise BadInput(f"the columns are {told}", where=where, valid=in_order)
-    if np.ma.is_masked(given):
+    own = names_in(given) if names else []
+    if own:
+        places = _places_of(names, own, where)
+        if isinstance(given, Mapping):
+            return numbers_of([*given.values()], (), where).T[..., places]
+        return numbers_of(given, (), where)[..., places]
+    rows = given if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    if names and any(map(names_in, rows)):
+        return numbers_of([numbers_of(row, names, where) for row in rows], (), where)
+    if np.ma.is_masked(given) or any(map(np.ma.is_masked, rows)):
         raise BadInput("values are masked", where=where, valid="an array without a mask")
     dtype = getattr(given, "dtype", None)
     if isinstance(dtype, np.dtype) and dtype.kind in "mMc":
@@ -79,6 +86,39 @@ def numbers_of(given: object, names: Sequence[str] = (), where: str = "") -> np.
         raise BadShape(
             f"{given!r:.60} is given", where=where, valid="an array of numbers"
         ) from None
+
+
+def names_in(given: Any) -> list[Any]:
+    """The names of the values of a row, or of the columns of a table; empty where they are in order alone."""
+    if type(given) in (float, int):
+        return []
+    if isinstance(given, Mapping):
+        return [*given]
+    for attribute in _NAMING:
+        found = getattr(given, attribute, None)
+        if found is not None:
+            own = [*(found() if callable(found) else found)]
+            return own if any(isinstance(name, (str, tuple)) for name in own) else []
+    return []
+
+
+def _places_of(names: Sequence[str], own: list[Any], where: str) -> list[int]:
+    """The place of each of the names among those of a row or table.
+
+    Raises:
+        BadInput: others, or one of them twice.
+    """
+    faults = {
+        "unknown": [name for name in own if name not in names],
+        "missing": [name for name in names if name not in own],
+        "twice": [name for name in dict.fromkeys(own) if own.count(name) > 1],
+    }
+    told = (f"{fault}: {', '.join(sorted(map(str, of)))}" for fault, of in faults.items() if of)
+    if any(faults.values()):
+        raise BadInput(
+            "; ".join(told), where=where, valid=f"one number for each of {', '.join(names)}"
+        )
+    return [own.index(name) for name in names]
 
 
 def require_two_patterns(made: object, name: str, given: Any) -> tuple[str, str]:

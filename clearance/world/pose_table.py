@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.errors import BadPose, BadShape, BadTime, NotFinite
+from clearance.errors import BadInput, BadPose, BadShape, BadTime, NotFinite
 from clearance.tolerance import LARGEST, ROTATION
-from clearance.world.field_types import owned
+from clearance.world.field_types import names_in, numbers_of, owned
 from clearance.world.slerp import aligned, slerp
 from clearance.world.timing import AS_GIVEN, Timing, require_increasing
 
@@ -102,10 +102,11 @@ def require_samples_to_loop(n_samples: int, timing: Timing) -> None:
 
 
 def _numbers(given: object, name: str, width: int, n_rows: int) -> np.ndarray:
-    try:
-        numbers = np.ascontiguousarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise BadShape(f"{given!r:.60} is given", where=name, valid="an array of numbers") from None
+    columns = [str(column) for column in names_in(given)]
+    if columns and [column[-1:] for column in columns] != [*"xyzw"[:width]]:
+        in_order = f"x, y, z{', w' if width == 4 else ''}, in this order"
+        raise BadInput(f"the columns are {', '.join(columns)}", where=name, valid=in_order)
+    numbers = np.ascontiguousarray(numbers_of(given, (), name))
     wanted = (n_rows, width) if width else (n_rows,)
     if numbers.shape != wanted:
         raise BadShape(f"shape {numbers.shape} is given", where=name, valid=f"{wanted}")

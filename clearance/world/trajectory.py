@@ -100,8 +100,8 @@ class Trajectory:
     Attributes:
         times: (n,) [s], strictly increasing.
         joint_names: (k,) of the robot's moving joints, in column order.
-        positions: (n, k) [rad] or [m].
-        velocities: (n, k) [rad/s] or [m/s], or None.
+        positions: (n, k) [rad] or [m], or a table whose columns have these names, in any order.
+        velocities: (n, k) as positions, [rad/s] or [m/s], or None.
         path_error: [rad or m] how far joints may be off between samples, and at samples added to the file's.
         began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
         is_recorded: True for a table that is a recording, whose times stay as they are.

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 import clearance as cl
@@ -101,3 +102,15 @@ def test_a_new_checker_answers_for_the_case_as_it_is() -> None:
 def test_numbers_that_are_not_known_are_refused(given: np.ndarray, told: str) -> None:
     with pytest.raises(cl.BadInput, match=told):
         cl.Trajectory([0.0], ["x"], given)
+
+
+def test_a_table_of_poses_has_the_scalar_last_also_where_it_names_its_columns() -> None:
+    """A frame (qw, qx, qy, qz) of length one was read as (x, y, z, w)."""
+    rows = {"qw": [1.0], "qx": [0.0], "qy": [0.0], "qz": [0.0]}
+    told = "quaternions: the columns are qw, qx, qy, qz; x, y, z, w, in this order"
+    with pytest.raises(cl.BadInput, match=told):
+        PoseTable([0.0], [[0.0, 0.0, 0.0]], pa.table(rows))
+    with pytest.raises(cl.BadInput, match="values are masked"):
+        PoseTable([0.0], np.ma.array([[0.0, 0.0, 0.0]], mask=[[True, False, False]]), NO_TURN)
+    last = pa.table({name: rows[name] for name in ("qx", "qy", "qz", "qw")})
+    assert PoseTable([0.0], [[0.0, 0.0, 0.0]], last).quaternions.tolist() == NO_TURN.tolist()

@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
-from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -97,8 +96,8 @@ class Checker:
 
     Attributes:
         joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
-            without one, all moving joints that the case does not fix. The others are where the case has them,
-            or at 0.
+            without one, all moving joints that the case does not fix. They carry their robot's name where there
+            are several. The others are where the case has them, or at 0.
         pairs: (link, obstacle) names of what is measured.
         notices: what is suspect about the case, and warnings; `check` would say them with its verdict.
 
@@ -121,7 +120,9 @@ class Checker:
             )
         self._made_of = case, time, tuple(accept)
         self._names = [placed.joints_given for placed in case.robots]
-        self.joint_names = tuple(name for names in self._names for name in names)
+        self.joint_names = tuple(
+            case.prefix_of(placed) + name for placed in case.robots for name in placed.joints_given
+        )
         self._asked = AskedPositions(case, self._names, accept)
         self.notices = worst_first((*notices_of(case), *self._asked.at_rest()))
         self._asked.require_not_suspect(self.notices)
@@ -151,7 +152,7 @@ class Checker:
         """The least clearance at one configuration and where it is attained.
 
         Args:
-            configuration: (k,) [rad] or [m] as `joint_names`, or a value for each of these names.
+            configuration: (k,) [rad] or [m] as `joint_names`, or a value for each of these names, in any order.
 
         Raises:
             BadShape, NotFinite, BadInput: not one number within `tolerance.REACH` for each joint.
@@ -177,7 +178,10 @@ class Checker:
         return Clearance(found.clearance, link, obstacle, a, b, undecided, not found.is_separate)
 
     def distances(self, configurations: np.ndarray) -> ClearanceOfMany:
-        """The least clearance at each of n configurations (n, k), in one compiled call.
+        """The least clearance at each of n configurations, in one compiled call.
+
+        Args:
+            configurations: (n, k), or a table whose columns are `joint_names`, in any order.
 
         Raises:
             BadShape, NotFinite, BadInput, SuspectInput: as `distance`.
@@ -198,8 +202,6 @@ class Checker:
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
         """The configuration, (k,) or (n, k), as the joints are named."""
-        if not isinstance(configuration, np.ndarray) and _has_names(configuration):
-            configuration = self._by_name(configuration)
         given = numbers_of(configuration, self.joint_names, "configuration")
         if given.ndim != n_dimensions or given.shape[-1] != len(self.joint_names):
             raise BadShape(
@@ -218,32 +220,9 @@ class Checker:
                 self._asked.judge(np.atleast_2d(given))
         return given
 
-    def _by_name(self, given: Mapping[str, float]) -> list[float]:
-        if set(given.keys()) != set(self.joint_names):
-            unknown, missing = (
-                set(given.keys()) - set(self.joint_names),
-                set(self.joint_names) - set(given.keys()),
-            )
-            faults = (("unknown", unknown), ("missing", missing))
-            raise BadInput(
-                "; ".join(f"{what}: {', '.join(sorted(names))}" for what, names in faults if names),
-                where="configuration",
-                valid=self._wanted(1),
-            )
-        return [given[name] for name in self.joint_names]
-
     def _wanted(self, n_dimensions: int) -> str:
         rows = "n rows of " if n_dimensions == 2 else ""
         return f"{rows}one number for each of {', '.join(self.joint_names)}"
-
-
-def _has_names(given: Any) -> TypeGuard[Mapping[str, float]]:
-    """True for a mapping, and for a row of a table that names its values, as one of pandas does."""
-    if hasattr(given, "columns"):
-        return False
-    return isinstance(given, Mapping) or (
-        hasattr(given, "keys") and all(isinstance(name, str) for name in given.keys())
-    )
 
 
 def _measured(case: Case, time: float | None) -> tuple[Case, Selection]:

@@ -2,9 +2,11 @@
 
 import pickle
 import warnings
+from collections import namedtuple
 from dataclasses import replace
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 import clearance as cl
@@ -76,6 +78,12 @@ def test_two_robots_are_asked_about_together():
     assert len(checker.joint_names) == 2 * len(one.trajectory.joint_names)
     for i, row in enumerate(one.trajectory.positions):
         assert_row(checker.distance([*row, *row]), run.steps, i)
+    assert checker.joint_names == ("arm/j0", "arm/j1", "other/j0", "other/j1")
+    given = [1.0, -0.4, 0.2, 0.3]
+    named = dict(zip(checker.joint_names, given, strict=True))
+    assert str(checker.distance(named)) == str(checker.distance(given))
+    with pytest.raises(BadInput, match="unknown: j0, j1; missing: arm/j0, "):
+        checker.distance({"j0": 1.0, "j1": -0.4})
 
 
 def test_padding_is_taken_off_and_tolerances_are_warned_of():
@@ -210,17 +218,52 @@ class Table:
         return self._rows
 
 
-def test_tables_that_name_their_columns_are_read_by_name_or_refused():
-    checker = cl.Checker(swaying())
-    names = [*checker.joint_names]
-    wanted = checker.distance([0.3, 0.1]).distance
-    assert checker.distance(Series(names[::-1], [0.1, 0.3])).distance == wanted
-    assert checker.distances(Table(names, [[0.3, 0.1]])).distances[0] == wanted
-    with pytest.raises(BadInput, match="the columns are j1, j0"):
-        checker.distances(Table(names[::-1], [[0.1, 0.3]]))
-    with pytest.raises(BadInput, match="the columns are j1, j0"):
-        cl.Trajectory([0.0], names, Table(names[::-1], [[0.1, 0.3]]))
-    assert cl.Trajectory([0.0], names, Table(names, [[0.3, 0.1]])).positions[0, 0] == 0.3
+Row = namedtuple("Row", ["j1", "j0"])
+IN_ORDER = [[0.3, 0.1], [-0.2, 0.7]]
+TURNED = [row[::-1] for row in IN_ORDER]
+NAMED = {
+    "a table of pandas": Table(["j1", "j0"], TURNED),
+    "a table of Arrow": pa.table({"j1": [0.1, 0.7], "j0": [0.3, -0.2]}),
+    "a batch of Arrow": pa.record_batch({"j1": [0.1, 0.7], "j0": [0.3, -0.2]}),
+    "a dict of columns": {"j1": np.array([0.1, 0.7]), "j0": [0.3, -0.2]},
+    "rows of pandas": [Series(["j1", "j0"], row) for row in TURNED],
+    "rows that are dicts": [{"j1": row[0], "j0": row[1]} for row in TURNED],
+    "named tuples": tuple(Row(*row) for row in TURNED),
+    "named and in order": [IN_ORDER[0], Row(*TURNED[1])],
+}
+
+
+@pytest.mark.parametrize("kind", NAMED)
+def test_what_names_its_values_is_read_by_name_in_whatever_order(kind):
+    case, given = swaying(), NAMED[kind]
+    checker = cl.Checker(case)
+    wanted = checker.distances(IN_ORDER).distances
+    assert checker.distances(given).distances.tolist() == wanted.tolist()
+    made = cl.Trajectory([0.0, 1.0], ["j0", "j1"], given, given)
+    assert made.positions.tolist() == made.velocities.tolist() == IN_ORDER
+    moved = case.with_trajectory([0.0, 1.0], given)
+    assert moved.robots[0].trajectory.positions.tolist() == IN_ORDER
+    if isinstance(given, (list, tuple)):
+        assert [checker.distance(row).distance for row in given] == wanted.tolist()
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (Table(["j1", "x"], TURNED), "unknown: x; missing: j0; one number for each of j0, j1"),
+        (pa.table({"x": [0.1, 0.7], "j1": [0.3, -0.2]}), "unknown: x; missing: j0"),
+        (Table(["j1", "j0", "j1"], [[0.1, 0.3, 0.1]]), "twice: j1"),
+        ([Row(0.1, 0.3), {"j1": 0.1}], "missing: j0"),
+        (Table([("arm", "j1"), ("arm", "j0")], TURNED), "missing: j0, j1"),
+        ({0: [0.1], 1: [0.3]}, "unknown: 0, 1; missing: j0, j1"),
+        ({"j0": np.ma.array([0.1], mask=[True]), "j1": [0.3]}, "values are masked"),
+    ],
+)
+def test_names_of_no_joint_are_refused(given, told):
+    with pytest.raises(BadInput, match=told):
+        cl.Checker(swaying()).distances(given)
+    with pytest.raises(BadInput, match=told):
+        cl.Trajectory([0.0, 1.0], ["j0", "j1"], given)
 
 
 def test_what_is_no_case_or_leaves_nothing_is_refused():
