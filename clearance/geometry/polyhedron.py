@@ -159,11 +159,20 @@ class Polyhedron:
         """The surface of a `trimesh.Trimesh`, or of anything with `vertices` (n, 3) [m] and `faces` (m, 3).
 
         Raises:
-            EmptyMesh: no such attributes or no faces; otherwise as `from_triangles`.
+            EmptyMesh: no such attributes or no faces. BadDimension: it says another unit than metres. BadShape: a
+                round primitive, whose facets lie inside it; otherwise as `from_triangles`.
         """
+        kind = type(mesh).__name__
         if not hasattr(mesh, "vertices") or not hasattr(mesh, "faces"):
-            raise EmptyMesh(
-                f"a {type(mesh).__name__} has no vertices and faces", valid="a trimesh.Trimesh"
+            raise EmptyMesh(f"a {kind} has no vertices and faces", valid="a trimesh.Trimesh")
+        units = getattr(mesh, "units", None)
+        if units not in (None, "m", "meter", "meters"):
+            raise BadDimension(
+                f"the mesh has units {units!r:.40}", valid='metres: mesh.convert_units("meters")'
+            )
+        if hasattr(getattr(mesh, "primitive", None), "radius"):
+            raise BadShape(
+                f"the facets of a {kind} of trimesh lie inside it", valid=f"cl.{kind.lower()}"
             )
         return cls.from_triangles(np.asarray(mesh.vertices), np.asarray(mesh.faces))
 

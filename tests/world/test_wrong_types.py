@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+import trimesh
 
 import clearance as cl
 from clearance.errors import BadInput
@@ -76,3 +77,26 @@ def test_self_clearance_is_asked_for_with_true():
     assert case.robots[0].self_clearance == cl.SelfClearance()
     assert cl.PlacedRobot(ARM, MOTION, self_clearance=False).self_clearance is None
     assert "self-collision" not in cl.check(case, need="minimum").verdict.not_checked
+
+
+@pytest.mark.parametrize("unit", ["inches", "millimeters"])
+def test_a_mesh_that_says_another_unit_than_metres_is_refused(unit):
+    mesh = trimesh.creation.box((4.0, 4.0, 4.0))
+    mesh.units = unit
+    with pytest.raises(
+        BadInput, match=f"body 'b': the mesh has units {unit!r}; metres: mesh.convert_units"
+    ):
+        cl.Body("b", mesh)
+    mesh.convert_units("meters")
+    assert cl.Body("b", mesh).shape.n_faces == 6
+
+
+@pytest.mark.parametrize("kind", ["Sphere", "Cylinder", "Capsule"])
+def test_round_shapes_of_trimesh_are_refused_since_their_facets_are_inscribed(kind):
+    shape = getattr(trimesh.primitives, kind)(radius=0.5)
+    with pytest.raises(
+        BadInput, match=f"the facets of a {kind} of trimesh lie inside it; cl.{kind.lower()}"
+    ):
+        cl.Body("b", shape)
+    assert cl.Body("b", shape.to_mesh()).shape.n_faces > 6
+    assert cl.Body("b", trimesh.primitives.Box()).shape.n_faces == 6
