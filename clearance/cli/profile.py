@@ -206,7 +206,7 @@ def fit(
 
     Changes the free dimensions of SKETCH.yaml, and its place unless it is fixed, to suit PROFILE.
 
-    PROFILE is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf).
+    PROFILE is a swept profile, a sketch, a list of curves (.yaml), in metres, or a drawing (.dxf) that names its unit.
     """
     from clearance.errors import BadInput, at
     from clearance.files import refuse_inputs, require_file_place
@@ -219,6 +219,10 @@ def fit(
     require_file_place(out)
     refuse_inputs([out, *([] if picture is None else [picture])], [sketch_file, profile_file])
     outline = read_outline(profile_file)
+    if profile_file.suffix.lower() == ".dxf" and not outline.in_metres:
+        problem = "the drawing names no unit ($INSUNITS 0), and sketches are in metres"
+        valid = "a unit: $INSUNITS 4 for mm, 6 for metres"
+        raise BadInput(problem, where=str(profile_file), valid=valid)
     sketch = Sketch.load(sketch_file)
     sketch.most_seconds = most_seconds
     names = None if free is None else [name.strip() for name in free.split(",")]

@@ -26,6 +26,7 @@ KINDS = "LINE, ARC, CIRCLE, LWPOLYLINE, POLYLINE, SPLINE"
 _METRES = {
     0: 1.0, 1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 2.54e-8, 9: 2.54e-5,
     10: 0.9144, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 0.1, 15: 10.0, 16: 100.0,
+    21: 1200 / 3937, 22: 100 / 3937, 23: 3600 / 3937, 24: 5280 * 1200 / 3937,
 }  # fmt: skip
 """[m] the units of $INSUNITS in the DXF reference; 0 names none."""
 
@@ -75,7 +76,7 @@ def read_drawing(path: str | PathLike[str]) -> Drawing:
 def _in_metres(drawing) -> Drawing:
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _METRES:
-        raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16")
+        raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16, 21 to 24")
     for entity in drawing.modelspace():
         _require_visible(entity, drawing.layers)
     parts = [_curve_of(entity) for entity in drawing.modelspace()]

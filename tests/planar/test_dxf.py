@@ -23,7 +23,7 @@ def drawing(tmp_path, unit, draw=lambda space: space.add_line((0, 0), (2, 1))):
 
 
 @pytest.mark.parametrize(
-    ("unit", "metres"), [(0, 1.0), (6, 1.0), (4, 1e-3), (1, 0.0254), (5, 0.01)]
+    ("unit", "metres"), [(0, 1.0), (6, 1.0), (4, 1e-3), (1, 0.0254), (5, 0.01), (22, 0.0254000508)]
 )
 def test_the_unit_of_the_header_is_obeyed(tmp_path, unit, metres):
     curve = read_dxf(drawing(tmp_path, unit))
@@ -31,7 +31,7 @@ def test_the_unit_of_the_header_is_obeyed(tmp_path, unit, metres):
 
 
 def test_an_unknown_unit_is_refused(tmp_path):
-    with pytest.raises(BadSyntax, match=r"d\.dxf: \$INSUNITS is 77; 0 to 16"):
+    with pytest.raises(BadSyntax, match=r"d\.dxf: \$INSUNITS is 77; 0 to 16, 21 to 24"):
         read_dxf(drawing(tmp_path, 77))
 
 

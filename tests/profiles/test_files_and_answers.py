@@ -246,6 +246,22 @@ def test_drawings_without_a_unit_are_compared_in_their_own(tmp_path):
     assert out.output.startswith("beyond 1 (unit of the files): the outlines differ by 3 (unit")
 
 
+def test_a_drawing_without_a_unit_is_fitted_to_no_sketch(tmp_path):
+    """Sketches are in metres, and a margin in mm: 20 mm about numbers of mm were 0.02 mm."""
+    zone = str(SCENES / "sketches" / "keep_in_zone.yaml")
+    asked = [
+        squares(tmp_path, unit=0)[0],
+        "--outside",
+        "--margin-mm",
+        "20",
+        "--out",
+        str(tmp_path / "x.yaml"),
+    ]
+    out = CliRunner().invoke(command, ["profile", "fit", zone, *asked])
+    said = "a.dxf: the drawing names no unit ($INSUNITS 0), and sketches are in metres"
+    assert isinstance(out.exception, BadInput) and said in str(out.exception)
+
+
 def test_a_swept_profile_takes_no_limit_without_a_unit(profile, tmp_path):
     """Its lengths are printed in mm, so that a limit of 1 would read as 1 mm and be 1 m."""
     path = tmp_path / "p.yaml"
