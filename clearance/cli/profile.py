@@ -206,7 +206,8 @@ def fit(
 
     Changes the free dimensions of SKETCH.yaml, and its place unless it is fixed, to suit PROFILE.
 
-    PROFILE is a swept profile, a sketch, a list of curves (.yaml), in metres, or a drawing (.dxf) that names its unit.
+    PROFILE is a swept profile, a sketch or a list of curves (.yaml), in metres, or a drawing (.dxf) that
+    names its unit.
     """
     from clearance.errors import BadInput, at
     from clearance.files import refuse_inputs, require_file_place

@@ -65,7 +65,7 @@ def audit(
     """
     from clearance.cli.progress import shown_progress
     from clearance.formats.robot.srdf import load_srdf
-    from clearance.report.srdf import audit_headline, audit_rows, audit_summary
+    from clearance.report.srdf import audit_headline, audit_rows, audit_summary, narrowed
     from clearance.report.summary import json_text
     from clearance.simulate.answers.audit.pair import audit as audited
 
@@ -74,11 +74,13 @@ def audit(
     with shown_progress(as_json, ["auditing"]) as progress:
         pairs = audited(robot, matrix, progress)
     if as_json:
-        click.echo(json_text(audit_summary(pairs)), nl=False)
+        click.echo(json_text(audit_summary(robot, pairs)), nl=False)
     else:
         click.echo(audit_headline(pairs))
         _print_rows(list(audit_rows(robot, pairs)))
-        _print_notes([*matrix.notes, *robot.notes])
+        _print_notes(
+            [*(f"checked: {line}" for line in narrowed(robot)), *matrix.notes, *robot.notes]
+        )
     wrong = any(pair.refuted or pair.unproven or pair.hides_contact for pair in pairs)
     return ExitCode.VIOLATED if wrong else ExitCode.CLEAR
 
@@ -98,14 +100,14 @@ def make(
 ) -> int:
     """Writes an SRDF for ROBOT.urdf.
 
-    Excused are pairs that are proven never to meet, and neighbours that lie together at home.
+    Excused are pairs that are proven never to meet, and neighbours that lie together at home or never meet.
 
     Comments list the pairs that can meet and those that are undecided. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.progress import shown_progress
     from clearance.errors import unwritable
     from clearance.files import refuse_inputs, require_file_place
-    from clearance.report.srdf import proposal_headline, proposed_srdf
+    from clearance.report.srdf import narrowed, proposal_headline, proposed_srdf
     from clearance.simulate.answers.audit.pair import propose
 
     require_file_place(out)
@@ -122,6 +124,8 @@ def make(
             out.write_text(text, encoding="utf-8")
         click.echo(f"written {out}")
     click.echo(proposal_headline(pairs), err=True)
+    for line in narrowed(robot):
+        click.echo(f"note: checked: {line}", err=True)
     return ExitCode.CLEAR
 
 

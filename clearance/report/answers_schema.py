@@ -46,6 +46,7 @@ class Audit(Keys):
     never_refuted: int
     never_unproven: int
     adjacent_refuted: int
+    narrowed: list[str]
     pairs: list[PairFinding]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -10,19 +11,48 @@ from xml.sax.saxutils import quoteattr
 from clearance.record.audit import ExcusedPair, PairFinding, PairStatus, ProposedPair
 from clearance.record.wording import count, joint_value, mm
 from clearance.world.collision_matrix import ADJACENT, NEVER
-from clearance.world.robot import Robot
+from clearance.world.joint_limits import ROUNDING
+from clearance.world.mimics import followers, range_of
+from clearance.world.notice import listed
+from clearance.world.robot import Joint, Robot
 
 SCHEMA = "urn:clearance:audit:1"
 """The name of the JSON Schema, which `clearance schema --results audit` prints."""
 
 
-def audit_summary(pairs: Sequence[ExcusedPair]) -> dict[str, Any]:
+def narrowed(robot: Robot) -> list[str]:
+    """Each joint that is checked over less than its own limits, since those of its followers hold it, as a line.
+
+    Programs that do not obey limits of followers move it farther.
+    """
+    lines = []
+    for joint in robot.moving_joints:
+        low, high = range_of(robot, joint.name)
+        if low > high or (low <= joint.lower + ROUNDING and high >= joint.upper - ROUNDING):
+            continue
+        of = [
+            f"'{one.joint.name}'"
+            for one in followers(robot)
+            if one.master == joint.name != one.joint.name
+        ]
+        own = "any position" if joint.lower == -math.inf else _span(joint, joint.lower, joint.upper)
+        held = f"'{joint.name}' from {_span(joint, low, high)} of {own}"
+        lines.append(f"{held}, by the limits of {listed(of)}; other programs may move it farther")
+    return lines
+
+
+def _span(joint: Joint, low: float, high: float) -> str:
+    return f"{joint_value(joint.kind, low + 0.0)} to {joint_value(joint.kind, high + 0.0)}"
+
+
+def audit_summary(robot: Robot, pairs: Sequence[ExcusedPair]) -> dict[str, Any]:
     """The findings as JSON-ready values: lengths in metres, positions in radians or metres."""
     return {
         "$schema": SCHEMA,
         "never_refuted": sum(pair.refuted for pair in pairs),
         "never_unproven": sum(pair.unproven for pair in pairs),
         "adjacent_refuted": sum(pair.hides_contact for pair in pairs),
+        "narrowed": narrowed(robot),
         "pairs": [
             {"reason": pair.reason, **asdict(pair.finding), "status": str(pair.finding.status)}
             for pair in pairs
@@ -94,6 +124,7 @@ def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair], geometry: str = "
     proven = "proven not to touch at any position within the joint limits"
     lines.append(f"  <!-- Never: {proven}; geometry: {geometry}. -->")
     lines.append("  <!-- Adjacent: joined by one moving joint; not checked. -->")
+    lines += [f"  <!-- checked: {line.replace('--', '- -')} -->" for line in narrowed(robot)]
     for each in pairs:
         ends = f"link1={quoteattr(each.pair.link_a)} link2={quoteattr(each.pair.link_b)}"
         if each.reason is not None:

@@ -146,3 +146,38 @@ def test_bad_input_is_one_line_and_2(robot, tmp_path, capsys):
     assert run(["srdf", "make", urdf, "--out", urdf]) == 2
     assert "would overwrite" in capsys.readouterr().err
     assert (tmp_path / "arm.urdf").read_text() == URDF.format(upper=0.15)
+
+
+FOLLOWING = """<robot name="gripper">
+  <link name="palm"/>{left}{right}
+  <joint name="finger" type="{kind}"><parent link="palm"/><child link="left"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="0.045" effort="1" velocity="1"/></joint>
+  <joint name="follower" type="prismatic"><parent link="palm"/><child link="right"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="0.02" effort="1" velocity="1"/><mimic joint="finger" multiplier="{factor}"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "factor", "told"),
+    [
+        ("prismatic", -1, "'finger' from 0.00 mm to 0.00 mm of 0.00 mm to 45.00 mm"),
+        ("continuous", 1, "'finger' from 0.00° to 1.15° of any position"),
+    ],
+)
+def test_a_leader_that_its_followers_hold_is_told(kind, factor, told, tmp_path, capsys):
+    """`Never` was proven for one position of a finger that has 45 mm, without a word."""
+    parts = {
+        "left": _box("left", 0, "0.01 0.01 0.01"),
+        "right": _box("right", 0.1, "0.01 0.01 0.01"),
+    }
+    urdf, out = tmp_path / "gripper.urdf", tmp_path / "made.srdf"
+    urdf.write_text(FOLLOWING.format(kind=kind, factor=factor, **parts))
+    assert run(["srdf", "make", str(urdf), "--out", str(out)]) == 0
+    told = f"{told}, by the limits of 'follower'; other programs may move it farther"
+    assert f"  <!-- checked: {told} -->" in out.read_text().splitlines()
+    assert f"note: checked: {told}" in capsys.readouterr().err.splitlines()
+    run(["srdf", "audit", str(urdf), str(out)])
+    assert f"note: checked: {told}" in capsys.readouterr().out.splitlines()
+    run(["srdf", "audit", str(urdf), str(out), "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert objections("audit", found) == [] and found["narrowed"] == [told]

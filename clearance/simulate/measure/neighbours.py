@@ -251,7 +251,7 @@ def _first_within(
         leaves = np.flatnonzero((least < free[0]) | (greatest > free[1]))
         if len(leaves):
             time, position = _leaving(motion, i_joint, int(leaves[0]), (free[0], free[1]))
-            return np.array([position]), time, f" (to {GAP * 1e3:g} mm)"
+            return np.array([position]), time, f" (accuracy {GAP * 1e3:g} mm)"
     return None
 
 
