@@ -76,7 +76,7 @@ def numbers_of(given: object, names: Sequence[str] = (), where: str = "") -> np.
     if np.ma.is_masked(given) or any(map(np.ma.is_masked, rows)):
         raise BadInput("values are masked", where=where, valid="an array without a mask")
     dtype = getattr(given, "dtype", None)
-    if isinstance(dtype, np.dtype) and dtype.kind in "mMc":
+    if isinstance(dtype, np.dtype) and dtype.kind in "bmMc":
         raise BadInput(
             f"values have the type {dtype}", where=where, valid="an array of real numbers"
         )

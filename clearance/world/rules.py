@@ -142,7 +142,7 @@ def checked_level(given: float, name: str) -> float:
         BadDimension: no number, below 0 or not finite.
     """
     try:
-        if isinstance(given, str):
+        if isinstance(given, (str, bool)):
             raise ValueError
         level = float(given)
     except (TypeError, ValueError):

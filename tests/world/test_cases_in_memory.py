@@ -176,6 +176,8 @@ def test_limits_are_numbers_of_metres():
     assert cl.check(case).status == "suspect"  # a limit of a metre
     with pytest.raises(BadDimension, match="'5'"):
         cl.Limits(fail="5")
+    with pytest.raises(BadDimension, match="limit fail is True"):
+        cl.Limits(fail=True)
     with pytest.raises(cl.BadInput):
         cl.check(case, limits=(0.1, 0.2))
     with pytest.raises(cl.BadInput):

@@ -97,6 +97,7 @@ def test_a_new_checker_answers_for_the_case_as_it_is() -> None:
         (np.ma.array([[0.0]], mask=[[True]]), "values are masked"),
         (np.array([[0]], "timedelta64[ns]"), "values have the type timedelta64"),
         (np.array([[0j]]), "values have the type complex128"),
+        (np.array([[True]]), "values have the type bool"),
     ],
 )
 def test_numbers_that_are_not_known_are_refused(given: np.ndarray, told: str) -> None:

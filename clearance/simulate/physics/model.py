@@ -188,6 +188,11 @@ def write_obj(shape: Polyhedron, path: Path) -> Path:
 
 
 def _parsed(urdf_path: str) -> ET.Element:
+    if not urdf_path:
+        raise NotSimulated(
+            "masses and efforts of a robot made in Python are not known",
+            valid="PlacedRobot(…, urdf_path=FILE)",
+        )
     try:
         root = ET.parse(urdf_path).getroot()
         if urdf_path.endswith(".xacro") or any("xacro" in str(part.tag) for part in root.iter()):

@@ -133,6 +133,14 @@ def test_a_robot_without_a_trajectory_stands_and_that_is_told(tmp_path):
     assert found.n_steps == 1 and "stands as given and is not simulated" in found.notes[0]
 
 
+def test_a_robot_whose_file_nobody_gives_is_refused_with_the_way_out(tmp_path):
+    made = replace(cart(tmp_path), urdf_path="")
+    with pytest.raises(
+        BadInput, match=r"robot made in Python are not known; PlacedRobot\(…, urdf_path=FILE\)"
+    ):
+        simulated_motions(Case("made", (made,), (post(),)))
+
+
 @pytest.mark.parametrize("kind", ["robots", "rides", "moves", "carried", "loops"])
 def test_what_cannot_be_simulated_is_refused_in_one_line(tmp_path, kind):
     one = cart(tmp_path)
