@@ -44,6 +44,9 @@ _FILES = {
 _SUFFIXED = ("png", "glb")
 """Options whose file must end in their name."""
 
+_FOR_PEOPLE = {"png": (".png",), "glb": (".glb",), "trajectory": (".csv", ".json", ".yaml", ".yml")}
+"""Options of files that no build server reads, and how such a file may end."""
+
 output_options = in_order(
     click.option("--out", metavar="DIR", type=OutputPath(), help="Write the report here."),
     *(
@@ -101,6 +104,11 @@ class Outputs:
         return {name: path for name in _FILES if (path := getattr(self, name)) is not None}
 
     @property
+    def _for_people(self) -> dict[str, Path]:
+        """Those of them that no build server reads."""
+        return {name: path for name, path in self._named.items() if name in _FOR_PEOPLE}
+
+    @property
     def files(self) -> list[Path]:
         """The files that may be written."""
         return [*self._report_files(), *self._named.values()]
@@ -114,15 +122,19 @@ class Outputs:
 
     def withdraw_older(self, case_file: Path) -> None:
         """Says in an older report, JUnit file and summary that there is no answer yet, before anything is read: a
-        run that is stopped, killed too, leaves nothing green.
+        run that is stopped, killed too, leaves nothing green. Other files get the name of an older one, but those
+        that the case file names: they may be inputs, named by mistake.
 
         Raises:
             Unwritable: it cannot be written.
         """
-        if self.out is not None and self.out.is_dir():
-            from clearance.report.withdrawn import withdraw_report
+        from clearance.report.withdrawn import withdraw_file, withdraw_report
 
+        if self.out is not None and self.out.is_dir():
             withdraw_report(self.out)
+        for name, file in self._for_people.items():
+            if file.suffix.lower() in _FOR_PEOPLE[name] and not _names(case_file, file):
+                withdraw_file(file)
         why = "this run has not come to an end; the same command goes on"
         self._that_are_there()._write_instead(case_file, why, "Incomplete")
 
@@ -210,6 +222,14 @@ class Outputs:
 
             write_run_junit(run.report, self.junit)
         self._write_still(run)
+        notes = self._write_trajectory(run, ahead)
+        from clearance.report.withdrawn import older_name
+
+        for file in self._for_people.values():
+            older_name(file).unlink(missing_ok=True)
+        return notes
+
+    def _write_trajectory(self, run: Run, ahead: WrittenFile | None) -> list[str]:
         if self.trajectory is None:
             return []
         from clearance.files import write_file
@@ -236,8 +256,7 @@ class Outputs:
 
     def print_written(self, notes: list[str]) -> None:
         """Says in a terminal which files for people there are, and what is not as it was."""
-        files = [path for name, path in self._named.items() if name in (*_SUFFIXED, "trajectory")]
-        for word, lines in (("note", notes), ("written", files)):
+        for word, lines in (("note", notes), ("written", self._for_people.values())):
             for line in lines:
                 click.echo(f"  {word:<11} {line}")
 
@@ -254,6 +273,13 @@ class Outputs:
         if self.github:
             _append_to_summary(text)
             _annotate(run, to_stderr)
+
+
+def _names(case_file: Path, file: Path) -> bool:
+    """Whether a case file has the name of a file in it, or is that file; if it cannot be read, it may have."""
+    with suppress(OSError):
+        return file.name == case_file.name or file.name.encode() in case_file.read_bytes()
+    return True
 
 
 def _holds(file: Path | None, sign: bytes, refused: str) -> TypeGuard[Path]:

@@ -5,19 +5,40 @@ Not for: comparing (`findings.comparison`).
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import OutputPath
+from clearance.cli.options import AnsweringCommand, OutputPath
+from clearance.errors import Unwritable
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
 
 
-@click.command()
+def _report_unread(given: dict[str, Any], _: click.UsageError) -> None:
+    """Marks an older page: it is not of a command line that is not understood."""
+    with suppress(Unwritable):
+        _withdraw_older(given.get("out"))
+
+
+def _withdraw_older(out: Path | None) -> None:
+    """Marks an older page, before anything is read.
+
+    Raises:
+        Unwritable: it cannot be marked.
+    """
+    if out is not None:
+        from clearance.report.comparison import FILE_NAME
+        from clearance.report.withdrawn import withdraw_page
+
+        withdraw_page(out / FILE_NAME)
+
+
+@click.command(cls=AnsweringCommand, report_unread=_report_unread)
 @click.argument("before", metavar="A", type=click.Path(path_type=Path))
 @click.argument("now", metavar="B", type=click.Path(path_type=Path))
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Write a page with both curves here.")
@@ -35,6 +56,7 @@ def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     Else 0; 2 bad input; 4 if the run into A or B was interrupted. Two stores are compared case by
     case, by name; a case that only A has counts as worse.
     """
+    _withdraw_older(out)
     if _are_stores(before, now):
         return _compare_batches(before, now, out, quiet)
     from clearance.cli.run_rows import require_finished

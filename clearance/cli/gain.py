@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +10,9 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.notices import say_notices
-from clearance.cli.options import OutputPath, asked_options, said, spelled_by
+from clearance.cli.options import AnsweringCommand, OutputPath, asked_options, said, spelled_by
 from clearance.cli.progress import shown_work
-from clearance.errors import shown
+from clearance.errors import Unwritable, shown
 from clearance.gains.request import KINDS, Request
 from clearance.options import made, require_needs
 
@@ -21,7 +21,35 @@ if TYPE_CHECKING:
     from clearance.world.case import Case
 
 
-@click.command()
+def _report_unread(given: dict[str, Any], _: click.UsageError) -> None:
+    """Marks an older gain: it is not of a command line that is not understood."""
+    if given.get("case") is not None:
+        with suppress(Unwritable):
+            _withdraw_older(given["case"], given.get("kind"), given.get("out"), given.get("force"))
+
+
+def _withdraw_older(case: Path, kind: str | None, out: Path | None, force: bool | None) -> None:
+    """Marks the gains that are to be overwritten as older, before anything is read.
+
+    Raises:
+        Unwritable: one of them cannot be marked, or is the case.
+    """
+    if out is None or not force:
+        return
+    from clearance.files import refuse_inputs
+    from clearance.gains.changed_files import CASE
+    from clearance.gains.every_kind import SUB_FOLDERS
+    from clearance.gains.folder import PAGE, withdraw_gain
+
+    found = [out / PAGE]
+    if kind == "all":
+        found = [page for each in SUB_FOLDERS for page in (out / each).rglob(PAGE)]
+    for page in found:
+        refuse_inputs([page.with_name(CASE)], [case])
+        withdraw_gain(page.parent)
+
+
+@click.command(cls=AnsweringCommand, report_unread=_report_unread)
 @click.argument("case", metavar="CASE", type=click.Path(path_type=Path))
 @click.option(
     "--kind", type=click.Choice([*KINDS, "all"]), required=True, help="Kind of change to look for."
@@ -45,6 +73,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_existing
 
+    _withdraw_older(case, kind, out, force)
     asked = said(Request, options)
     spelled = spelled_by(Request)
     if kind == "all":

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import OutputPath, SortParamType
+from clearance.cli.options import AnsweringCommand, OutputPath, SortParamType
+from clearance.errors import Unwritable
 from clearance.options import LENGTH
 
 if TYPE_CHECKING:
@@ -17,7 +20,28 @@ if TYPE_CHECKING:
 MOST_LINKS = 8
 
 
-@click.command()
+def _report_unread(given: dict[str, Any], _: click.UsageError) -> None:
+    """Marks an older answer: it is not of a command line that is not understood."""
+    with suppress(Unwritable):
+        _withdraw_older(given.get("out"), given.get("case_files") or ())
+
+
+def _withdraw_older(out: Path | None, case_files: Sequence[Path]) -> None:
+    """Marks an older answer, before anything is read.
+
+    Raises:
+        Unwritable: it cannot be marked, or is one of the cases.
+    """
+    if out is None:
+        return
+    from clearance.files import refuse_inputs
+    from clearance.report.workspace import OWN, withdraw_workspace
+
+    refuse_inputs([out / name for name in OWN], case_files)
+    withdraw_workspace(out)
+
+
+@click.command(cls=AnsweringCommand, report_unread=_report_unread)
 @click.argument(
     "case_files", metavar="CASE.yaml...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
@@ -62,6 +86,7 @@ def workspace(
     """
     from clearance.extras import require
 
+    _withdraw_older(out, case_files)
     require("contact", "a shared workspace", "manifold3d")
     from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices

@@ -18,6 +18,7 @@ from clearance.gains.page import page_of
 from clearance.gains.result import Gain
 from clearance.report.output import OWN as OF_REPORT
 from clearance.report.summary import json_text
+from clearance.report.withdrawn import older_name, withdraw_file, withdraw_page, withdraw_report
 
 FIGURES, PAGE = "gain.json", "gain.html"
 
@@ -50,8 +51,20 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
             if drawn:
                 run.save(fresh / name, earlier=gain.before if name == REPORTS[1] else None)
 
-    fill_folder(folder, fill, (*names, *REPORTS))
+    fill_folder(folder, fill, (*names, older_name(Path(FIGURES)).name, *REPORTS))
     return folder
+
+
+def withdraw_gain(folder: Path) -> None:
+    """Marks the gain in a folder as older, if there is one, with both reports; a second time changes nothing.
+
+    Raises:
+        Unwritable: it cannot be marked.
+    """
+    withdraw_file(folder / FIGURES)
+    withdraw_page(folder / PAGE)
+    for name in REPORTS:
+        withdraw_report(folder / name)
 
 
 def refuse_existing(folder: Path, names: Collection[str], *, force: bool) -> None:

@@ -1,8 +1,8 @@
-"""An older report whose folder a run is to write anew: marked, so that nobody reads it as the answer of that run.
+"""An older answer that a run is to write anew: marked, so that nobody reads it as the answer of that run.
 
-A run that comes to its end replaces the folder; one that is stopped leaves the mark. The page says on top that it
-is older, and `summary.json`, which programs read, has another name. Not for: JUnit, which is written anew
-(`junit`), nor what `clearance compare` refuses (`cli.run_rows`).
+A run that comes to its end replaces it; one that is stopped leaves the mark. A page says on top that it is older;
+any other file, as `summary.json`, has another name. Not for: JUnit, which is written anew (`junit`), nor what
+`clearance compare` refuses (`cli.run_rows`).
 """
 
 from __future__ import annotations
@@ -31,10 +31,32 @@ def withdraw_report(folder: Path) -> None:
     Raises:
         Unwritable: it cannot be marked.
     """
-    page, summary = folder / "report.html", folder / LAST
-    if summary.is_file():  # first: another name needs no room on a full disk
-        with unwritable(summary):
-            summary.replace(folder / OLDER_SUMMARY)
+    withdraw_file(folder / LAST)  # first: another name needs no room on a full disk
+    withdraw_page(folder / "report.html")
+
+
+def older_name(file: Path) -> Path:
+    """The name of a file while it is not written anew."""
+    return file.with_name(f"{file.stem}.older{file.suffix}")
+
+
+def withdraw_file(file: Path) -> None:
+    """Gives a file the name of an older one, if it is there.
+
+    Raises:
+        Unwritable: it cannot have another name.
+    """
+    if file.is_file():
+        with unwritable(file):
+            file.replace(older_name(file))
+
+
+def withdraw_page(page: Path) -> None:
+    """Marks a page as older, if it is there.
+
+    Raises:
+        Unwritable: it cannot be marked.
+    """
     if page.is_file() and not page.is_symlink():
         content = page.read_bytes()
         marked = marked_page(content)

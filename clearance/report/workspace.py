@@ -10,10 +10,14 @@ from clearance.files import fill_folder
 from clearance.formats.mesh.mesh_file import mesh_file
 from clearance.record.workspace import Workspace
 from clearance.report.summary import json_text
+from clearance.report.withdrawn import older_name, withdraw_file
 from clearance.report.workspace_picture import picture_of
 
 MESHES = {"workspace.stl": "stl", "workspace.glb": "glb"}
-OWN = ("workspace.svg", "workspace.json", *MESHES)
+ANSWER = ("workspace.json", "workspace.svg")
+"""What says how much is shared, if anything."""
+
+OWN = (*ANSWER, *(older_name(Path(name)).name for name in ANSWER), *MESHES)
 """All files that it can have."""
 
 SCHEMA = "urn:clearance:workspace:1"
@@ -41,6 +45,16 @@ def workspace_summary(workspace: Workspace) -> dict[str, Any]:
         "not_counted": [list(pair) for pair in workspace.carried],
         "triangles": len(region.triangles),
     }
+
+
+def withdraw_workspace(folder: Path) -> None:
+    """Gives figures and picture in a folder the names of older ones, if they are there.
+
+    Raises:
+        Unwritable: they cannot have other names.
+    """
+    for name in ANSWER:
+        withdraw_file(folder / name)
 
 
 def write_workspace(workspace: Workspace, folder: Path) -> None:

@@ -5,7 +5,7 @@ import pytest
 from clearance.cli import run
 from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY, marked_page, withdraw_report
-from tests.cart import write_cart
+from tests.cart import CASE, files, write_cart
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def check():
 
 
 def content(place):
-    return {path.name: path.read_bytes() for path in place.iterdir()}
+    return {path.name: path.read_bytes() for path in place.iterdir() if path.is_file()}
 
 
 def stop(*arguments, **named):
@@ -57,3 +57,81 @@ def test_a_page_is_marked_once_after_the_head():
     marked = marked_page(b"<head><title>a</title></head>\n<body>\n<p>b</p>")
     assert marked.startswith(b"<head><title>Not finished: a</title></head>\n<body>\n<header id=")
     assert marked.endswith(b"</header>\n<p>b</p>") and marked_page(marked) == marked
+
+
+BAD = CASE.replace("limits: {fail", "limits: {fial")
+"""A typing error: refused when it is read."""
+
+GREEN = CASE.replace("{fail: 0.05, warn: 0.3}", "{fail: 0.15}")
+"""The cart comes 50 mm too near; the wall can make way."""
+
+STILLS = ["--png", "x.png", "--glb", "x.glb", "--trajectory", "x.csv"]
+
+
+def stand(folder, name):
+    """The case of one more robot, which shares no space with the first."""
+    away = CASE.replace("cart.urdf}", "cart.urdf, base: {xyz: [0, 5, 0], rpy: [0, 0, 0]}}")
+    (folder / name).write_text(
+        away.replace("name: rail", "name: away").replace("wall, b", "fence, b")
+    )
+
+
+GAIN = ["gain", "case.yaml", "--out", "out", "--force", "--kind"]
+COMMANDS = [
+    ([*GAIN, "obstacle"], ["gain.json"], ["gain.html"]),
+    ([*GAIN, "all"], ["gain.json"], ["gain.html"]),
+    (["workspace", "case.yaml", "away.yaml", "--out", "out"], ["workspace.json", "workspace.svg"], []),
+    (["compare", "report", "report", "--out", "out"], [], ["comparison.html"]),
+    (["check", "case.yaml", *STILLS], ["x.png", "x.glb", "x.csv"], []),
+]  # fmt: skip
+"""What answers, the files of its answer, and its pages."""
+
+
+@pytest.mark.parametrize(("arguments", "names", "pages"), COMMANDS)
+@pytest.mark.parametrize("more", [[], ["--no-such-option"]])
+def test_no_older_answer_of_any_command_outlasts_one_that_is_refused(
+    arguments, names, pages, more, folder
+):
+    (folder / "case.yaml").write_text(GREEN)
+    stand(folder, "away.yaml")
+    check()
+    assert run(arguments) in (0, 1)
+    first = files(folder)
+    assert {path.rpartition("/")[2] for path in first} > {*names, *pages}
+
+    if not more:
+        (folder / "case.yaml").write_text(BAD)
+        (folder / "report" / "findings.json").write_text("{")
+    assert run([*arguments, *more]) == 2
+    for path, text in first.items():
+        place = folder / path
+        if place.name in names or (LAST in path and "out" in path):
+            older = place.with_name(f"{place.stem}.older{place.suffix}")
+            assert not place.exists() and older.read_bytes() == text
+        if place.name in pages:
+            assert b"<title>Not finished: " in place.read_bytes()
+
+    (folder / "case.yaml").write_text(GREEN)
+    check()
+    assert run(arguments) in (0, 1) and files(folder) == first
+
+
+@pytest.mark.parametrize(
+    ("option", "place"),
+    [("--trajectory", "path.csv"), ("--trajectory", "case.yaml"), ("--png", "notes.txt")],
+)
+@pytest.mark.parametrize("more", [[], ["--no-such-option"]])
+def test_a_file_that_may_be_an_input_or_anything_else_stays_as_it_is(option, place, more, folder):
+    (folder / "notes.txt").write_text("mine")
+    (folder / "case.yaml").write_text(BAD)
+    first = files(folder)
+    assert run(["check", "case.yaml", option, place, *more]) == 2 and files(folder) == first
+
+
+def test_a_gain_that_would_overwrite_its_own_case_leaves_it_as_it_is(folder):
+    (folder / "case.yaml").write_text(GREEN)
+    assert run(["gain", "case.yaml", "--kind", "obstacle", "--out", "out"]) == 0
+    first = files(folder)
+    again = ["gain", "out/case.yaml", "--kind", "obstacle", "--out", "out"]
+    for arguments in (again, [*again, "--force"], [*again, "--force", "--no-such-option"]):
+        assert run(arguments) == 2 and files(folder) == first
