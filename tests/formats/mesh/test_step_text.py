@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.errors import BadInput, BadSyntax
-from clearance.formats.mesh.step_file import step_facts
+from clearance.formats.mesh.step_text import step_facts
 from tests.formats.making_case import load_small, with_obstacle
 from tests.formats.making_step import HEAD, TAIL, box_step, cylinder_step
 
