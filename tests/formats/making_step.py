@@ -76,8 +76,10 @@ def _numbers(values) -> str:
     return ",".join(f"{float(v):.17g}" + ("" if "." in f"{float(v):.17g}" else ".") for v in values)
 
 
-def box_step(size=(10.0, 20.0, 30.0), unit: str = "mm", uncertainty: float = 1e-7) -> str:
-    """A box with one corner at the origin."""
+def box_step(
+    size=(10.0, 20.0, 30.0), unit: str = "mm", uncertainty: float = 1e-7, item: str = ""
+) -> str:
+    """A box with one corner at the origin, and one more item, which may name its {axes} and its {solid}."""
     writer = _Writer()
     corners = [np.array(size) * (i >> 2 & 1, i >> 1 & 1, i & 1) for i in range(8)]
     vertices = [writer.vertex(c) for c in corners]
@@ -93,7 +95,7 @@ def box_step(size=(10.0, 20.0, 30.0), unit: str = "mm", uncertainty: float = 1e-
         z = np.cross(x, corners[ring[2]] - corners[ring[1]])
         plane = writer.plane(corners[ring[0]], z / np.linalg.norm(z), x / np.linalg.norm(x))
         faces.append(writer.face(writer.loop(used), plane))
-    return _document(writer, faces, unit, uncertainty)
+    return _document(writer, faces, unit, uncertainty, item)
 
 
 def cylinder_step(radius=10.0, length=30.0, unit: str = "mm", uncertainty: float = 1e-7) -> str:
@@ -121,8 +123,10 @@ def cylinder_step(radius=10.0, length=30.0, unit: str = "mm", uncertainty: float
     return _document(writer, faces, unit, uncertainty)
 
 
-def _document(writer: _Writer, faces: list[str], unit: str, uncertainty: float) -> str:
-    """A product of one solid."""
+def _document(
+    writer: _Writer, faces: list[str], unit: str, uncertainty: float, item: str = ""
+) -> str:
+    """A product of one solid, and of one more item of a representation."""
     shell = writer.add(f"CLOSED_SHELL('',({','.join(faces)}))")
     solid = writer.add(f"MANIFOLD_SOLID_BREP('',{shell})")
     first = writer.n + 1
@@ -141,6 +145,10 @@ def _document(writer: _Writer, faces: list[str], unit: str, uncertainty: float) 
     )
     axes = writer.placement((0, 0, 0), (0, 0, 1), (1, 0, 0))
     shape = writer.add(f"ADVANCED_BREP_SHAPE_REPRESENTATION('',({axes},{solid}),{context})")
+    if item:
+        other = writer.add(item.format(axes=axes, solid=solid))
+        also = writer.add(f"SHAPE_REPRESENTATION('',({other}),{context})")
+        writer.add(f"SHAPE_REPRESENTATION_RELATIONSHIP('','',{shape},{also})")
     application = writer.add("APPLICATION_CONTEXT('automotive design')")
     product_context = writer.add(f"PRODUCT_CONTEXT('',{application},'mechanical')")
     product = writer.add(f"PRODUCT('part','part','',({product_context}))")

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,8 +22,9 @@ from clearance.extras import require
 from clearance.formats.mesh.gltf_buffers import Buffers, GltfObject
 from clearance.formats.mesh.gltf_file import chunks, mesh_pieces, read_glb
 from clearance.formats.mesh.placing import Z_FROM_Y_UP
-from clearance.formats.mesh.step_text import step_facts
+from clearance.formats.mesh.step_text import StepFacts, step_facts
 from clearance.formats.mesh.triangles import MeshRequest, Triangles
+from clearance.formats.text.notes import counted
 from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION
 
 _PROCESS = Path(__file__).with_name("step_process.py")
@@ -33,6 +34,9 @@ MOST_WORK, LONGEST = 300, 1800
 
 TURN = 0.5
 """[rad] Neighbouring facets of a round face turn no farther, however small it is."""
+
+_COLOURS = (b"STYLED_ITEM", b"UNREAD_ITEM")
+"""Faces of other colours than their solid's come without what is known of them, so none has a colour."""
 
 _SINGLE = 2.0**-24 * 3.0**0.5
 """[-] How far rounding to single precision moves a point, relative to its largest coordinate."""
@@ -55,7 +59,7 @@ def read_step(asked: MeshRequest) -> Triangles:
         raise BadDimension(f"tolerance {tolerance:g} m is given", valid=valid)
     require("cad", "reading STEP")
     facts = step_facts(data)
-    glb = _tessellated(data, tolerance)
+    glb = _tessellated(data.replace(*_COLOURS), tolerance)
     document, binary = chunks(glb)
     facets = facets_of(document, Buffers(document, binary))
     if facets.n_faces < facts.n_faces:
@@ -70,16 +74,19 @@ def read_step(asked: MeshRequest) -> Triangles:
             valid="a larger tolerance, or a file whose edges lie on its faces",
         )
     surface = read_glb(MeshRequest(glb))
-    return Triangles(surface.vertices @ Z_FROM_Y_UP, surface.corners, _notes(facets), off)
-
-
-def _notes(facets: Facets) -> tuple[str, ...]:
-    if not facets.n_free:
-        return ()
-    return (
-        f"{facets.n_free} of its {facets.n_faces} faces are free-form: how near facets are to them is the word of "
-        "Open CASCADE, asked for twice as fine",
+    return Triangles(
+        surface.vertices @ Z_FROM_Y_UP, surface.corners, tuple(_notes(facts, facets)), off
     )
+
+
+def _notes(facts: StepFacts, facets: Facets) -> Iterator[str]:
+    if facts.n_lines:
+        yield f"{counted(facts.n_lines, 'set')} of curves, which have no surface: not measured"
+    if facets.n_free:
+        yield (
+            f"{facets.n_free} of its {facets.n_faces} faces are free-form: how near facets are to them is the "
+            "word of Open CASCADE, asked for twice as fine"
+        )
 
 
 def _tessellated(data: bytes, tolerance: float) -> bytes:

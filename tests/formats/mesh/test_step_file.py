@@ -76,6 +76,27 @@ def test_the_clearance_of_a_case_is_never_overstated(tmp_path):
     assert cl.Checker(case).distance([0.0]).distance == least
 
 
+def test_faces_of_other_colours_and_curves_beside_them_are_read():
+    curves = "GEOMETRIC_CURVE_SET('',(#9000))"
+    line = "#9000=POLYLINE('',(#1,#3));\n"
+    style = "#{0}=SURFACE_STYLE_USAGE(.BOTH.,#{1});#{1}=SURFACE_SIDE_STYLE('',(#{2}));"
+    style += "#{2}=SURFACE_STYLE_FILL_AREA(#{3});#{3}=FILL_AREA_STYLE('',(#{4}));"
+    style += "#{4}=FILL_AREA_STYLE_COLOUR('',#{5});#{5}=COLOUR_RGB('',{r},0.,0.);"
+    style += "#{6}=PRESENTATION_STYLE_ASSIGNMENT((#{0}));#{7}=STYLED_ITEM('',(#{6}),{face});"
+    text = box_step(item=curves)
+    faces = [of.partition("=")[0] for of in text.splitlines() if "=ADVANCED_FACE(" in of]
+    (context,) = (of.partition("=")[0] for of in text.splitlines() if "GEOMETRIC_REP" in of)
+    red, black = (
+        style.format(*range(n, n + 8), r=r, face=face)
+        for n, r, face in ((9010, "1.", faces[0]), (9020, "0.", faces[1]))
+    )
+    shown = "#9030=MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#9017,#9027),"
+    more = f"{line}{red}\n{black}\n{shown}{context});\n"
+    loaded = solid(text.replace("ENDSEC;\nEND-ISO", more + "ENDSEC;\nEND-ISO"))
+    assert loaded.shape.closed and loaded.shape.n_faces == 6
+    assert "1 set of curves, which have no surface: not measured" in loaded.notes
+
+
 def test_a_face_that_its_corners_do_not_lie_on_is_refused():
     """The ends of a cylinder of 10 mm whose side is said to be of 9 mm."""
     text = cylinder_step().replace("CYLINDRICAL_SURFACE('',#", "CYLINDRICAL_SURFACE('',##")

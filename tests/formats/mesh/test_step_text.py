@@ -64,3 +64,72 @@ def test_each_fault_is_one_line(text, says):
 def test_a_tolerance_of_flat_faces_is_refused(tmp_path):
     with pytest.raises(BadInput, match=r"a tolerance of 'upper.stl' is given.*of .step or .stp"):
         load_small(tmp_path, with_obstacle("mesh: {file: upper.stl, tolerance: 0.001}"))
+
+
+@pytest.mark.parametrize(
+    ("item", "unread"),
+    [
+        ("SWEPT_DISK_SOLID('',#1,20.,$,0.,2.)", "SWEPT_DISK_SOLID"),
+        ("BLOCK('it''s',{axes},50.,50.,50.)", "BLOCK"),
+        ("SPHERE('',50.,#1)", "SPHERE"),
+        ("TORUS('',#1,50.,10.)", "TORUS"),
+        ("RIGHT_CIRCULAR_CYLINDER('',#1,50.,10.)", "RIGHT_CIRCULAR_CYLINDER"),
+        ("CSG_SOLID('',#1)", "CSG_SOLID"),
+        ("SPHERICAL_SURFACE('',{axes},50.)", "SPHERICAL_SURFACE"),
+        ("RECTANGULAR_TRIMMED_SURFACE('',#1,0.,1.,0.,1.,.T.,.T.)", "RECTANGULAR_TRIMMED_SURFACE"),
+        (
+            "(GEOMETRIC_REPRESENTATION_ITEM() REPRESENTATION_ITEM('') SOLID_MODEL() SOLID_OF_TOMORROW(1.))",
+            "GEOMETRIC_REPRESENTATION_ITEM REPRESENTATION_ITEM SOLID_MODEL SOLID_OF_TOMORROW",
+        ),
+        ("CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',$,$,#1,2.,$)", "CARTESIAN_TRANSFORMATION"),
+    ],
+)
+def test_what_open_cascade_leaves_out_is_refused_by_its_name(item, unread):
+    with pytest.raises(BadSyntax, match=f"{unread}.* is not read"):
+        step_facts(box_step(item=item).encode())
+
+
+def test_so_are_surfaces_in_a_set_and_items_of_a_complex_representation():
+    whole = box_step(item="GEOMETRIC_SET('',({axes},{solid}))")
+    with pytest.raises(BadSyntax, match="MANIFOLD_SOLID_BREP is not read"):
+        step_facts(whole.encode())
+    items = "(REPRESENTATION('of it',(#9001),#1) SHAPE_REPRESENTATION())"
+    block = f"#9001=BLOCK('',#1,1.,1.,1.);\n#9002={items};\n"
+    with pytest.raises(BadSyntax, match="BLOCK is not read"):
+        step_facts(box_step().replace(TAIL, block + TAIL).encode())
+
+
+@pytest.mark.parametrize(
+    "item",
+    [
+        "CARTESIAN_POINT('',(0.,0.,0.))",
+        "PLANE('',{axes})",
+        "TEXT_LITERAL_WITH_EXTENT('','BLOCK(',{axes},'left',.RIGHT.,#1,#1)",
+        "(LENGTH_MEASURE_WITH_UNIT() MEASURE_REPRESENTATION_ITEM() REPRESENTATION_ITEM(''))",
+        "GEOMETRIC_SET('',({axes}))",
+    ],
+)
+def test_what_has_no_surface_is_passed_over(item):
+    assert step_facts(box_step(item=item).encode()) == (6, 1e-10, 0)
+
+
+def test_sets_of_curves_are_counted():
+    assert step_facts(box_step(item="GEOMETRIC_CURVE_SET('',({axes}))").encode()).n_lines == 1
+
+
+OCCURRENCE = """#9000=PRODUCT_DEFINITION('design','',#1,#2);
+#9001=NEXT_ASSEMBLY_USAGE_OCCURRENCE('','','',#9000,{part},$);
+#9002=PRODUCT_DEFINITION_SHAPE('','',#9001);
+"""
+
+
+def test_an_occurrence_of_a_part_without_a_placement_is_refused():
+    text = box_step()
+    part = next(line for line in text.splitlines() if "=PRODUCT_DEFINITION(" in line)
+    unplaced = text.replace(TAIL, OCCURRENCE.format(part=part.partition("=")[0]) + TAIL)
+    with pytest.raises(BadSyntax, match="#9001 is a part of an assembly without a placement"):
+        step_facts(unplaced.encode())
+    placement = "#9003=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#1,#9002);\n"
+    assert step_facts(unplaced.replace(TAIL, placement + TAIL).encode()).n_faces == 6
+    without_shape = text.replace(TAIL, OCCURRENCE.format(part="#9005") + TAIL)
+    assert step_facts(without_shape.encode()).n_faces == 6
