@@ -11,6 +11,8 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from clearance.errors import BadInput, BadShape
 from clearance.formats.cloud.formats import Points
 from clearance.formats.table.column_units import Column, columns_in, in_own_units, note_on_units
@@ -50,8 +52,19 @@ def read_points_text(data: bytes) -> Points:
     (places,) = columns_of(table, header, [chosen], finite=False)
     columns = [column for _, column in of_axes]
     in_own_units(places, columns)
+    if not has_header and len(header) > 3:
+        _refuse_counter(places[:, 0])
     notes = [*([] if has_header else _on_more_columns(len(header))), *note_on_units(columns)]
     return Points(places, tuple(notes), columns[0].unit is not None)
+
+
+def _refuse_counter(first: np.ndarray) -> None:
+    """Refuses x of a table without a header that are numbers of its rows."""
+    if len(first) > 2 and (np.diff(first) == 1.0).all():
+        raise BadInput(
+            "no header names its columns, and its first column counts the rows",
+            valid="a header that names x, y and z, as 'number x y z'",
+        )
 
 
 def _on_more_columns(n_columns: int) -> Iterator[str]:

@@ -81,6 +81,16 @@ def test_beams_that_did_not_come_back_are_left_out_and_counted(make):
         cloud_from_bytes(make(points[4:]), name, 0.01)
 
 
+def test_a_first_column_that_counts_the_points_is_no_x():
+    counted = b"".join(
+        b"%d %s\n" % (i, line) for i, line in enumerate(table(POINTS, " ", "").splitlines(), 7)
+    )
+    with pytest.raises(BadInput, match=r"its first column counts the rows.*a header that names"):
+        cloud_from_bytes(counted, "a.xyz", 0.01)
+    named = cloud_from_bytes(b"number x y z\n" + counted, "a.xyz", 0.01)
+    assert as_set(named.shape.vertices) == as_set(POINTS)
+
+
 def test_copies_viewpoints_and_faces_are_said():
     twice = cloud_from_bytes(pcd(np.concatenate([POINTS, POINTS[:1]])), "a.pcd", 0.01)
     assert twice.notes == ("1 of its points are there more than once and count once",)
