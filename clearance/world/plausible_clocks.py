@@ -194,16 +194,25 @@ def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
 
 
 def _recorded_tables_begin_later(case: Case) -> Iterator[Notice]:
-    """Notices on recorded tables that by their own times begin more than an interval after another recording."""
+    """Notices on recorded tables that by their own times begin more than an interval after something else.
+
+    Beside another recording that is suspect; beside a motion that is planned, a warning.
+    """
     recorded = sorted(_recordings(case), key=lambda one: one.begins)
-    for later in recorded[1:]:
+    earliest = min((table.start for table in _tables(case)), default=math.inf)
+    lacks = "and no sample says where it is until then"
+    for later in recorded:
         first = recorded[0]
         wait = later.begins - first.begins
-        by_chance = wait <= max(later.usual, first.usual)
-        if later.is_table and not by_chance and not later.timing.says_start:
-            delay, lacks = time_text(wait), "and no sample says where it is until then"
+        if not later.is_table or later.timing.says_start:
+            continue
+        if wait > max(later.usual, first.usual):
+            delay = time_text(wait)
             text = later.after(first, delay, lacks, keeps="0", drops=f"-{delay}")
             yield Notice(Severity.SUSPECT, "clocks", text)
+        elif later.begins - earliest > later.usual:
+            text = f"{later.kind}{later.name!r} is recorded from {time_text(later.begins)} s on, {lacks}"
+            yield Notice(Severity.WARNING, "clocks", f"{text}; `start: 0` beside its file says so")
 
 
 def _recordings(case: Case) -> Iterator[_Recording]:

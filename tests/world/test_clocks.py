@@ -249,3 +249,16 @@ def test_a_recorded_table_begins_later_within_an_interval_or_because_the_case_sa
 ):
     slow_door = "moves: door.csv", "moves: {file: door.csv, rate: 0.5}"
     assert not reported(recorded_tables(tmp_path, late, says, *slow_door, swing=swing))
+
+
+def test_a_recorded_table_that_begins_later_than_a_planned_one_is_a_warning(tmp_path):
+    """Nobody recorded where the right arm is, while the left one moves as planned."""
+    slow_door = "moves: door.csv", "moves: {file: door.csv, rate: 0.5}"
+    planned = "trajectory: {file: path.csv, gaps: linear}", "trajectory: path.csv"
+    case = recorded_tables(tmp_path, 1.5, "", *slow_door, *planned)
+    (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
+    assert one.severity == "warning" and one.text.startswith(
+        "robot 'right' is recorded from 1.5 s on, and no sample says where it is until then"
+    )
+    said = recorded_tables(tmp_path, 1.5, ", start: 0", *slow_door, *planned)
+    assert not reported(said)
