@@ -23,6 +23,7 @@ from clearance.formats.schema.timed import Choice
 from clearance.formats.text.file_start import LONGEST, POSE_COLUMNS
 from clearance.formats.text.notes import counted
 from clearance.formats.timed_files import load_samples, load_trajectory
+from clearance.world.timing import time_text
 from clearance.world.trajectory import Trajectory
 
 
@@ -85,9 +86,9 @@ def _trajectory(asked: Conversion) -> ConvertedFiles:
     amount = f"{counted(len(samples.times), 'sample')} of {n_joints}"
     if set(POSE_COLUMNS[1:4]) <= {*trajectory.joint_names}:
         changes += (f"x, y and z are joints; poses also need {', '.join(POSE_COLUMNS[4:])}",)
-    return ConvertedFiles(
-        {asked.target.name: content}, amount, (*notes, *_of_target(asked, changes))
-    )
+    notes = (*notes, *_of_target(asked, changes))
+    stamp = _stamp_lost(asked, trajectory.began)
+    return ConvertedFiles({asked.target.name: content}, amount, notes, stamp)
 
 
 def _refuse_untold(trajectory: Trajectory, shown: str) -> None:
@@ -106,14 +107,25 @@ def _poses(asked: Conversion) -> ConvertedFiles:
         content, changes = pose_writer.written_poses(samples, asked.target.name)
     of_source = (f"{asked.source.name}: {note}" for note in notes)
     amount = counted(len(samples.times), "pose")
-    return ConvertedFiles(
-        {asked.target.name: content}, amount, (*of_source, *_of_target(asked, changes))
-    )
+    notes = (*of_source, *_of_target(asked, changes))
+    is_kept = written_as(Kind.POSES, asked.target.name).is_message
+    stamp = () if is_kept else _stamp_lost(asked, samples.table().began)
+    return ConvertedFiles({asked.target.name: content}, amount, notes, stamp)
 
 
 def _scene(asked: Conversion) -> ConvertedFiles:
     request = SceneRequest(asked.source, asked.files, asked.package_dirs, asked.includes)
     return converted_scene(request, asked.target)
+
+
+def _stamp_lost(asked: Conversion, began: float | None) -> tuple[str, ...]:
+    """A warning, if the clock of a recording is no more known from the new file."""
+    says = (
+        "which it cannot say: checks no longer see that another recording begins at another time; "
+        "give the delay between them as `start:` beside the file"
+    )
+    lost = () if began is None else (f"the first sample is stamped {time_text(began)} s, {says}",)
+    return _of_target(asked, lost)
 
 
 def _of_target(asked: Conversion, changes: tuple[str, ...]) -> tuple[str, ...]:

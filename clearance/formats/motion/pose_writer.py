@@ -104,13 +104,7 @@ def _lost_in_tables(samples: PoseSamples) -> list[str]:
     """The notes on what a table has no place for."""
     seen_from = [f"the poses are in frame {samples.frame!r}, which a table cannot say"]
     of = [f"the poses are those of frame {samples.child!r}, which a table cannot say"]
-    seconds, rest = divmod(samples.stamp, NANO)
-    since = [f"the first was stamped {seconds}.{rest:09d} s, which a table cannot say"]
-    return [
-        *(seen_from if samples.frame else []),
-        *(of if samples.child else []),
-        *(since if samples.stamp else []),
-    ]
+    return [*(seen_from if samples.frame else []), *(of if samples.child else [])]
 
 
 def _lost_in_messages(samples: PoseSamples) -> list[str]:

@@ -167,7 +167,11 @@ def test_a_case_names_a_bag(tmp_path, capsys):
     assert len(record.clearances) == 3
     assert any("joints that cannot be set are left out: x" in note for note in record.case.notes)
     assert {source.path for source in record.case.sources} >= {f"{bag.name}/metadata.yaml"}
+    capsys.readouterr()
     assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 0
+    warned = capsys.readouterr().err
+    assert warned.startswith("warning: out.csv: the first sample is stamped ")
+    assert "checks no longer see that another recording begins at another time" in warned
     inside = bag / "metadata.yaml"
     before = inside.read_bytes()
     assert run(["convert", str(bag), str(inside), "--force"]) == 2
