@@ -187,7 +187,7 @@ def odd_places(case: Case) -> list[str]:
     bases = _bases(case)
     reaches = [reach_of(placed) for placed in case.robots]
     far = []
-    for obstacle, gaps in zip(case.obstacles, _gaps(case, bases, at_first=True), strict=True):
+    for obstacle, gaps in zip(case.obstacles, _gaps(case, bases, of_units=True), strict=True):
         near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(gaps, reaches, strict=True))
         if not near and not _may_be_wall(obstacle.body, min(gaps)):
             far.append((min(gaps), obstacle.name))
@@ -282,14 +282,14 @@ def _bases(case: Case) -> list[Place]:
     return [_robot_place(case, i) for i in range(len(case.robots))]
 
 
-def _gaps(case: Case, bases: Sequence[Place], at_first: bool = False) -> list[list[float]]:
+def _gaps(case: Case, bases: Sequence[Place], of_units: bool = False) -> list[list[float]]:
     """[m] Least distances of each obstacle from each base.
 
     Args:
-        at_first: of parts that a robot picks up first, until it does.
+        of_units: of parts that a robot picks up first, until it does; of a box round a base, its surface.
     """
     return [
-        [_gap(obstacle, _obstacle_place(case, i, at_first), base) for base in bases]
+        [_gap(obstacle, _obstacle_place(case, i, of_units), base, of_units) for base in bases]
         for i, obstacle in enumerate(case.obstacles)
     ]
 
@@ -327,12 +327,12 @@ def notices_on_planes(case: Case) -> Iterator[Notice]:
                 yield Notice(Severity.WARNING, "plane", text)
 
 
-def _gap(obstacle: Obstacle, place: Place, base: Place) -> float:
-    """[m] Nothing of an obstacle's surface ever is nearer to a base."""
+def _gap(obstacle: Obstacle, place: Place, base: Place, of_units: bool) -> float:
+    """[m] Nothing of an obstacle ever is nearer to a base."""
     pose = place.pose
     local = pose[:3, :3].T @ (base.pose[:3, 3] - pose[:3, 3])
     if obstacle.stands:
-        gap = _from_surface(obstacle.body, local)
+        gap = _from_body(obstacle.body, local, of_units)
     else:  # it may be turned
         gap = float(
             np.linalg.norm(local) - np.linalg.norm(obstacle.body.shape.bounds, axis=1).max()
@@ -340,13 +340,13 @@ def _gap(obstacle: Obstacle, place: Place, base: Place) -> float:
     return gap - place.travel - base.travel
 
 
-def _from_surface(body: Body, point: np.ndarray) -> float:
-    """[m] No point of a body's surface is nearer to a point in its frame; 0 in a solid that is no box."""
+def _from_body(body: Body, point: np.ndarray, of_units: bool) -> float:
+    """[m] No point of a body is nearer to a point in its frame."""
     low, high = body.shape.bounds
     outside = float(np.linalg.norm(point - np.clip(point, low, high)))
     if outside > 0.0 or body.is_cloud:
         return outside
-    if body.origin == "box":
+    if body.origin == "box" and of_units:
         return float(min((point - low).min(), (high - point).min()))
     return distance(PointCloud(point[None], POINT), body.shape).distance
 

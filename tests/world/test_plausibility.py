@@ -149,6 +149,12 @@ def test_what_is_far_from_the_robot_is_no_quiet_clear(obstacle, pose, severity, 
     assert all(says in one.text for one in found)
 
 
+def test_a_robot_deep_inside_the_box_of_a_plane_is_within_reach():
+    """It is in contact at each step, though the nearest side is 7 m away."""
+    ground = Obstacle(Body("ground", box((40.0, 40.0, 20.0)), "box"), at(0.0, 0.0, -3.0))
+    assert reported(replace(case_of(), obstacles=(ground,))) == []
+
+
 def test_what_a_link_bears_and_how_far_its_slides_go_count_as_its_reach():
     """A block 0.8 m farther is in reach of an arm that stands, or goes, 0.8 m up, and of a rod of 0.9 m on it."""
     far = case_of(pose=at(0.0, 0.0, 1.6))
