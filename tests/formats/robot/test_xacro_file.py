@@ -67,6 +67,17 @@ def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
     assert note.endswith("defaults size:=0.2")
 
 
+def test_of_many_defaults_those_that_choose_links_are_named_first(tmp_path):
+    """A gripper that is off, or seven joints, make another robot; the rest are mostly names and files."""
+    path = tmp_path / "arm.xacro"
+    names = {f"name_{i}": f"value_{i}" for i in range(12)} | {"dof": "7", "add_gripper": "false"}
+    args = "".join(f'<xacro:arg name="{k}" default="{v}"/>$(arg {k})' for k, v in names.items())
+    path.write_text(body(f'{args}<link name="b"/>'))
+    (note,) = [note for note in made(path).notes if "xacro evaluated it" in note]
+    assert "; defaults dof:=7, add_gripper:=false, name_0:=value_0, " in note
+    assert note.endswith("name_5:=value_5 and 6 more")
+
+
 def test_it_is_never_evaluated_unasked(tmp_path):
     path = write_case(tmp_path, "name: arm")
     with pytest.raises(BadSyntax, match=r"xacro evaluates Python in it: `xacro: true` beside urdf"):

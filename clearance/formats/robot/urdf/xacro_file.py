@@ -143,13 +143,18 @@ def _require_asked(given: Mapping[str, str], asked: list[str], shown: str) -> No
             )
 
 
+_SWITCH = re.compile(r"true|false|\d+", re.IGNORECASE)
+"""A value that may say which links there are; others mostly name files and places."""
+
+
 def _note(shown: str, others: list[str], given: Mapping[str, str], used: Mapping[str, str]) -> str:
-    also = f" and in {listed(others, 6)}" if others else ""
+    also = f" and in {listed(others, 2)}" if others else ""
     text = f"{shown}: xacro evaluated it, with the Python in it{also}"
     own = [f"{name}:={value}" for name, value in given.items()]
-    defaults = [f"{name}:={value}" for name, value in used.items() if name not in given]
+    switches = sorted(used.items(), key=lambda one: not _SWITCH.fullmatch(one[1]))
+    defaults = [f"{name}:={value}" for name, value in switches if name not in given]
     text += f"; arguments {listed(own, 12)}" if own else ""
-    return text + (f"; defaults {listed(defaults, 12)}" if defaults else "")
+    return text + (f"; defaults {listed(defaults, 8)}" if defaults else "")
 
 
 def _shown(args: Mapping[str, str], files: InputFiles) -> dict[str, str]:
