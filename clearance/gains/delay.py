@@ -39,7 +39,7 @@ MOST_SLOWER = 9.0
 """[-] A path that takes ten times as long is not slowed further."""
 
 MOST_DELAYS = 400
-"""That are measured."""
+"""That are measured: three quarters of them as finely as is proven, the others evenly up to the longest."""
 
 Longer = Callable[[State, Approach, np.ndarray], np.ndarray]
 """(k,) how much more must be changed at least, so that bodies have come some way (k,) [m] from where they are."""
@@ -188,9 +188,12 @@ def _least(
             break
         excluded = delay + _excluded(state, i_robot, margin, longer)
         at_least = max(at_least, excluded) if at_least >= delay else at_least
-        if max(excluded, delay + finest) > most:
+        n_left, stride = MOST_DELAYS - n_measured, finest
+        if 0 < n_left < MOST_DELAYS // 4:
+            stride = max(finest, (most - delay) / n_left)
+        if max(excluded, delay + stride) > most:
             break
-        delay = max(excluded, delay + finest)
+        delay = max(excluded, delay + stride)
     return TimingResult(state, record, delay, at_least, n_measured, stays)
 
 

@@ -98,6 +98,13 @@ def test_no_delay_takes_a_part_past_a_post_in_its_way(monkeypatch):
     assert not found.kept and "part and post" in str(found.blocked)
 
 
+def test_a_search_that_is_nearly_used_up_strides_to_the_longest_delay(monkeypatch):
+    """The fifteenth of the fine steps would be enough; a long one is so too, and is no bound."""
+    monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 10)
+    found = gain(handing(), "timing", robot="other")
+    assert found.kept and found.size > 1.0 and found.lower_bound < 0.25
+
+
 def test_windows_that_a_delay_leaves_are_named_and_parts_that_change_hands_refused():
     row = Allowance(("one/*", "other/*"), Window(0.8, 0.9))
     lines = [*lines_of(gain(handing(allow=(row,)), "timing", robot="other"))]
