@@ -187,8 +187,9 @@ def _require_carriers_present(phase: Phase, end: float) -> None:
     for carry in phase.carried.values():
         if names.index(carry.part) not in phase.absent_obstacles:
             continue
-        if start == carry.window.start or until == carry.window.end < end:
-            deed = "picks up" if start == carry.window.start else "lets go of"
+        is_picked = phase.first == 0 or start == carry.window.start
+        if is_picked or until == carry.window.end < end:
+            deed = "picks up" if is_picked else "lets go of"
             raise BadTime(
                 f"{carry.by!r} is not in the cell from {time_text(start)} s to {time_text(until)} s "
                 f"({NOT_THERE}), and {deed} part {carry.part!r} then",
@@ -264,8 +265,13 @@ def _windows(case: Case) -> Iterator[tuple[str, Window]]:
 
 
 def _require_within(window: Window, start: float, end: float) -> None:
+    """Nothing, if a window's bounds are in the run; from 0 s is from its beginning, which may be later.
+
+    Raises:
+        BadTime: a bound that is not.
+    """
     for edge in window.ends:
-        if not start <= edge <= end:
+        if not start <= edge <= end and not edge == window.start == 0.0 < start < window.end:
             raise BadTime(
                 f"{time_text(edge)} s is outside the run",
                 valid=f"a time from {time_text(start)} s to {time_text(end)} s",

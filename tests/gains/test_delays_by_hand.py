@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.errors import BadTime
 from clearance.gains.answer import gain
 from clearance.gains.sentences import lines_of
 from clearance.world.carry import Carry
@@ -103,6 +104,25 @@ def test_a_search_that_is_nearly_used_up_strides_to_the_longest_delay(monkeypatc
     monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 10)
     found = gain(handing(), "timing", robot="other")
     assert found.kept and found.size > 1.0 and found.lower_bound < 0.25
+
+
+def test_what_holds_from_0_on_holds_from_the_start_of_a_run_that_begins_later():
+    """Both begin at 0.1 s, as where the first of two robots is delayed by the search."""
+    later = tuple(replace(one, timing=Timing(0.1)) for one in handing().robots)
+    holding = (Carry("part", "other/tool", Window(0.0)),)
+
+    def run(start):
+        rule = cl.Rule(("one/*", "other/*"), Window(start, 0.3), fail=0.05)
+        case = replace(handing(), robots=later, carries=holding, limits=cl.Limits(rules=(rule,)))
+        return cl.check(case).record
+
+    from_0, since = (run(start) for start in (0.0, 0.1))
+    assert from_0.clearances.tobytes() == since.clearances.tobytes()
+    assert [(one.span, [*one.carried]) for one in from_0.timeline.phases] == [
+        ((0.1, 0.3), ["part"]), ((0.3, 1.1), ["part"]),
+    ]  # fmt: skip
+    with pytest.raises(BadTime, match=r"0.05 s is outside the run"):
+        run(0.05)
 
 
 def test_windows_that_a_delay_leaves_are_named_and_parts_that_change_hands_refused():
