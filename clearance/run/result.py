@@ -188,6 +188,9 @@ class Run:
     def __bool__(self) -> NoReturn:
         refuse_truth(self, "passed")
 
+    def __reduce__(self) -> NoReturn:
+        raise BadInput("a Run cannot be pickled or copied", valid="run.record, or run.summary")
+
     def __repr__(self) -> str:
         from clearance.report.notebook import run_text
 

@@ -1,6 +1,7 @@
 """A run in a notebook, and without one: the page of its report, and its steps as a table of pandas."""
 
 import html
+import pickle
 import re
 import sys
 from types import SimpleNamespace
@@ -54,6 +55,13 @@ def test_a_run_is_neither_true_nor_false(run):
     """`assert cl.check(…)` would pass whatever the verdict is."""
     with pytest.raises(BadInput, match=r"neither true nor false; run\.passed is"):
         assert run
+
+
+def test_a_run_is_not_pickled_and_its_record_is(run):
+    with pytest.raises(BadInput, match=r"a Run cannot be pickled or copied; run\.record, or"):
+        pickle.dumps(run)
+    back = pickle.loads(pickle.dumps((run.record, run.summary)))
+    assert back[0].clearances.tobytes() == run.record.clearances.tobytes()
 
 
 def test_pandas_is_named_where_it_is_missing(run, monkeypatch):
