@@ -210,7 +210,8 @@ class Record(Samples):
         worst: the same of the whole motion, between two steps if a certificate has found a lesser moment there.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
-        contacts: every pair in contact at every step, steps first, with the overlaps that were asked for.
+        contacts: every pair in contact at every step, steps first, with the overlaps that were asked for. `worst`
+            has contact between two steps, which is not among them.
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         depths_asked: whether it is to be told how deep contact is.
         today: the day that waivers are held against; None where the case has none.
@@ -262,7 +263,7 @@ class Record(Samples):
 
     @cached_property
     def deepest(self) -> StepContact | None:
-        """The first of the contacts worked out of greatest penetration; None without any."""
+        """The first of the contacts worked out of greatest penetration; None without any at the steps."""
         return max(self.worked_out, key=lambda row: row.penetration, default=None)
 
     @property
