@@ -17,7 +17,7 @@ from typing import Any
 from clearance.findings.doubts import NOT_CHECKED, WARNING, Doubt
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
-from clearance.findings.known_less import known_less, motion_shorter, slack_text
+from clearance.findings.known_less import known_less, shorter_or_smaller, slack_text
 from clearance.findings.measurement_conditions import MeasurementConditions
 from clearance.record.status import Status
 from clearance.record.wording import depth_text
@@ -110,7 +110,7 @@ class Comparison:
         whole: why nothing is comparable, where that is so.
         doubts: what stands beside the findings of either run, what alarms first.
         less: what is not known any more that was known before, one line each.
-        shorter: how the motion is shorter than before, one line each; that alone fails nothing.
+        shorter: how the motion is shorter than before, or obstacles smaller, one line each; that fails nothing.
         excused: findings that are waived now and were not, or to a lower level; that alone fails nothing either.
     """
 
@@ -199,7 +199,7 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
     order = list(FindingChange)
     rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
     doubts, less = doubts_compared(before, now), known_less(before, now)
-    shorter = tuple(motion_shorter(before, now))
+    shorter = tuple(shorter_or_smaller(before, now))
     excused = tuple(row.now for row in rows if row.now is not None and _is_excused(row))
     return Comparison(before.case, now.case, tuple(rows), whole, doubts, less, shorter, excused)
 

@@ -23,6 +23,9 @@ from clearance.world.rules import matches
 TIME = 1e-6
 """[s] Times that differ by less are the same, summed otherwise."""
 
+SIZE = 1e-6
+"""[m] Sides of a box round a shape that differ by less are the same, rounded otherwise."""
+
 NEAREST = "nearest"
 """The mode of a profile whose limit is the greatest distance; the text of its finding begins with the mode."""
 
@@ -37,15 +40,27 @@ def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
     return tuple(itertools.chain(*found, _present_less(before, now), _listed_less(before, now)))
 
 
-def motion_shorter(before: FindingList, now: FindingList) -> Iterator[str]:
-    """How the motion is less than before, one line each: it may be another motion, and yet nothing is lost."""
+def shorter_or_smaller(before: FindingList, now: FindingList) -> Iterator[str]:
+    """How motion or obstacles are less than before, one line each: they may be others, and yet nothing is lost."""
     still = [name for name in before.measured.moving if name not in now.measured.moving]
     if still:
-        yield f"what moved before has no motion any more: {listed(still)}"
+        yield f"shorter: what moved before has no motion any more: {listed(still)}"
     if now.duration < before.duration:
-        yield f"the run takes {seconds(now.duration)}, and took {seconds(before.duration)}"
+        yield f"shorter: the run takes {seconds(now.duration)}, and took {seconds(before.duration)}"
     if now.n_moves < before.n_moves:
-        yield f"programs make {count(now.n_moves, 'move')}, and made {before.n_moves:,}"
+        yield f"shorter: programs make {count(now.n_moves, 'move')}, and made {before.n_moves:,}"
+    old, new = before.measured.sizes, now.measured.sizes
+    smaller = [
+        f"{name} {_size_text(new[name])}, was {_size_text(was)}"
+        for name, was in old.items()
+        if any(a < b - SIZE for a, b in zip(new.get(name, was), was, strict=True))
+    ]
+    if smaller:
+        yield f"smaller: {listed(smaller)}"
+
+
+def _size_text(sides: tuple[float, float, float]) -> str:
+    return " x ".join(limit_mm(side) for side in sides) + " mm"
 
 
 def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:

@@ -14,6 +14,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from clearance.record.fingerprint import robot_digest
 from clearance.record.names import pair_names
 from clearance.record.record import Record
@@ -72,6 +74,7 @@ class MeasurementConditions:
         joints: what a joint beyond its limits is: "warn" or "fail". paddings: [m] of bodies that have one.
         moving: robots and obstacles with a motion of their own.
         tolerances: sha256 of the errors that were counted with; empty without any. errors: their sizes by name.
+        sizes: [m] of each obstacle, along its own axes.
         present: [s] how long robots and obstacles are in the cell that are not there all the time.
     """
 
@@ -91,6 +94,7 @@ class MeasurementConditions:
     moving: tuple[str, ...] = ()
     errors: dict[str, float] = field(default_factory=dict, hash=False)
     present: dict[str, float] = field(default_factory=dict, hash=False)
+    sizes: dict[str, tuple[float, float, float]] = field(default_factory=dict, hash=False)
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -132,6 +136,10 @@ def conditions_of(record: Record) -> MeasurementConditions:
         moving=tuple(_moving(record.case)),
         errors={name: size for name, size in _errors(record.case.tolerance) if size},
         present=_present(record),
+        sizes={
+            one.name: tuple(np.ptp(one.body.shape.bounds, axis=0).tolist())
+            for one in record.case.obstacles
+        },
     )
 
 

@@ -72,8 +72,7 @@ def doubt_lines(comparison: Comparison) -> list[str]:
     run as before.
     """
     lines = [f"less is known: {text}" for text in comparison.less]
-    lines += [f"shorter: {text}" for text in comparison.shorter]
-    lines += [*_newly_waived(comparison)]
+    lines += [*comparison.shorter, *_newly_waived(comparison)]
     rows = [row for row in comparison.doubts if row.doubt.fails or row.change != "as before"]
     notes = Counter(row.change for row in rows if row.doubt.kind == NOTE)
     only_counted = notes["new"] + notes["gone"] > MOST_NOTES

@@ -182,6 +182,24 @@ def test_a_shorter_run_and_fewer_moves_are_told_and_fail_nothing(tmp_path):
     assert listed(tmp_path).duration == 2.0 and len(listed(tmp_path).measured.moving) == 1
 
 
+def test_an_obstacle_that_is_smaller_is_named_and_one_that_is_larger_is_not(tmp_path):
+    case = load_gates(tmp_path, CLEAR)
+    gate = case.obstacles[0]
+    narrow = dataclasses.replace(gate.body, shape=cl.box((0.06, 0.1, 0.1)))
+    wide = dataclasses.replace(gate.body, shape=cl.box((0.1, 0.1, 0.1)))
+    before, now = (
+        cl.check(
+            dataclasses.replace(
+                case, obstacles=(dataclasses.replace(gate, body=body), *case.obstacles[1:])
+            )
+        ).finding_list
+        for body in (wide, narrow)
+    )
+    told = "smaller: gate_a 60 x 100 x 100 mm, was 100 x 100 x 100 mm"
+    assert doubt_lines(compared(before, now)) == [told]
+    assert doubt_lines(compared(now, before)) == []
+
+
 def test_smaller_tolerances_are_less_known_and_greater_ones_are_not(tmp_path):
     case = load_gates(tmp_path, CLEAR)
     bases = ({"xyz": 0.002, "angle": 0.001}, {"xyz": 1e-4, "angle": 0.001})
