@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
-from clearance.sketch.graph.graph import DIRECTION
+from clearance.sketch.graph.graph import DIRECTION, RADIUS
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.solve.columns import Columns
 
@@ -79,6 +79,7 @@ class _Work:
         """(n,) how much the square of every column counts."""
         s, tables, columns, out = self.system, self.problem.tables, self.columns, np.zeros(self.n)
         share = np.where(tables.role == DIRECTION, self.problem.size**2, 1.0)
+        share[tables.role == RADIUS] = self.problem.weight_of_radii
         theta = tables.line_ends[tables.line_ends[:, 1] >= 0, 0]
         share[theta] *= WEAK
         share[theta + 1] *= WEAK

@@ -120,7 +120,7 @@ class Problem:
 
     `alias` (n,) is the variable that stands for each; `weight` (n,) how many variables it stands
     for (0 for those stood for). `free` (parts,) are the remaining freedoms, `fixing` how each part hangs
-    on the ground. `limit` is when searches stop.
+    on the ground. `limit` is when searches stop. Changes of radii count `weight_of_radii` as movement.
     """
 
     tables: Tables
@@ -140,6 +140,7 @@ class Problem:
     size: float
     contacts: Contacts | None = None
     limit: TimeLimit = UNLIMITED
+    weight_of_radii: float = 1.0
 
     @property
     def regular(self) -> System:

@@ -23,6 +23,9 @@ SMALL_TURN = 1.0
 DRAGGED = 1e6
 """[-] Weight of a dragged point against 1 for all others."""
 
+KEPT = 1e4
+"""[-] The same of radii, where the least movement would take a circle to a point."""
+
 
 class Solver:
     """A sketch's current problem; it lives as long as the sketch's structure."""
@@ -56,7 +59,10 @@ class Solver:
         problem = self.current()
         problem.limit = limit
         before = np.array(self._lists.numbers)
-        return self._finish(problem, before, self._run(problem, before))
+        outcome = self._run(problem, before)
+        if outcome.broken == -1 and _vanished(problem, outcome.x).size:
+            outcome = self._run(replace(problem, weight_of_radii=KEPT), before)
+        return self._finish(problem, before, outcome)
 
     def _run(self, problem: Problem, before: np.ndarray) -> ExecutionResult:
         """The outcome from the numbers before; these again where the time was not enough."""
@@ -113,7 +119,7 @@ class Solver:
         target[i : i + 2] = np.array(position) - self.sketch.origin
         weight[i : i + 2] = DRAGGED
         part = problem.part[problem.system.vertex_of[i]]
-        moved = least_movement(problem, part, outcome.x, target, weight)
+        moved = least_movement(problem, part, outcome.x, target, weight, target)
         if moved is not None and sides_hold(moved, self.sides, problem.size):
             outcome.x = moved[problem.alias]
             outcome.residual, _ = problem.residual(moved)
@@ -133,19 +139,23 @@ def _check_degenerate(sketch, problem: Problem, x: np.ndarray) -> None:
     Raises:
         DegenerateSketch: one has none; the message names it.
     """
-    least = RESIDUAL * problem.size
-    tables = problem.tables
-    small = np.flatnonzero((tables.role == RADIUS) & ~(x > least))
+    small = _vanished(problem, x)
     if small.size:
         name = _name_at(sketch, int(small[0]))
         raise DegenerateSketch(f"{name} would have the radius 0", valid="a radius above 0")
-    line, a, b = tables.line_ends.T
+    least = RESIDUAL * problem.size
+    line, a, b = problem.tables.line_ends.T
     short = line[(a >= 0) & (np.hypot(x[a] - x[b], x[a + 1] - x[b + 1]) <= least)]
     if short.size:
         raise DegenerateSketch(
             f"the two points of {_name_at(sketch, int(short[0]))} would coincide",
             valid="a line of some length",
         )
+
+
+def _vanished(problem: Problem, x: np.ndarray) -> np.ndarray:
+    """The variables of radii that are not above 0 at a solution (n,)."""
+    return np.flatnonzero((problem.tables.role == RADIUS) & ~(x > RESIDUAL * problem.size))
 
 
 def _name_at(sketch, variable: int) -> str:

@@ -107,3 +107,27 @@ def test_drag_keeps_the_constraints_and_follows():
     result = s.drag(p[2], (1.6, 0.8))
     assert result.solved and result.residual < 1e-12
     assert p[2].position == pytest.approx([1.6, 0.8], abs=1e-4)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-9, 1e-6, 0.1])
+def test_a_point_on_a_circle_is_dragged_from_its_far_side_to_the_nearest_place(off):
+    """Where it is farthest from the pointer, no small step comes nearer."""
+    s = Sketch()
+    middle, end = s.point(0, 0), s.point(-math.cos(off), math.sin(off))
+    s.fix(middle)
+    s.distance(middle, end, 1.0)
+    s.drag(end, (5.0, 0.0))
+    assert np.allclose(end.position, (1.0, 0.0), atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", [43, 51, 56])
+def test_a_circle_that_the_least_movement_takes_to_a_point_keeps_its_size(seed):
+    """Its edge is to be farther from the point than a third of its radius gives."""
+    places = np.random.default_rng(seed).normal(size=(2, 2))
+    s = Sketch()
+    point, circle = s.point(*places[0]), s.circle(tuple(places[1]), 0.5)
+    value = float(np.hypot(*(places[0] - places[1]))) + 2.0
+    s.distance(point, circle, value)
+    assert s.solve().status == "under" and circle.radius > 0.49
+    gap = np.hypot(*(point.position - circle.center.position)) - circle.radius
+    assert gap == pytest.approx(value, abs=1e-12)
