@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
+from itertools import chain, product
 
 import numpy as np
 
@@ -49,24 +49,21 @@ class JointWay:
         """
         if move.pose is None:
             return cls(start, targets_of(arm, move, start))
-        near, ranges = start.copy(), arm.ranges.copy()
+        near = start.copy()
         for name, value in move.near.items():
             near[arm.column(name, "near")] = value
         stays = ~arm.follows
         stays[len(arm.own) :] = True
-        for name, (low, high) in move.within.items():
-            column = arm.column(name, "within")
-            row, joint = ranges[column], arm.joints[column]
-            if low > row[1] or high < row[0]:
-                outside = (
-                    f"{range_of(joint, low, high)}, beyond its limits: {range_of(joint, *row)}"
-                )
-                raise BadProgram(
-                    f"the configuration of the target asks for {outside}", valid=ANOTHER
-                )
-            row[:] = max(low, row[0]), min(high, row[1])
-        ranges[stays] = np.clip(near, *ranges.T)[stays, None]
-        return cls(start, nearest_joints(arm, move.pose, near, ranges))
+        found, faults = [], []
+        for ranges in _ranges_of(arm, move):
+            ranges[stays] = np.clip(near, *ranges.T)[stays, None]
+            try:
+                found.append(nearest_joints(arm, move.pose, near, ranges))
+            except BadProgram as fault:
+                faults.append(fault)
+        if not found:
+            raise faults[0]
+        return cls(start, min(found, key=lambda one: np.abs(one - near).max()))
 
     @property
     def whole(self) -> np.ndarray:
@@ -106,6 +103,31 @@ class JointWay:
                 break
             low, high = shares[last], shares[last + 1]
         return float(high)
+
+
+def _ranges_of(arm: Arm, move: JointMove) -> Iterator[np.ndarray]:
+    """(k, 2) where joints for the pose of a move may be, for each choice of the ranges that it gives.
+
+    Raises:
+        BadProgram: none of those of a joint reaches into its limits.
+    """
+    choices: dict[int, list[tuple[float, float]]] = {}
+    for name, given in move.within.items():
+        column = arm.column(name, "within")
+        joint, (least, most) = arm.joints[column], arm.ranges[column].tolist()
+        asked = np.reshape(given, (-1, 2)).tolist()
+        inside = [(max(low, least), min(high, most)) for low, high in asked]
+        choices[column] = [(low, high) for low, high in inside if low <= high]
+        if not choices[column]:
+            outside = (
+                f"{range_of(joint, *asked[0])}, beyond its limits: {range_of(joint, least, most)}"
+            )
+            raise BadProgram(f"the configuration of the target asks for {outside}", valid=ANOTHER)
+    for chosen in product(*choices.values()):
+        ranges = arm.ranges.copy()
+        for column, row in zip(choices, chosen, strict=True):
+            ranges[column] = row
+        yield ranges
 
 
 def targets_of(arm: Arm, move: JointMove, start: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ class JointMove:
         seen_from: the link, or the carriage, that the pose is seen from; the root if empty. By a carriage it is
             where that is when the joints arrive.
         near: joints to which those for the pose are nearest; those that are not named are where they are.
-        within: from where to where joints for the pose may be, by name.
+        within: from where to where joints for the pose may be, by name: one range or several.
     """
 
     name: str
@@ -42,7 +42,7 @@ class JointMove:
     leading: Limits | None = None
     zone: float = 0.0
     near: Mapping[str, float] = field(default_factory=dict)
-    within: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    within: Mapping[str, Sequence[float] | Sequence[Sequence[float]]] = field(default_factory=dict)
     seen_from: str = ""
 
 

@@ -165,14 +165,14 @@ class ControlledArm:
             return None
         return wrist_of(self.chain, self.axes, self.root_from_base[:3, 2])
 
-    def ranges_of(self, to: PoseTarget, tool: np.ndarray) -> dict[str, list[float]]:
-        """The ranges of joints in a target's configuration [rad or m].
+    def ranges_of(self, to: PoseTarget, tool: np.ndarray) -> dict[str, list]:
+        """The ranges of joints in a target's configuration [rad or m]: of a joint one, or several by whole turns.
 
         Raises:
             BadProgram: its flags do not agree.
         """
         external = {name: [value, value] for name, value in self.axes.external_values(to).items()}
-        found = self.axes.ranges_of(to) | external
+        found: dict[str, list] = self.axes.ranges_of(to) | external
         if self.wrist is None or to.is_behind is None or to.unit:
             return found
         assert self.root_from_base is not None
@@ -188,9 +188,9 @@ class ControlledArm:
                 raise BadProgram(f"the configuration asks for {ranges}", valid=FLAGS)
             if len(both) > 1:
                 self._several_turns[f"turns of {name}"] = None
+                found[name] = both
             else:
-                found.setdefault(name, ends)
-                found[name] = both[0] if both else found[name]
+                found[name] = both[0] if both else found.get(name, ends)
         return found
 
     def doubts_on_configurations(self, ends: Sequence[PoseTarget]) -> Iterator[str]:

@@ -66,7 +66,8 @@ class JointMove(StrictModel):
     """`ptp`: all joints go straight to their targets, begin together and end together; `speed` is a share of their
     greatest, and `zone` the radius of the corner at its end [m]. In place of `speed`, `time` is what it takes from
     standstill to standstill [s], or `joint_speed` and `joint_acceleration` are of the joint that goes farthest.
-    For the pose `to` the joints are those nearest to `near` (default: to where they are), `within` ranges.
+    For the pose `to` the joints are those nearest to `near` (default: to where they are), `within` ranges,
+    of a joint one or several.
     """
 
     joints: dict[Name, float] | None = None
@@ -77,7 +78,7 @@ class JointMove(StrictModel):
     joint_acceleration: Above0 = 1.4
     zone: Zone = 0.0
     near: dict[Name, float] = {}
-    within: dict[Name, Pair] = {}
+    within: dict[Name, Pair | list[Pair]] = {}
 
     @model_validator(mode="after")
     def _one_target(self) -> JointMove:

@@ -13,6 +13,9 @@ from clearance.formats.program.controlled_arm import ControlledArm
 from clearance.formats.program.controller_program import PoseTarget
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
+from clearance.programs.arm import Arm
+from clearance.programs.joint_way import JointWay
+from clearance.programs.moves import JointMove
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Robot
 from tests.formats.program.reading import read
@@ -53,12 +56,34 @@ def test_ranges_hold_the_joints_of_the_flags_and_none_of_others(maker, third):
             asked = PoseTarget(flange, is_behind=flags[0], is_back=flags[1])
             found = made.ranges_of(asked, np.eye(4))
             for name, flag, true in zip(("joint_1", "joint_3"), flags, own, strict=True):
-                if name in found:  # else joint_1 has several turns
-                    low, high = found[name]
-                    assert (low <= named[name] <= high) == (flag == true)
+                if name in found:  # else the wrist is on axis 1
+                    ends = np.reshape(
+                        found[name], (-1, 2)
+                    )  # of joint_1 there may be several, by turns
+                    is_in = (ends[:, 0] <= named[name]) & (named[name] <= ends[:, 1])
+                    assert is_in.any() == (flag == true)
                     seen.add((name, flag, true))
             assert "joint_3" in found
     assert len(seen) == 8
+
+
+@pytest.mark.parametrize("is_back", [False, True])
+def test_a_flag_holds_also_where_joint_3_turns_more_than_once(is_back):
+    """The joints nearest to the start are those of one of the two elbows only."""
+    axes, places = ARMS["fanuc"]
+    robot = arm(axes, (places[0], (0.1, 0.03, 0), *places[2:]), (0.3, -0.2, 0.1), (-6.1, 6.1))
+    made, joints = controlled(robot, "fanuc"), np.array([0.2, 0.5, -0.3, 0.4, 0.8, -0.5])
+    named = {f"joint_{i}": value for i, value in enumerate(joints, 1)}
+    pose = made.tool_at(named, np.eye(4))
+    within = made.ranges_of(PoseTarget(pose, is_behind=False, is_back=is_back), np.eye(4))
+    assert len(within["joint_3"]) > 1
+    assert any("turns of joint_3" in one for one in made.doubts_on_configurations([]))
+    move = JointMove("a", "b", pose=pose, within=within)
+    found = JointWay.of(Arm(robot, "tool0", np.eye(4)), move, joints + 0.1).target
+    reached = made.tool_at(dict(zip(named, found, strict=True)), np.eye(4))
+    assert np.abs(reached - pose).max() < 1e-9
+    shoulder, elbow, wrist = places_of(robot, found)
+    assert (np.cross(elbow - shoulder, wrist - elbow)[1] < 0.0) == is_back
 
 
 def test_a_published_point_is_in_the_configuration_that_it_names():
