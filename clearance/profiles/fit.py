@@ -147,7 +147,8 @@ def _no_fit(search: NearestFit | BoundedFit, mode: str, margin: float, tried: in
     return NoFit(
         f"no sketch was found that {what} by {margin:g} m ({tried} starts)",
         where="fit",
-        valid="a sketch drawn nearer to the answer, more free dimensions, or a smaller margin",
+        valid="a sketch drawn nearer to the answer, or more free dimensions"
+        + (", or a smaller margin" if margin else ""),
     )
 
 

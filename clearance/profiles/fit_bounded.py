@@ -111,9 +111,8 @@ class BoundedFit(FitSearch):
         outline = self.target.pieces
         piece, share = outline.spread(2)
         points = outline.point(piece, share)
-        _, _, foot = here.pieces.feet(points)
-        off = np.hypot(*(points - foot).T)
-        near = piece[np.argsort(off, kind="stable")[:MOST_NEAR]]
-        near = np.unique(near[np.sort(off)[:MOST_NEAR] <= wanted + 2e-3 * self.shape.size])
-        dense = np.tile((np.arange(24) + 0.5) / 24.0, len(near))
+        gaps = self.target.gaps(here.pieces, self.samples, points).distance[-len(points) :]
+        least = np.argsort(gaps, kind="stable")[:MOST_NEAR]
+        near = np.unique(piece[least[gaps[least] <= wanted + 2e-3 * self.shape.size]])
+        dense = np.tile(np.linspace(0.0, 1.0, 24), len(near))
         return outline.point(np.repeat(near, 24), dense)

@@ -85,6 +85,19 @@ def test_the_least_rectangle_about_a_turned_ellipse_like_outline_touches_four_si
     )  # smaller: it touches at once
 
 
+def test_an_outline_of_many_corners_is_contained_by_its_farthest_ones():
+    """Of 5000 noisy corners a part is looked at first; those that stuck out were never seen."""
+    turn = np.linspace(0.0, 2.0 * math.pi, 5001)[:-1]
+    noise = np.random.default_rng(0).normal(size=(5000, 2)) * 5e-5
+    outline = np.column_stack([0.3 * np.cos(turn), 0.2 * np.sin(turn)]) + noise
+    curve = cl.Curve.polyline(outline, closed=True)
+    found = cl.fit(rectangle(1.0, 1.0), curve, "outside", starts=1)
+    wide, deep = np.ptp(outline, axis=0)
+    assert found.dimensions["width"] == pytest.approx(wide, abs=1e-7)
+    assert found.dimensions["depth"] == pytest.approx(deep, abs=1e-7)
+    assert found.clearance > 0.0
+
+
 @pytest.mark.slow
 def test_the_largest_bar_in_a_round_port_has_its_corners_on_the_rim():
     radius, height, margin = 0.17, 0.10, 0.004
