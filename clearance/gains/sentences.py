@@ -18,7 +18,7 @@ from clearance.gains.change_parts import (
     sliding,
     turning,
 )
-from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
+from clearance.gains.delay import MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
 from clearance.gains.moved_windows import windows_that_stay
 from clearance.gains.obstruction import HOPELESS
@@ -274,18 +274,10 @@ def _not_kept_text(gain: Gain) -> str:
 
 def _not_in_time(gain: Gain) -> str:
     """Up to what was looked."""
-    searched = max(gain.size, gain.lower_bound)
-    slow = gain.request.slow_down
-    finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.request.most_delay)
-    more = f"; the search ended after {gain.n_measured} tries, and longer ones were not tried"
-    if searched + finest >= most:
-        searched, more = most, ""
-    how = (
-        f"slow-down to {_down(1.0 + searched)} times its duration"
-        if slow
-        else f"delay up to {_down(searched)} s"
-    )
-    return f"no {how} was found with which every rule holds{more}"
+    how = f"delay up to {gain.request.most_delay:g} s"
+    if gain.request.slow_down:
+        how = f"slow-down to {1.0 + MOST_SLOWER:g} times its duration"
+    return f"no {how} was found with which every rule holds"
 
 
 def _by_margin(gain: Gain) -> str:
