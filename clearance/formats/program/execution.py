@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from clearance.errors import BadProgram, ClearanceError, nearest_name
+from clearance.errors import BadProgram, ClearanceError
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait, end_of
 from clearance.formats.program.culprits import undecided_branch, unknown_word
 from clearance.formats.program.effects import (
@@ -36,9 +36,8 @@ from clearance.formats.program.expressions import (
     value_of,
     with_passed,
 )
-from clearance.formats.program.language import Language
 from clearance.formats.program.passes import MOST_PASSES, Jumps, Passes, without_jump
-from clearance.formats.program.remarks import ENDLESS, LEFT_OUT, STILL, UNSAID, WAITS, Remarks
+from clearance.formats.program.remarks import ENDLESS, LEFT_OUT, STILL, UNSAID, WAITS
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -55,7 +54,8 @@ from clearance.formats.program.statements import (
     While,
     assigned,
 )
-from clearance.formats.program.tokens import Line, on
+from clearance.formats.program.tokens import on
+from clearance.formats.program.variables import Variables
 
 MOST_STATEMENTS = 500_000
 """Statements that a program runs; more are a loop that does not end."""
@@ -67,20 +67,16 @@ MOST_CALLS = 40
 
 
 @dataclass(eq=False)
-class Execution(Remarks):
+class Execution(Variables):
     """A program that runs.
 
     Attributes:
         routines: by name. skip: names of instructions, functions and words of loops to leave out.
-        variables: of all; `frames`: of routines in use; `beside`: that threads change. moves: made so far.
+        moves: made so far.
     """
 
-    language: Language
     routines: Mapping[str, Routine]
     skip: frozenset[str]
-    variables: dict[str, Any] = field(default_factory=dict)
-    frames: list[dict[str, Any]] = field(init=False)
-    concurrent: dict[str, Unknown] = field(default_factory=dict)
     moves: list[ControllerMove | ControllerWait] = field(default_factory=list)
     _n_run: int = 0
 
@@ -95,12 +91,18 @@ class Execution(Remarks):
         return PersistentValues(self.effects, self.frames)
 
     def __post_init__(self) -> None:
-        self.frames = [self.variables]
+        super().__post_init__()
         self.effects.require_left_out()
 
     def pass_over(self, call: Call) -> None:
-        """Keeps that an instruction was passed over since it moves nothing; routines within it run."""
+        """Keeps that an instruction was passed over since it moves nothing; routines within it run, and an output
+        that the case gives takes its value.
+        """
         self.note(WAITS if self.language.waits(call) else STILL, f"{call.name} ({call.line})")
+        for target in self.language.writes(call):
+            if isinstance(target, Name) and target.name in self.given:
+                self.variables[target.name] = self.evaluated(call.args[1])
+                return
         for part in (*call.args, *call.named.values()):
             if any(one.name in self.routines for one in calls_in(part)):
                 self.evaluated(part)
@@ -172,28 +174,18 @@ class Execution(Remarks):
                 if not self.effects.leaves_out(one):
                     raise unreadable_word(one, self.effects.moving_in(one.word) is None)
                 self.note(LEFT_OUT, f"{one.word} ({one.line})")
-                self._forget([(one.word, one.line)])
+                self.forget([(one.word, one.line)])
         return None
 
     def evaluated(self, one: Expression) -> Any:
         """The value of an expression, which nothing else changes."""
         return copy.deepcopy(value_of(one, self))
 
-    def value_of(self, name: Name) -> Any:
-        """The value of a variable; `Unknown` where no file that is given has it."""
-        for place in (self.concurrent, self.frames[-1], self.variables):
-            if name.name in place:
-                return place[name.name]
-        if (own := self.language.value_of(name.name, self)) is not None:
-            return own
-        text = f"{name.name!r} is in no file that is given"
-        return Unknown(text, lambda: self._misspelt(name.name))
-
-    def _misspelt(self, name: str) -> str:
-        """The variable that is perhaps meant; empty if none is near."""
-        known = (*self.frames[-1], *self.variables)
-        hint = nearest_name(name, {one for one in known if str(one) != str(name)})
-        return hint if hint.startswith("did") else ""
+    def next_of(self, name: Name, value: Expression) -> Any:
+        """The value that a variable is given; what it reads of itself, as a counter does, decides nothing else."""
+        self._next = "" if any(calls_in(value)) else name.name
+        found, self._next = self.evaluated(value), ""
+        return found
 
     def result_of(self, call: Call) -> Any:
         """The value of a function: one of the program, or of the language.
@@ -229,9 +221,9 @@ class Execution(Remarks):
         name = assigned(one.target)
         if name is None:
             raise BadProgram("no variable is given", valid="a variable")
-        value, origin = self.evaluated(one.value), self.persistent.origin_of([one.value])
+        value, origin = self.next_of(name, one.value), self.persistent.origin_of([one.value])
         is_name = isinstance(one.target, Name)
-        place = self.variables if one.is_of_all else self._place(name.name, one.is_own)
+        place = self.variables if one.is_of_all else self.place(name.name, one.is_own)
         self.persistent.put(name.name, origin, place, not is_name)
         if is_name:
             place[name.name] = value
@@ -242,31 +234,23 @@ class Execution(Remarks):
         if isinstance(whole, Unknown):
             return  # it stays so, and why
         if isinstance(by, Unknown):
-            self._forget([(name.name, one.line)])
+            self.forget([(name.name, one.line)])
             return
         try:
             self.language.with_part(whole, by, value)
         except (LookupError, TypeError, ValueError):
             raise BadProgram(f"there is no part {by!r:.40}") from None
 
-    def _place(self, name: str, is_own: bool = False) -> dict[str, Any]:
-        """Where a variable is, or begins to be."""
-        own, shared = self.frames[-1], self.language.shares_variables or name in self.variables
-        return own if is_own or name in own or not shared else self.variables
-
     def forget_written(self, call: Call) -> None:
         """Makes variables unknown that an instruction or a function of the language gives a value."""
         for one in filter(None, map(assigned, self.language.writes(call))):
-            self._forget([(one.name, call.line)], f" by {call.name}")
+            self.forget([(one.name, call.line)], f" by {call.name}")
 
-    def _forget(self, changed: Iterable[tuple[str, Line]], by: str = "") -> None:
-        """Makes variables unknown that lines may have changed."""
-        for name, line in changed:
-            self._place(name)[name] = Unknown(f"{name!r} is given a value{by} at {line}")
-
-    def _forget_changed(self, bodies: Sequence[tuple[Statement, ...]], by: str = "") -> None:
+    def _forget_changed(
+        self, bodies: Sequence[tuple[Statement, ...]], by: str = "", remedy: str = ""
+    ) -> None:
         """Makes variables unknown that bodies may have changed, or have changed at any time from then on."""
-        self._forget(self.effects.changed_in(bodies), by)
+        self.forget(self.effects.changed_in(bodies), by, remedy)
         for what, name in self.effects.beside_in(bodies):
             self.run_concurrently(what, name)
 
@@ -300,7 +284,7 @@ class Execution(Remarks):
         for name in routine.returned & given.keys():
             if (target := assigned(given[name])) is not None:
                 self._assign(Assign(call.line, given[name], Constant(frame[name])))
-                place = self._place(target.name)
+                place = self.place(target.name)
                 persistent.put(target.name, origins.get(name, ""), place, True)
         return value, left if left is not None and left.what == STOP else None
 
@@ -338,7 +322,7 @@ class Execution(Remarks):
         self.note("conditions that only the controller knows, without moves", f"{one.line}")
         for remark in self.effects.timing(bodies):
             self.note(*remark)
-        self._forget_changed(bodies)
+        self._forget_changed(bodies, remedy=why.remedy)
 
     def _while(self, one: While) -> Leave | None:
         n_passes, passes = 0, Passes("an endless loop", MOST_PASSES)
@@ -361,21 +345,36 @@ class Execution(Remarks):
             BadInput: only the controller knows, and it moves the robot or is not to be left out.
         """
         value = value_of(one.condition, self)
+        origin = self.persistent.origin_of([one.condition])
+        others_end = value is False and one.at_end and not one.body and origin
+        if others_end:
+            value = Unknown("it does not come true before others change it")
         if not isinstance(value, Unknown):
-            self._doubt(one, self.persistent.origin_of([one.condition]))
+            self._doubt(one, origin)
             return bool(value) != one.at_end
         culprit = next(self.effects.deciding(one.body), None)
         if culprit is not None or one.word not in self.skip:
             raise undecided(one, culprit, value)
         self.note(LEFT_OUT, f"{one.word} ({one.line})")
         self._forget_changed([one.body])
+        if others_end:
+            self._come_true(one)
         return False
+
+    def _come_true(self, one: While) -> None:
+        """Gives what a wait waits for its other value, if it is one that is on or off; else it is not known."""
+        names = [*dict.fromkeys(self.effects.read_by([one.condition]))]
+        for value in (True, False) if len(names) == 1 and names[0] in self.given else ():
+            self.variables[names[0]] = value
+            if value_of(one.condition, self) is True:
+                return
+        self.forget(((name, one.line) for name in names), f" by what {one.word} waits for")
 
     def _for(self, one: For) -> Leave | None:
         name = one.name.name
         at, last, step = range_of(one, self.evaluated)
         origin = self.persistent.origin_of(filter(None, (one.first, one.last, one.step)))
-        place = self.frames[-1] if one.is_own else self._place(name)
+        place = self.frames[-1] if one.is_own else self.place(name)
         before = {key: place[key] for key in (name,) if key in place}
         left, place[name] = None, at
         while left is None and (at <= last if step > 0.0 else at >= last):
@@ -395,6 +394,7 @@ class Execution(Remarks):
         return None if left is not None and left.what == BREAK else left
 
     def state(self) -> tuple[Any, ...]:
-        """What decides how the program goes on: variables, settings, and where the robot is."""
-        own = self.variables, self.concurrent, self.frames[1:], self.language.state
-        return (*copy.deepcopy(own), end_of(self.moves))
+        """What decides how the program goes on: variables that lines read for more than their own next value,
+        settings, and where the robot is.
+        """
+        return (*self.read_ones(), copy.deepcopy(self.language.state), end_of(self.moves))

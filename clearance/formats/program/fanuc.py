@@ -38,6 +38,7 @@ from clearance.formats.program.fanuc_words import (
     DECIDING,
     LARGEST_SPEEDS,
     MOVES,
+    OUTPUTS,
     OVERRIDE,
     QUIET,
     WAIT,
@@ -105,7 +106,7 @@ class _Fanuc(Language):
     keeps_counter = shares_variables = True
     moving = (*MOVES, *DECIDING)
     still = (*QUIET, WAIT)
-    timed = (WAIT, *WAITING)
+    timed, signals = (WAIT, *WAITING), OUTPUTS
     retiming = (OVERRIDE, *LARGEST_SPEEDS)
 
     @property
@@ -175,15 +176,15 @@ class _Fanuc(Language):
         """
         motion: Motion = call.args[0].value  # type: ignore[union-attr]
         for one in motion.beside:
-            if isinstance(one, Assign):
+            if not isinstance(one, Assign | Do):
+                raise BadProgram("what it does on its way is not read", valid="CALL, or an output")
+            if isinstance(one, Assign) or self.moves(one.call.name) is False:
                 text = "is given a value on the way of a motion"
                 for name, line in run.effects.changed_in([(one,)]):
                     run.concurrent[name] = Unknown(f"{name!r} {text} at {line}")
-            elif not isinstance(one, Do):
-                raise BadProgram("what it does on its way is not read", valid="CALL, or an output")
-            elif self.moves(one.call.name) is False:
+            if isinstance(one, Do) and self.moves(one.call.name) is False:
                 run.pass_over(one.call)
-            else:
+            elif isinstance(one, Do):
                 name, what = one.call.name, "programs that motions call on their way (TB, TA, DB)"
                 run.run_concurrently("program", name)
                 for remark, where in run.effects.timing([(one,)]):

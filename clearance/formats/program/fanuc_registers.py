@@ -12,17 +12,15 @@ from clearance.errors import BadProgram
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Name, Unknown
 from clearance.formats.program.fanuc_positions import Position, position_of
-from clearance.formats.program.fanuc_words import ANY_REGISTER, QUIET, WAIT, named
+from clearance.formats.program.fanuc_words import ANY_REGISTER, OUTPUTS, QUIET, WAIT, named
+from clearance.formats.program.given import ALWAYS, AT_START, UNTIL_SET, give, remedy
 from clearance.formats.program.remarks import LEFT_OUT
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.world.notice import listed
 
-_GIVEN = re.compile(r"(R\[\d+\]|U(?:FRAME|TOOL)_NUM)|([DRGAUS]I)\[\d+\]")
-"""Registers, and inputs: a case may give what they hold."""
-
-_SIGNALS = ("DI", "RI", "UI", "SI")
-"""Inputs that are on or off."""
+_GIVEN = re.compile(r"(R\[\d+\]|U(?:FRAME|TOOL)_NUM)|(?:([DRUS]I|[DR]O|F)|[GA][IO])\[\d+\]")
+"""Registers, and inputs and outputs, among them those that are on or off: a case may give what they hold."""
 
 
 def give_registers(asked: ProgramFile, run: Execution) -> None:
@@ -33,15 +31,20 @@ def give_registers(asked: ProgramFile, run: Execution) -> None:
     """
     for given, value in asked.variables.items():
         name, found = named(given), _GIVEN.fullmatch(named(given))
-        if found is None or isinstance(value, bool) != (found[2] in _SIGNALS):
-            valid = "a number for R[1], UFRAME_NUM or GI[1], true or false for inputs as DI[1]"
+        if found is None or isinstance(value, bool) != bool(found[2]):
+            valid = "a number for R[1], UFRAME_NUM or GI[1], true or false for DI[1], DO[1] or F[1]"
             raise BadProgram(f"{value} is given", where=f"variables: {given}", valid=valid)
-        run.variables[name] = value
-        holds = "" if found[1] else ", which is taken to hold that all the time"
-        run.persistent.put(name, f"{name} of the case decides{holds}", run.variables)
+        give(run, name, value, _lasting(name))
     for given, frame in asked.frames.items():
         if re.fullmatch(r"PR\[\d+\]", named(given)):
             run.variables[named(given)] = position_of(frame.matrix())
+
+
+def _lasting(name: str) -> str:
+    """How long the value that a case gives holds."""
+    if name.partition("[")[0] in OUTPUTS:
+        return UNTIL_SET
+    return ALWAYS if "I[" in name else AT_START
 
 
 def value_of_register(name: str, run: Execution) -> Any:
@@ -53,9 +56,7 @@ def value_of_register(name: str, run: Execution) -> Any:
         key = f'program: {{frames: {{"{name}": {{xyz: […], rpy: […]}}}}}} in m and rad'
         return Unknown(f"{name} is in no listing", remedy=key)
     if found := _GIVEN.fullmatch(name):
-        value = "true" if found[2] in _SIGNALS else "0"
-        holds = "at the start" if found[1] else "all the time"
-        key = f'program: {{variables: {{"{name}": {value}}}}}, if it holds that {holds}'
+        key = remedy(name, "true" if found[2] else "0", _lasting(name))
         text = f"{name!r} is in no file that is given"
         return Unknown(text if found[1] else f"only the controller knows {name}", remedy=key)
     is_own = name.startswith(("R[", "U", "AR["))

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import operator
 import re
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 
@@ -23,8 +22,17 @@ from clearance.formats.program.expressions import (
     Unknown,
 )
 from clearance.formats.program.fanuc_positions import Position, positions_of
-from clearance.formats.program.fanuc_words import ANY_REGISTER, MOVES, QUIET, WAIT, Motion, named
+from clearance.formats.program.fanuc_words import (
+    ANY_REGISTER,
+    MOVES,
+    OUTPUTS,
+    QUIET,
+    WAIT,
+    Motion,
+    named,
+)
 from clearance.formats.program.grammar import Grammar, ranked
+from clearance.formats.program.passes import require_one_each
 from clearance.formats.program.statements import (
     JUMP,
     RETURN,
@@ -74,6 +82,7 @@ _SPEED = re.compile(
 )
 _END = re.compile(r"(FINE|(?:CNT|CR|CD)\s*(?:R\s*\[[^\]]*\]|[\w.]+))\s*", re.IGNORECASE)
 _ASSIGNED = re.compile(r"(?is)((?:R|P|UFRAME|UTOOL)\s*\[[^\[\]]*\]|U(?:FRAME|TOOL)_NUM)\s*=(.*)")
+_SIGNAL = re.compile(r"(?is)(\w+\s*\[(?:[^\[\]]|\[[^\]]*\])*\])\s*=(.*)")
 _POINT_CHANGED = re.compile(r"(?i)(?<![A-Z])P\s*\[(?:[^\[\]]|\[[^\]]*\])*\]\s*=(?!=)")
 _REGISTER = re.compile(r"(?is)PR\s*\[\s*(\d+)\s*(?:,\s*([1-6])\s*)?(?::[^\]]*)?\]\s*=(.*)")
 _OFFSET = re.compile(rf"(?i)\b((?:TOOL_)?OFFSET)\s*,\s*PR\s*{_NUMBER}")
@@ -166,12 +175,7 @@ class _Reader(BlockReader):
         if last.kind != END:
             fault = f"{last.text!r:.60} ends nothing"
             raise BadSyntax(fault, where=str(last.line), valid="a whole file")
-        labels = [one for one in within(found) if isinstance(one, Label)]
-        numbers = Counter(one.name for one in labels)
-        for one in labels:
-            if numbers[one.name] > 1:
-                fault = f"LBL[{one.name}] stands in several lines"
-                raise BadSyntax(fault, where=str(one.line), valid="one line for each label")
+        require_one_each(found)
         return found
 
     def statement(self) -> list[Statement]:
@@ -250,6 +254,9 @@ class _Reader(BlockReader):
         if assigned is not None and not re.search(r"\[GP|,", named(assigned[1])):
             name = Name(named(assigned[1]), line)
             return [Assign(line, name, _condition(assigned[2], line), is_of_all=True)]
+        if word in OUTPUTS and (signal := _SIGNAL.fullmatch(text)):
+            target = Name(named(signal[1]), line)
+            return [Do(line, Call(word, (target, _condition(signal[2], line)), {}, line))]
         if word in QUIET:
             share = re.fullmatch(r"(?is)OVERRIDE\s*=\s*(.*?)\s*%?", text)
             args = () if share is None else (_condition(share[1], line),)
@@ -300,15 +307,8 @@ class _Reader(BlockReader):
         options = tuple(_TIMED.sub("", further).upper().replace(",", " ").split())
         timed = (self._on_the_way(line, one[3]) for one in _TIMED.finditer(further))
         unit = (speed[2] or "").lower()
-        motion = Motion(
-            tuple(points),
-            self.positions,
-            unit,
-            named(end[1]),
-            options,
-            tuple(chain(*timed)),
-            offsets,
-        )
+        ends = (tuple(points), self.positions, unit, named(end[1]))
+        motion = Motion(*ends, options, tuple(chain(*timed)), offsets)
         args = (Constant(motion), _condition(speed[1], line))
         return Do(line, Call(found[1].upper(), args, {}, line))
 

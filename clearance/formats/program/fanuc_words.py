@@ -18,6 +18,9 @@ WAIT = "WAIT sec"
 OVERRIDE, LARGEST_SPEEDS = "OVERRIDE", ("JOINT_MAX_SPEED", "LINEAR_MAX_SPEED")
 """Instructions that change speeds: all of them by a share [%], and those that are greater than a value."""
 
+OUTPUTS = ("DO", "RO", "GO", "AO", "F")
+"""Instructions that set an output or a flag."""
+
 WAITING = ("UALM", "ARC")
 """Instructions that take time: until a person has reset an alarm, and until an arc burns."""
 
@@ -26,7 +29,7 @@ ANY_REGISTER = "PR[…]"
 
 QUIET = frozenset(
     (
-        *("DO", "RO", "GO", "AO", "SO", "UO", "F", "M", "TIMER", "SR", "PR", "PAYLOAD", "MESSAGE"),
+        *(*OUTPUTS, "SO", "UO", "M", "TIMER", "SR", "PR", "PAYLOAD", "MESSAGE"),
         *("UALM", "SKIP", "OFFSET", "TOOL_OFFSET", "ARC", "COL", "LOCK", "UNLOCK", "TC_ONLINE"),
         *(OVERRIDE, *LARGEST_SPEEDS),
     )

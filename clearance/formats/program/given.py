@@ -9,6 +9,8 @@ import difflib
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -19,11 +21,43 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
     digits_of,
 )
+from clearance.formats.program.statements import Do, assigned, within
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
+AT_START, ALWAYS, UNTIL_SET = (
+    "at the start",
+    "all the time, unless a wait needs another",
+    "until these files change it",
+)
+"""How long a value of the case holds: of a register, an input, and an output."""
+
 NAMED = ("tools", "frames", "units", "zones", "variables")
 """Keys of a case that give values by name."""
+
+
+def remedy(name: str, value: str, holds: str) -> str:
+    """The key of a case that gives a value which holds for some time, and what it means."""
+    return f'program: {{variables: {{"{name}": {value}}}}}, if it holds that {holds}'
+
+
+def give(run: Any, name: str, value: Any, holds: str) -> None:
+    """Gives a variable of a run the value that the case says, which holds for some time.
+
+    Raises:
+        BadProgram: a line may set it by a number that is not read.
+    """
+    root, every = name.partition("[")[0], (within(one.body) for one in run.routines.values())
+    for call in (one.call for one in chain(*every) if isinstance(one, Do)):
+        target = assigned(call.args[0]) if call.name in run.language.signals and call.args else None
+        if target is not None and target.name.partition("[")[0] == root:
+            if target is not call.args[0] or not re.fullmatch(r"[^[]*\[\d+\]", target.name):
+                fault = f"{call.name} at {call.line} may set it by a number that is not read"
+                raise BadProgram(fault, where=f"variables: {name}", valid="a number in that line")
+    run.variables[name] = value
+    run.given.add(name)
+    lasts = "" if holds == AT_START else f", which is taken to hold that {holds}"
+    run.persistent.put(name, f"{name} of the case decides{lasts}", run.variables)
 
 
 def require_used(

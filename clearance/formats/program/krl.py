@@ -27,7 +27,14 @@ from clearance.formats.program.controller_program import (
 )
 from clearance.formats.program.effects import KEPT
 from clearance.formats.program.execution import Execution
-from clearance.formats.program.expressions import Call, Constant, Expression, Name, Unknown
+from clearance.formats.program.expressions import (
+    Call,
+    Constant,
+    Expression,
+    Name,
+    Unknown,
+    number,
+)
 from clearance.formats.program.krl_expressions import (
     AGGREGATE,
     FRAME,
@@ -39,12 +46,12 @@ from clearance.formats.program.krl_expressions import (
     PAUSES,
     QUIET,
     REFUSED,
+    SIGNALS,
     SYSTEM,
     WAIT,
     Aggregate,
     as_real,
     frame_of,
-    is_number,
     is_real,
     matrix_of,
     why,
@@ -53,10 +60,18 @@ from clearance.formats.program.krl_settings import (
     FUNCTIONS,
     SAVED,
     Settings,
+    configuration_of,
     first_variables,
     key_of,
 )
-from clearance.formats.program.krl_system import STATES, RobotRoot, not_followed, require_followed
+from clearance.formats.program.krl_system import (
+    RobotRoot,
+    give_variables,
+    not_followed,
+    remedy_of,
+    require_followed,
+    state_of,
+)
 from clearance.formats.program.krl_text import files_of
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import UNSAID
@@ -69,9 +84,6 @@ AXES = ("A1", "A2", "A3", "A4", "A5", "A6")
 
 STANDS = ("$POS_ACT", "$AXIS_ACT", "$AXIS_ACT_MEAS")
 """Targets at which the robot is already."""
-
-NEAR_ZERO, FARTHEST = math.radians(2.0), 4.0 * math.pi
-"""An axis that is nearer to 0 may have either sign in a turn bit: so controllers take it."""
 
 GIMBAL = 1.0 - 1e-9
 """The sine of B from which A and C turn about one axis."""
@@ -100,6 +112,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                 if line.file != one.line.file and not name.startswith("$"):
                     both = f"{name} is declared at {line} and at {one.line}"
                     run.variables[name] = Unknown(both)
+        give_variables(asked.asked, run, of_module)
         entry, own = asked.asked.entry, {str(name): name for name in files.public}
         entry = entry_of("procedure", [*own], entry, (entry or "").upper(), files.public[0])
         run.enter(files.routines[own[entry]])
@@ -107,7 +120,7 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
         bodies = [routine.body for routine in files.routines.values()]
         unread = [*not_followed(bodies, run), *run.effects.doubts_on_packages(bodies)]
         doubts = (*language.root.doubts(asked.asked), *unread)
-        return language.program_of(run, language.notes(), doubts)
+        return language.program_of(run, doubts=doubts)
 
 
 @dataclass(eq=False)
@@ -118,7 +131,6 @@ class _Krl(Language):
         asked: what the case says. pose: (4, 4) `base_from_flange` [m] where the robot is; None where its axes say
             it. unit: the machine that its pose is seen from; the robot's base if empty. axes: [degrees] by name;
             None where its pose says it. root: where its foot is.
-            is_automatic: the program asks whether the controller runs by itself.
     """
 
     asked: ProgramFile
@@ -126,18 +138,13 @@ class _Krl(Language):
     unit: str = ""
     axes: Mapping[str, float] | None = None
     root: RobotRoot = field(default_factory=RobotRoot)
-    is_automatic: bool = False
     maker, suffix = "kuka", ".src"
     moving = frozenset((*MOVES, *REFUSED, "BAS"))
     still = frozenset((*QUIET, *FUNCTIONS, AGGREGATE, WAIT))
     timed = retiming = (WAIT, *PAUSES)
     stopping = ("BRAKE",)
-    packages = PACKAGES
-
-    def notes(self) -> list[str]:
-        """A line each on an assumption."""
-        note = "automatic operation is assumed: $T1 and $T2 are FALSE"
-        return [note] if self.is_automatic else []
+    packages, signals = PACKAGES, SIGNALS
+    remedy = staticmethod(remedy_of)
 
     @property
     def state(self) -> Any:
@@ -146,7 +153,8 @@ class _Krl(Language):
 
     def beside(self, call: Call) -> str:
         """What an interrupt or a trigger calls; nothing where that is known to move nothing."""
-        (one,) = call.args if call.name in QUIET and call.args else (Constant(""),)
+        is_one = call.name in QUIET and call.name not in SIGNALS and call.args
+        (one,) = call.args if is_one else (Constant(""),)
         assert isinstance(one, Constant)
         return "" if one.value == SYSTEM else one.value
 
@@ -156,17 +164,17 @@ class _Krl(Language):
         return next(first, "") == PACKAGES.get(call.name)
 
     def writes(self, call: Call) -> tuple[Expression, ...]:
-        """All arguments of a procedure that is in no file; instructions change no variables that are read."""
-        return call.args if self.moves(call.name) is None else ()
+        """All arguments of a procedure that is in no file; instructions change no variables but signals."""
+        return call.args if self.moves(call.name) is None else (*super().writes(call),)
 
     def value_of(self, name: str, run: Execution) -> Any:
         """The controller is assumed to run the program by itself; where the robot is then is not worked out."""
         if name in ("$T1", "$T2"):
-            self.is_automatic = True
+            run.note("automatic operation is assumed", "$T1 and $T2 are FALSE")
             return False
         if name in STANDS:
             return Unknown(f"{name}, where the robot is, is not read")
-        return Unknown(f"only the controller knows {name}") if name in STATES else None
+        return state_of(name)
 
     def part_of(self, value: Any, by: Any) -> Any:
         """A part of an aggregate, or an element of an array; texts of pendants have none."""
@@ -208,7 +216,7 @@ class _Krl(Language):
         elif call.name == "BRAKE":
             fault = "BRAKE stands outside of what an interrupt calls"
             raise BadProgram(fault, valid="BRAKE in a procedure that an interrupt calls")
-        elif call.args:  # an interrupt or a trigger, and what it calls
+        elif call.args and call.name not in SIGNALS:  # an interrupt or a trigger, and what it calls
             if called := self.beside(call):
                 run.run_concurrently(call.name, called)
             what = "interrupts and triggers that move nothing"
@@ -280,11 +288,11 @@ class _Krl(Language):
             if self.axes is None:
                 fault = f"the axes before this move are not known{_ended('a pose', self.pose)}"
                 raise BadProgram(fault, valid="write PTP to axes before it")
-            return {key: self.axes[key] + _numeric(way.get(key, 0.0)) for key in AXES}
+            return {key: self.axes[key] + number(way.get(key, 0.0), "a position") for key in AXES}
         if any(way.get(key, 0.0) != 0.0 for key in "ABC"):
             fault = "a relative move that turns the tool is not read"
             raise BadProgram(fault, valid="write a move to a pose")
-        step = np.array([_numeric(way.get(key, 0.0)) * MM for key in "XYZ"])
+        step = np.array([number(way.get(key, 0.0), "a position") * MM for key in "XYZ"])
         pose = self._now(settings)
         pose[:3, 3] += pose[:3, :3] @ step if in_tool else step
         return frame_of(pose)
@@ -300,17 +308,22 @@ class _Krl(Language):
     def _target(self, kind: str, given: Aggregate, name: str, settings: Settings) -> Target:
         """The axes or the pose that an aggregate says."""
         external = {
-            key: _numeric(value) for key, value in given.items() if re.fullmatch("E[1-6]", key)
+            key: number(value, "a position")
+            for key, value in given.items()
+            if re.fullmatch("E[1-6]", key)
         }
         if not any(key in AXES for key in given):
-            asked = _configuration(given, settings) if kind == "ptp" else {}
+            asked = configuration_of(given, settings) if kind == "ptp" else {}
             pose = settings.frame("$BASE", "frames") @ self._pose(given, settings)
             if not settings.unit:
                 self.root.use(settings)
             return PoseTarget(pose, external, name=name, unit=settings.unit, **asked)
         if kind != "ptp":
             raise BadProgram("axes are given", valid="X, Y, Z, A, B and C")
-        full = {**(self.axes or {}), **{key: _numeric(given[key]) for key in AXES if key in given}}
+        full = {
+            **(self.axes or {}),
+            **{key: number(given[key], "a position") for key in AXES if key in given},
+        }
         missing = [key for key in AXES if key not in full]
         if missing:
             fault = f"no {', '.join(missing)}, and where it is before is not known{_ended('a pose', self.pose)}"
@@ -345,27 +358,6 @@ class _Krl(Language):
             self.pose = pose @ inverse(move.tool)
 
 
-def _configuration(given: Aggregate, settings: Settings) -> dict[str, Any]:
-    """The configuration of a target, by the field of a `PoseTarget`.
-
-    Bit n of T is 1 where axis n + 1 is below 0. Bits of S are 1 where the wrist is behind axis 1, where it is
-    before the line from axis 2 to 3, and where axis 5 is below 0; robots of five axes have another third bit.
-    """
-    status, turn = (int(given[key]) if is_number(given.get(key)) else None for key in "ST")
-    signs = {} if turn is None else {axis: bool(turn >> (axis - 1) & 1) for axis in range(1, 7)}
-    found: dict[str, Any] = {}
-    if status is not None:
-        is_below, is_behind = bool(status & 4), bool(status & 1)
-        if signs.setdefault(5, is_below) != is_below:
-            text = f"S {status} and T {turn} do not agree on the sign of A5: that of T is taken"
-            settings.run.doubts[f"{settings.line}: {text}"] = None
-        found = {"is_behind": is_behind, "is_back": None if is_behind else not status & 2}
-        if is_behind:
-            found["unchecked"] = f"bit 1 of S {status}"
-    ends = {True: (-FARTHEST, NEAR_ZERO), False: (-NEAR_ZERO, FARTHEST)}
-    return {**found, "ranges": {axis: ends[below] for axis, below in signs.items()}}
-
-
 def _doubt_the_way_round(via: Aggregate, end: Aggregate, settings: Settings) -> None:
     """Names for the headline a spline circle whose auxiliary point is turned otherwise than its end."""
     if any(key in via and via[key] != end.get(key) for key in "ABC"):
@@ -392,9 +384,3 @@ def _ended(form: str, known: object) -> str:
 
 def _name_of(one: Expression) -> str:
     return str(one.name) if isinstance(one, Name) else ""
-
-
-def _numeric(value: Any) -> float:
-    if not is_number(value):
-        raise BadProgram(f"a position is not known: {why(value)}", valid="a number")
-    return float(value)

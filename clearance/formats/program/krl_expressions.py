@@ -132,9 +132,15 @@ argument of that call; None where interrupts alone call one."""
 
 QUIET = frozenset(
     "HALT BRAKE INTERRUPT TRIGGER PULSE ANOUT ANIN DIGIN SIGNAL EXT EXTFCT EXTP EXTFCTP STRUC ENUM IMPORT $OUT "
-    "SET_CD_PARAMS MSGNOTIFY MSGQUIT ERR_CLEAR ON_ERROR_PROCEED".split()
+    "$ANOUT $FLAG $TIMER_FLAG SET_CD_PARAMS MSGNOTIFY MSGQUIT ERR_CLEAR ON_ERROR_PROCEED".split()
 )
 """Instructions that move nothing, whatever stands behind them."""
+
+SIGNALS = ("$OUT", "$ANOUT", "$FLAG", "$TIMER_FLAG", "PULSE")
+"""Instructions that set an output or a flag."""
+
+NUMBERED = ("$IN", "$OUT", "$FLAG", "$TIMER_FLAG", "$ANIN")
+"""Signals: each of a number is a variable of its own."""
 
 NOTHING = ("CONTINUE", "DEFDAT", "ENDDAT")
 
@@ -201,9 +207,28 @@ GRAMMAR = Grammar(
 
 
 class Expressions(ExpressionReader):
-    """Expressions of KRL: aggregates, and members of enumerations."""
+    """Expressions of KRL: aggregates, members of enumerations, and signals.
+
+    Attributes:
+        kinds: the types of variables by name, the nearest first; of a signal `SIGNAL $IN[3]`.
+    """
+
+    kinds: Sequence[Mapping[str, str]] = ()
 
     def _atom(self) -> Expression:
+        found = self._value()
+        if not isinstance(found, Name):
+            return found
+        kind = next((own[found.name] for own in self.kinds if found.name in own), "")
+        if kind.startswith("SIGNAL $"):
+            return Name(kind.removeprefix("SIGNAL "), found.line)
+        index = self.cursor.after(1)
+        if found.name in NUMBERED and self.cursor.after(2).text == "]" and index.text.isdigit():
+            self.cursor.take(), self.cursor.take(), self.cursor.take()
+            return Name(f"{found.name}[{int(index.text)}]", found.line)
+        return found
+
+    def _value(self) -> Expression:
         word = self.cursor.next
         if self.cursor.accept("{"):
             return self._aggregate(word.line)
@@ -280,21 +305,40 @@ def move_of(word: str, line: Line, read: Expressions) -> Call:
     return Call(word, tuple(targets), named, line)
 
 
-def routines_beside(words: Sequence[Token]) -> list[Routine]:
-    """What an interrupt or a trigger may change, as a routine: `DO n = 2`, or `DO sub(n)` of a procedure."""
+def routines_beside(words: Sequence[Token], kinds: Sequence[Mapping[str, str]]) -> list[Routine]:
+    """What an interrupt or a trigger may change, as a routine: `DO n = 2`, or `DO sub(n)` of a procedure.
+
+    Args:
+        kinds: as of `Expressions`.
+    """
     texts = [one.text.upper() for one in words]
     behind = [*words][texts.index("DO") + 1 :] if "DO" in texts else []
     if len(behind) < 2 or behind[0].kind != "name":
         return []
     name, line, body = GRAMMAR.folded(behind[0].text), behind[0].line, list[Statement]()
+    read = Expressions(Cursor(behind, folds=True), GRAMMAR)
+    read.kinds = kinds
     if behind[1].text == "(" and name not in (*PACKAGES, SYSTEM):
-        call = Expressions(Cursor(behind, folds=True), GRAMMAR).expression()
+        call = read.expression()
         if isinstance(call, Call) and any(assigned(one) for one in call.args):
             body.append(Do(line, call))
-    elif (
-        behind[1].text != "("
-        and any(one.text == "=" for one in behind)
-        and name not in ("$OUT", "$ANOUT")
-    ):
-        body += [Assign(line, Name(name, line), Constant(Unknown("it is given beside")))]
+    elif behind[1].text != "(" and any(one.text == "=" for one in behind) and name != "$ANOUT":
+        target = assigned(read.expression()) or Name(name, line)
+        body += [Assign(line, target, Constant(Unknown("it is given beside")))]
     return [Routine(f"{name} at {line}", line, (), tuple(body))] if body else []
+
+
+def named(words: list[Token], own: set[str], module: str) -> list[Token]:
+    """Words, in which a module's own names have its name behind them; parts of aggregates are no such names."""
+    found, opened = list[Token](), list[str]()
+    for i, one in enumerate(words):
+        if one.text in ("{", "[", "("):
+            opened.append(one.text)
+        elif one.text in ("}", "]", ")") and opened:
+            opened.pop()
+        before = [word.text for word in words[max(0, i - 3) : i]]
+        begins = before[-1:] in (["{"], [","]) or (before[:1] == ["{"] and before[2:] == [":"])
+        is_part = before[-1:] == ["."] or (opened[-1:] == ["{"] and begins)
+        is_own = one.kind == "name" and not is_part and one.text.upper() in own
+        found.append(one._replace(text=f"{one.text}{OF}{module}") if is_own else one)
+    return found

@@ -1,4 +1,5 @@
-"""Settings of a program in KRL: tool, base, speeds and corners, and the instructions that change them.
+"""Settings of a program in KRL: tool, base, speeds and corners, and the instructions that change them; what a
+target says of the configuration.
 
 Not for: moves (`krl`).
 """
@@ -54,6 +55,9 @@ FIRST: Mapping[str, Any] = {
 
 SAVED = tuple("$VEL $VEL_AXIS $ACC $TOOL $BASE $IPO_MODE $APO $ORI_TYPE $CIRC_TYPE".split())
 """Variables that `WITH` changes for one move; all others say nothing of its way."""
+
+NEAR_ZERO, FARTHEST = math.radians(2.0), 4.0 * math.pi
+"""An axis that is nearer to 0 may have either sign in a turn bit: so controllers take it."""
 
 _COMMANDS = frozenset(
     "#INITMOV #TOOL #BASE #FRAMES #VEL_PTP #VEL_CP #ACC_PTP #ACC_CP #PTP_PARAMS #CP_PARAMS #PTP_DAT "
@@ -257,6 +261,27 @@ def _corner_of_joints(data: Any) -> Aggregate:
     return {part: _part(data, "APO_DIST")}
 
 
+def configuration_of(given: Aggregate, settings: Settings) -> dict[str, Any]:
+    """The configuration of a target, by the field of a `PoseTarget`.
+
+    Bit n of T is 1 where axis n + 1 is below 0. Bits of S are 1 where the wrist is behind axis 1, where it is
+    before the line from axis 2 to 3, and where axis 5 is below 0; robots of five axes have another third bit.
+    """
+    status, turn = (int(given[key]) if is_number(given.get(key)) else None for key in "ST")
+    signs = {} if turn is None else {axis: bool(turn >> (axis - 1) & 1) for axis in range(1, 7)}
+    found: dict[str, Any] = {}
+    if status is not None:
+        is_below, is_behind = bool(status & 4), bool(status & 1)
+        if signs.setdefault(5, is_below) != is_below:
+            text = f"S {status} and T {turn} do not agree on the sign of A5: that of T is taken"
+            settings.run.doubts[f"{settings.line}: {text}"] = None
+        found = {"is_behind": is_behind, "is_back": None if is_behind else not status & 2}
+        if is_behind:
+            found["unchecked"] = f"bit 1 of S {status}"
+    ends = {True: (-FARTHEST, NEAR_ZERO), False: (-NEAR_ZERO, FARTHEST)}
+    return {**found, "ranges": {axis: ends[below] for axis, below in signs.items()}}
+
+
 def _of_number(
     act: Callable[[float], float], before: Callable[[float], float] = float
 ) -> Callable[..., Any]:
@@ -309,7 +334,8 @@ def first_variables(asked: ProgramFile, run: Execution) -> dict[str, Any]:
     that routines give values to and do not declare, which all have in common."""
     changed = (one for own in run.routines.values() for one in run.effects.changed_by(own))
     found: dict[str, Any] = {
-        name: run.language.value_of(name, run) or Unknown(f"{name} is in no file that is given")
+        name: run.language.value_of(name, run)
+        or Unknown(f"{name} is in no file that is given", remedy=run.language.remedy(name))
         for name, _ in changed
     }
     found |= {name: copy.deepcopy(one) for name, one in FIRST.items()}

@@ -7,6 +7,7 @@ functions that move the tool beside its path).
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +15,17 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadProgram, MissingKey
-from clearance.formats.program.krl_expressions import MM, frame_of, matrix_of, why
+from clearance.formats.program.execution import Execution
+from clearance.formats.program.expressions import Unknown
+from clearance.formats.program.given import ALWAYS, UNTIL_SET, give, remedy
+from clearance.formats.program.krl_expressions import (
+    GRAMMAR,
+    MM,
+    NUMBERED,
+    frame_of,
+    matrix_of,
+    why,
+)
 from clearance.formats.program.krl_settings import FIRST, SAVED, Settings
 from clearance.formats.program.remarks import NOT_FOLLOWED, Remarks
 from clearance.formats.program.statements import Assign, Statement, assigned, within
@@ -36,6 +47,52 @@ STATES = frozenset(
 """Those that no file has: inputs, and how the controller is just then."""
 
 _NULL = np.eye(4)
+
+
+def state_of(name: str) -> Unknown | None:
+    """What is known of a variable that no file has; None of those that a file may have."""
+    root, _, number = name.partition("[")
+    if root not in STATES:
+        return None
+    return Unknown(f"only the controller knows {name}", remedy=remedy_of(name) if number else "")
+
+
+def remedy_of(name: str) -> str:
+    """How a case gives a signal or a variable, as of an `Unknown`; empty of other system variables."""
+    root = name.partition("[")[0]
+    if name.startswith("$") and root not in NUMBERED:
+        return ""
+    value = "…" if root == name else "0" if root == "$ANIN" else "true"
+    return remedy(str(name), value, _lasting(name))
+
+
+def give_variables(asked: ProgramFile, run: Execution, of_module: str) -> None:
+    """Gives signals, and variables that no file gives a value, those that a case says.
+
+    Args:
+        of_module: behind the names that the program's own files have alone.
+
+    Raises:
+        BadProgram: another value than a signal has.
+    """
+    for given, value in asked.variables.items():
+        name = GRAMMAR.folded(re.sub(r"\s", "", given))
+        root = name.partition("[")[0]
+        if root in NUMBERED and isinstance(value, bool) != (root != "$ANIN"):
+            valid = "true or false for $IN[1], $OUT[1] or $FLAG[1], a number for $ANIN[1]"
+            raise BadProgram(f"{value} is given", where=f"variables: {given}", valid=valid)
+        own = GRAMMAR.folded(f"{name}{of_module}")
+        others = [one for one in run.variables if f"{one}" == name and one not in (own, name)]
+        places = [own, name, *(others if len(others) == 1 else ())]
+        unknown = (one for one in places if isinstance(run.variables.get(one), Unknown))
+        place = next(unknown, name)
+        if isinstance(run.variables.get(place, Unknown("")), Unknown):
+            give(run, place, value, _lasting(name))
+
+
+def _lasting(name: str) -> str:
+    """How long the value that a case gives holds."""
+    return ALWAYS if name.startswith(("$IN", "$ANIN", "$TIMER")) else UNTIL_SET
 
 
 def require_followed(settings: Settings) -> None:

@@ -27,6 +27,7 @@ from clearance.formats.program.krl_expressions import (
     NOTHING,
     OF,
     QUIET,
+    SIGNALS,
     SPLINE,
     TYPES,
     WAIT,
@@ -36,10 +37,13 @@ from clearance.formats.program.krl_expressions import (
     as_real,
     called_beside,
     move_of,
+    named,
     parameters_of,
     routines_beside,
 )
 from clearance.formats.program.krl_settings import FIRST
+from clearance.formats.program.krl_system import remedy_of
+from clearance.formats.program.passes import require_one_each
 from clearance.formats.program.statements import (
     BREAK,
     JUMP,
@@ -53,7 +57,6 @@ from clearance.formats.program.statements import (
     Unreadable,
     While,
     assigned,
-    within,
 )
 from clearance.formats.program.tokens import END, NEWLINE, Cursor, Line, Token, text_of, tokens_of
 
@@ -110,6 +113,7 @@ class _Reader(BlockReader):
     ) -> None:
         super().__init__(expressions)
         self._types, self._own, self._in_routine = types, dict[str, str](), False
+        self._kinds = expressions.kinds = (self._own, types)
         self._public, self._beside = public, dict[str, Routine]()
 
     def module(self) -> Module:
@@ -138,17 +142,14 @@ class _Reader(BlockReader):
             names.append(cursor.take())
         parameters, returned = parameters_of(cursor)
         self._row()
-        self._own, self._in_routine = {}, True
+        self._own.clear()
+        self._own.update(dict.fromkeys(parameters, ""))
+        self._in_routine = True
         body = self.block(head.line, names[-1].text, end)
         self._in_routine = False
         cursor.take()
         own = tuple(one for one in body if _declared(one) not in parameters)
-        labels = dict[float | str, Line]()
-        for one in (one for one in within(body) if isinstance(one, Label)):
-            if labels.setdefault(one.name, one.line) != one.line:
-                fault, first = f"label {one.name} is there twice", labels[one.name]
-                valid = f"one of them: the other is at {first}"
-                raise DuplicateName(fault, where=str(one.line), valid=valid)
+        require_one_each(body)
         return Routine(names[-1].text, head.line, parameters, own, returned=returned)
 
     def _row(self) -> list[Token]:
@@ -168,6 +169,7 @@ class _Reader(BlockReader):
         if [one.text.upper() for one in row[:2]] == ["GLOBAL", "INTERRUPT"]:
             word = "INTERRUPT"
         read = Expressions(Cursor(row, folds=True), GRAMMAR)
+        read.kinds = self._kinds
         if word in ("DECL", "GLOBAL", *TYPES):
             return self._declared(read)
         if word == "IMPORT" and len(row) > 3:  # `IMPORT INT n IS /R1/other..n`
@@ -175,10 +177,16 @@ class _Reader(BlockReader):
             return [Assign(line, Name(GRAMMAR.folded(row[2].text), line), unread)]
         if word == "SIGNAL" and len(row) > 3:  # `SIGNAL gripper_open $IN[5]`
             name = Name(GRAMMAR.folded(row[1].text), line)
-            (self._own if self._in_routine else self._types)[name.name] = word
+            place = "".join(one.text for one in row[2:-1])  # of several bits, `$IN[1]TO$IN[8]`
+            kind = f"{word} {place.upper()}" if place.count("$") == 1 else word
+            (self._own if self._in_routine else self._types)[name.name] = kind
             return [Assign(line, name, self._of_type(name, name), self._in_routine)]
-        if word in QUIET:
-            more = routines_beside(row)
+        if word == "PULSE" and len(row) > 3:
+            read.cursor.take(), read.cursor.take()
+            unread = Constant(Unknown(f"PULSE sets it at {line}"))
+            return [Do(line, Call(word, (read.expression(), unread), {}, line))]
+        if word in QUIET and word not in SIGNALS:
+            more = routines_beside(row, self._kinds)
             self._beside |= {one.name: one for one in more}
             calls = (called_beside(row), *((Constant(one.name),) for one in more))
             return [Do(line, Call(word, one, {}, line)) for one in calls]
@@ -242,7 +250,7 @@ class _Reader(BlockReader):
             return [Do(line, move_of(word, line, read))]
         target = read.expression()
         if cursor.accept("="):
-            return [self._assign(line, target, read)]
+            return self._assign(line, target, read)
         _require_end(cursor)
         call = target if isinstance(target, Call) else Call(word, (), {}, line)
         return [Do(line, call)]
@@ -267,29 +275,39 @@ class _Reader(BlockReader):
                 value = self._of_type(name, read.expression())
                 found.append(Assign(name.line, name, value, own, is_global))
             else:
-                start: Any = {} if is_array else Unknown(f"{name.name} is given no value")
+                fault, key = f"{name.name} is given no value", "" if own else remedy_of(name.name)
+                start: Any = {} if is_array else Unknown(fault, remedy=key)
                 found.append(Assign(name.line, name, Constant(start), own, is_global))
             if not cursor.accept(","):
                 break
         return found
 
+    def _kind(self, name: Name) -> str:
+        """The type of a variable, as far as it counts; empty of others."""
+        return self._own.get(name.name) or self._types.get(name.name, "")
+
     def _of_type(self, target: Expression, value: Expression) -> Expression:
         """A value as a variable of its type takes it."""
         name = assigned(target)
-        kind = "" if name is None else self._own.get(name.name) or self._types.get(name.name, "")
+        kind = "" if name is None else self._kind(name)
         if name is not None and kind == "SIGNAL":  # others may set the same output by its number
             return Constant(Unknown(f"only the controller knows the signal {name.name}"))
         act = {"INT": as_integer, "REAL": as_real}.get(kind)
         return value if act is None or name is None else Operation(act, (value,), name.line)
 
-    def _assign(self, line: Line, target: Expression, read: Expressions) -> Statement:
+    def _assign(self, line: Line, target: Expression, read: Expressions) -> list[Statement]:
         """A value for a variable, or for an output, which moves nothing."""
         name = assigned(target)
-        if name is not None and name.name in ("$OUT", "$ANOUT"):
-            return Do(line, Call("$OUT", (), {}, line))
+        root = "" if name is None else name.name.partition("[")[0]
         value = read.expression()
         _require_end(read.cursor)
-        return Assign(line, target, self._of_type(target, value))
+        if root in SIGNALS:
+            return [Do(line, Call(root, (target, value), {}, line))]
+        given = self._of_type(target, value)
+        found: list[Statement] = [Assign(line, target, given)]
+        if name is not None and self._kind(name) == "SIGNAL":  # of several bits: which is not read
+            found.append(Do(line, Call("$OUT", (Name("$OUT", line), given), {}, line)))
+        return found
 
     def _wait(self, line: Line, read: Expressions) -> Statement:
         read.cursor.take()
@@ -325,9 +343,9 @@ def files_of(asked: ProgramRequest) -> Module:
         groups.setdefault(stem, []).append([*_rows(data, file)])
     module = PurePosixPath(asked.shown).stem.upper()
     own = groups.pop(module)
-    named = [rows for name, group in groups.items() for rows in _named_rows(name, group, types)]
-    named += _named_rows(module, own, types, {*FIRST})
-    every = [_module_of(rows, types) for rows in named]
+    files = [rows for name, group in groups.items() for rows in _named_rows(name, group, types)]
+    files += _named_rows(module, own, types, {*FIRST})
+    every = [_module_of(rows, types) for rows in files]
     if not every[-1].routines:
         raise BadProgram("no DEF is in it", valid="a program in KRL (.src)")
     routines = dict[str, Routine]()
@@ -361,7 +379,7 @@ def _named_rows(
         own = {one for module in plain for one in _own_names(module)}.difference(of_all)
     for one, kind in found.items():
         types[f"{one}{OF}{name}".upper() if one in own else one] = kind
-    return [[_named(row, own, name) for row in rows] for rows in group]
+    return [[named(row, own, name) for row in rows] for rows in group]
 
 
 def _own_names(module: Module) -> set[str]:
@@ -380,19 +398,3 @@ def _rows(data: bytes, file: str) -> Iterator[list[Token]]:
         line = Line(number, file)
         if words:
             yield [*(Token(one.kind, one.text, line) for one in words), Token(NEWLINE, "\n", line)]
-
-
-def _named(words: list[Token], own: set[str], module: str) -> list[Token]:
-    """Words, in which a module's own names have its name behind them; parts of aggregates are no such names."""
-    found, opened = list[Token](), list[str]()
-    for i, one in enumerate(words):
-        if one.text in ("{", "[", "("):
-            opened.append(one.text)
-        elif one.text in ("}", "]", ")") and opened:
-            opened.pop()
-        before = [word.text for word in words[max(0, i - 3) : i]]
-        begins = before[-1:] in (["{"], [","]) or (before[:1] == ["{"] and before[2:] == [":"])
-        is_part = before[-1:] == ["."] or (opened[-1:] == ["{"] and begins)
-        is_own = one.kind == "name" and not is_part and one.text.upper() in own
-        found.append(one._replace(text=f"{one.text}{OF}{module}") if is_own else one)
-    return found

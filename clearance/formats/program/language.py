@@ -23,6 +23,7 @@ class Language:
         timed: words that take a time that counts; their file may not say how long.
         retiming: words that change how long moves take also from a thread, a trap or an interrupt.
         stopping: words that stop the robot on its way; it goes on along it.
+        signals: words that set an output or a flag: their arguments are which, and the value.
         packages: routines of the maker; where no file has one, it moves nothing that is called beside a program.
         keeps_counter: a loop counts by the value of its variable, and leaves it at the last one; elsewhere it is
             not known behind the loop.
@@ -37,6 +38,7 @@ class Language:
     timed: Collection[str] = ()
     retiming: Collection[str] = ()
     stopping: Collection[str] = ()
+    signals: Collection[str] = ()
     packages: Collection[str] = ()
     keeps_counter = shares_variables = skips_overlaps = False
     values: Mapping[str, Callable[..., Any]] = {}
@@ -66,7 +68,7 @@ class Language:
 
     def writes(self, call: Call) -> Iterable[Expression]:
         """The arguments of an instruction or a function that it gives a value."""
-        return ()
+        return call.args[:1] if call.name in self.signals else ()
 
     def instruct(self, call: Call, run: Any) -> None:
         """Does what an instruction does: a move, a setting, or a wait.
@@ -100,6 +102,10 @@ class Language:
     def value_of(self, name: str, run: Any) -> Any:
         """The value of a name that the language itself knows; None where it knows none."""
         return None
+
+    def remedy(self, name: str) -> str:
+        """How a case gives a variable that no file has, as of an `Unknown`; empty where it cannot."""
+        return ""
 
     def items(self, values: list[Any], kind: str) -> Any:
         """Values in brackets."""

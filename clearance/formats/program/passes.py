@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from clearance.errors import BadProgram
+from clearance.errors import BadProgram, DuplicateName
 from clearance.formats.program.expressions import number
 from clearance.formats.program.remarks import ENDLESS
-from clearance.formats.program.statements import JUMP, STOP, Label, Leave, Statement
+from clearance.formats.program.statements import JUMP, STOP, Label, Leave, Statement, within
+from clearance.formats.program.tokens import Line
 from clearance.world.notice import listed
 
 MOST_PASSES = 100
@@ -47,6 +48,20 @@ class Passes:
             )
             raise BadProgram(fault, valid=valid)
         return False
+
+
+def require_one_each(body: tuple[Statement, ...]) -> None:
+    """Nothing, if each label of a routine stands in one line.
+
+    Raises:
+        DuplicateName: one does not.
+    """
+    lines = dict[float | str, Line]()
+    for one in (one for one in within(body) if isinstance(one, Label)):
+        if lines.setdefault(one.name, one.line) != one.line:
+            valid = f"one of them: the other is at {lines[one.name]}"
+            fault = f"label {one.name} is there twice"
+            raise DuplicateName(fault, where=str(one.line), valid=valid)
 
 
 @dataclass(eq=False)

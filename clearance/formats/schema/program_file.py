@@ -32,7 +32,8 @@ class ProgramFile(StrictModel):
     joints are the axes). `tools` (on the flange) and `frames` (on the base; position registers in the user frame)
     are those that the file names and does not hold (in RAPID they replace the file's), `units` the frames of
     mechanical units that move the work. `zones` are radii [m] of corners for which it has a word and no length
-    (`C_PTP`, `CNT50`). `variables` are what registers hold when the program begins, and inputs all the time.
+    (`C_PTP`, `CNT50`). `variables` are what registers hold when the program begins, outputs until it changes
+    them, and inputs all the time.
     `step` is the most that the tool moves between samples [m].
     """
 

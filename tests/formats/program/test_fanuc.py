@@ -376,7 +376,8 @@ def test_a_jump_goes_to_a_label_of_its_own_program():
     [
         (f"JMP LBL[1] ;\nFOR R[1]=1 TO 2 ;\nLBL[1] ;\n{go(2)}ENDFOR ;\n",
          "line 8: JMP goes to label 1, which is in no block around it; a label of"),
-        (f"{go(2)}LBL[1] ;\n{go(3)}LBL[1] ;\nJMP LBL[1] ;", "line 9: LBL[1] stands in several lines"),
+        (f"{go(2)}LBL[1] ;\n{go(3)}LBL[1] ;\nJMP LBL[1] ;", 
+         "line 11: label 1 is there twice; one of them: the other is at line 9"),
         (f"IF DI[1]=ON,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n",
          "IF decides on JMP at line 8, and is not known: only the controller knows DI[1]"),
         (f"IF R[1]=2,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n",
@@ -384,7 +385,7 @@ def test_a_jump_goes_to_a_label_of_its_own_program():
         (f"JMP LBL[R[1]] ;\n{go(2)}LBL[1] ;\n", "the label of JMP is not known: 'R[1]' is in no file"),
         (f"LBL[1] ;\n{go(2)}R[1]=R[1]+DI[1] ;\nIF R[1]<3,JMP LBL[1] ;\n",
          "IF decides on JMP at line 11, and is not known"),
-        (f"R[1]=0 ;\nLBL[1] ;\n{go(2)}R[1]=R[1]+1 ;\nJMP LBL[1] ;\n",
+        (f"R[1]=0 ;\nLBL[1] ;\n{go(2)}R[1]=R[1]+1 ;\nR[2]=R[1] ;\nJMP LBL[1] ;\n",
          "a loop by JMP that repeats none of its first 1,000 passes; write a loop that ends, or set 'R[1]'"),
         ("LBL[R[1]] ;\n" + go(2), "'LBL' is not understood, and decides which lines run; a copy"),
     ],

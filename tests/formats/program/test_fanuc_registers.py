@@ -113,7 +113,9 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
     found = program(FRAMES + WAY.replace("R[1]=2", "DI[5]=ON"), variables={"DI[5]": True})
     assert len(found.moves) == 1
     (told,) = found.doubts
-    assert told.endswith("DI[5] of the case decides, which is taken to hold that all the time")
+    assert told.endswith(
+        "DI[5] of the case decides, which is taken to hold that all the time, unless a wait needs another"
+    )
     assert names("UFRAME_NUM=UFRAME_NUM ;\n" + go(2), variables={"UFRAME_NUM": 1}) == ["P[2]"]
 
 
@@ -125,7 +127,13 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
         (WAY.replace("R[1]=2", "DI[5]"), {},
          'or program: {variables: {"DI[5]": true}}, if it holds that all'),
         (WAY.replace("R[1]=2", "DO[5]"), {}, "only the controller knows DO[5]; let the file decide it"),
-        (go(2), {"variables": {"DO[1]": True}}, "variables: DO[1]: True is given; a number for R[1]"),
+        ("DO[5]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {}, "only the controller knows DO[5]; let"),
+        (go(2), {"variables": {"DO[1]": 1}}, "variables: DO[1]: 1 is given; a number for R[1]"),
+        (go(2), {"variables": {"SO[1]": True}}, "variables: SO[1]: True is given; a number for R[1]"),
+        ("DO[R[1]]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {"variables": {"DO[5]": True}},
+         "variables: DO[5]: DO at line 8 may set it by a number that is not read"),
+        ("WAIT DI[5]=OFF ;\n" + go(2), {"variables": {"DI[5]": True}},
+         "WAIT waits for what is not known: it does not come true before others change it; let"),
         (go(2), {"variables": {"R[1]": True}}, "variables: R[1]: True is given; a number for R[1]"),
         (go(2), {"variables": {"DI[1]": 1}}, "variables: DI[1]: 1 is given; a number for R[1]"),
     ],
@@ -134,6 +142,53 @@ def test_a_register_that_decides_is_asked_for(body, asked, told):
     with pytest.raises(cl.ClearanceError) as caught:
         names(body, **asked)
     assert told in str(caught.value)
+
+
+F, OFF = WAY.replace("R[1]=2", "F[1]=ON"), {"variables": {"F[1]": False}}
+
+
+@pytest.mark.parametrize(
+    ("body", "ends"),
+    [
+        ("", "23"),
+        ("F[1:first]=(ON) ;\n", "3"),
+        ("F[1]=(!F[1]) ;\n", "3"),
+        ("F[2]=(ON) ;\n", "23"),
+        ("F[1]=ON ;\nF[1]=OFF ;\n", "23"),
+        ("F[1]=DI[1] ;\n", "not known: only the controller knows DI[1]"),
+        ("IF DI[1],F[1]=(ON) ;\n", "not known: 'F[1]' is given a value at line 8; let the file decide it, or "
+         'program: {variables: {"DI[1]"'),
+        ("L P[4] 9mm/sec FINE TB .1sec,F[1]=(ON) ;\n", "'F[1]' is given a value on the way of a motion"),
+        ("L P[4] 9mm/sec FINE TB .1sec,P-SPS ;\nF[1]=(ON) ;\n------ ;\n", "may change it at any time"),
+    ],
+)  # fmt: skip
+def test_an_output_or_a_flag_of_the_case_holds_until_the_lines_change_it(body, ends):
+    if "known" in ends or "F[1]" in ends or "time" in ends:
+        with pytest.raises(cl.ClearanceError) as caught:
+            names(body + F, **OFF)
+        assert ends in str(caught.value)
+        return
+    found = program(FRAMES + body + F, **OFF)
+    assert [one.to.name for one in found.moves] == [f"P[{one}]" for one in ends]
+    (told,) = found.doubts
+    assert told.endswith(
+        "F[1] of the case decides, which is taken to hold that until these files change it"
+    )
+
+
+def test_a_wait_for_another_value_than_the_case_says_gives_the_input_that_value():
+    body = f"WAIT DI[5]=OFF ;\n{WAY.replace('R[1]=2', 'DI[5]=ON')}"
+    asked = {"variables": {"DI[5]": True}, "skip": ["WAIT"]}
+    assert names(body, **asked) == ["P[2]", "P[3]"]
+    body = body.replace("WAIT DI[5]=OFF", "WAIT DI[5]=OFF AND DI[6]=ON")
+    asked["variables"]["DI[6]"] = True
+    with pytest.raises(cl.ClearanceError, match="given a value by what WAIT waits for at line 8"):
+        names(body, **asked)
+
+
+def test_a_counter_that_decides_nothing_does_not_hide_that_an_endless_loop_repeats():
+    body = f"R[1]=0 ;\nLBL[1] ;\n{go(2)}{go(3)}R[1:pieces]=R[1]+1 ;\nJMP LBL[1] ;\n"
+    assert names(body) == ["P[2]", "P[3]", "P[2]", "P[3]"]
 
 
 def test_a_joint_move_to_axes_needs_the_tool_where_it_ends_in_a_corner():

@@ -306,11 +306,11 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("n=RSI_MOVECORR()", "line 7: RSI_MOVECORR moves the robot, and its value is not read"),
         (
             "SIGNAL open $IN[7]\nIF open THEN\nPTP XHOME\nENDIF",
-            "line 8: IF decides on PTP at line 9, and is not known: only the controller knows the signal OPEN",
+            "line 8: IF decides on PTP at line 9, and is not known: only the controller knows $IN[7]",
         ),
         (
             "WAIT FOR $IN[3]",
-            "line 7: WAIT FOR waits for what is not known: only the controller knows $IN;",
+            "line 7: WAIT FOR waits for what is not known: only the controller knows $IN[3];",
         ),
         ("IF $IN[1] THEN\nPTP XHOME\nENDIF", "line 7: IF decides on PTP at line 8"),
         (
@@ -324,7 +324,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("FOR n={X 1} TO 3\nENDFOR", "line 7: the range of 'N' is {'X': 1.0}; a number"),
         ("SWITCH 1\nPTP XHOME\nCASE 1\nENDSWITCH", "line 8: SWITCH begins with a statement"),
         ("PTP XHOME WITH $ORI_TYPE.X.Y = 1", "line 7: '.' has no value for '#VAR' and 'X'"),
-        ("n=3\nLOOP\nn=n*n\nENDLOOP", "line 9: '*' has no value for"),
+        ("n=3\nm=n\nLOOP\nn=n*n\nENDLOOP", "line 10: '*' has no value for"),
         ("n='B12'\nPTP {A1 n}", "line 8: a position is not known: N is given what is not read"),
         ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
         ("PTP XHOME\nEND\nDEF half()\nPTP XHOME\nEN", "line 9: half has no END; a whole file"),
@@ -460,7 +460,7 @@ def test_truths_and_numbers_are_not_mixed():
 
 
 def test_names_that_are_like_an_unknown_one_are_sought_only_to_be_told(monkeypatch):
-    monkeypatch.setattr("clearance.formats.program.execution.nearest_name", lambda *_: 1 / 0)
+    monkeypatch.setattr("clearance.formats.program.variables.nearest_name", lambda *_: 1 / 0)
     assert len(program("n=nowhere\nb[1].x=elsewhere\nPTP XHOME").moves) == 1
 
 

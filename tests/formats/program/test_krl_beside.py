@@ -76,15 +76,62 @@ def test_functions_of_angles_are_in_degrees():
 def test_a_signal_is_not_known_by_what_it_was_given():
     """The same output may have been set by its number, or by another name."""
     body = "SIGNAL lamp $OUT[3]\nlamp=TRUE\n$OUT[3]=FALSE\nIF lamp THEN\ngo(1)\nENDIF"
-    with pytest.raises(
-        cl.ClearanceError, match="not known: only the controller knows the signal LAMP"
-    ):
+    with pytest.raises(cl.ClearanceError, match=r"not known: only the controller knows \$OUT\[3\]"):
         angles(body)
     data = POINTS.replace("ENDDAT", "SIGNAL lamp $OUT[3]\nENDDAT")
-    with pytest.raises(
-        cl.ClearanceError, match="not known: only the controller knows the signal LAMP"
-    ):
+    with pytest.raises(cl.ClearanceError, match=r"not known: only the controller knows \$OUT\[3\]"):
         angles(body.partition("\n")[2], points=data)
+
+
+LAMP = "SIGNAL lamp $OUT[3]\n%s\nIF lamp THEN\ngo(1)\nENDIF\ngo(2)"
+SIGNAL_TOLD = "of the case decides, which is taken to hold that until these files change it"
+
+
+@pytest.mark.parametrize(
+    ("body", "ends"),
+    [
+        ("", [2]),
+        ("lamp=TRUE", [1, 2]),
+        ("$OUT[3]=TRUE", [1, 2]),
+        ("SIGNAL other $OUT[3]\nother=NOT lamp", [1, 2]),
+        ("$OUT[4]=TRUE", [2]),
+        ("$OUT[3]=$IN[1]", r"not known: only the controller knows \$IN\[1\]"),
+        ("IF $IN[1] THEN\nlamp=TRUE\nENDIF", r"'\$OUT\[3\]' is given a value at line 9"),
+        (f"{WHEN} lamp=TRUE", "may change it at any time"),
+        ("PULSE(lamp,TRUE,0.5)", "PULSE sets it at line 8"),
+        ("$OUT[n]=TRUE", r"variables: \$OUT\[3\]: \$OUT at line 8 may set it by a number that is not read"),
+        ("SIGNAL all $OUT[1] TO $OUT[8]\nall=255", "may set it by a number that is not read"),
+    ],
+)  # fmt: skip
+def test_an_output_of_the_case_holds_until_the_lines_change_it(body, ends):
+    asked = {"variables": {"$OUT[3]": False}}
+    if isinstance(ends, str):
+        with pytest.raises(cl.ClearanceError, match=ends):
+            angles(LAMP % body, **asked)
+    else:
+        assert angles(LAMP % body, **asked) == ends
+
+
+def test_an_output_of_the_case_that_decides_stands_in_the_headline():
+    body = LAMP.replace("go(1)", "PTP XHOME").replace("go(2)", "PTP XHOME") % "lamp=TRUE"
+    (told,) = program(body, variables={"$OUT[3]": False}).doubts
+    assert told == f"line 9: the way not taken is not measured; $OUT[3] {SIGNAL_TOLD}"
+
+
+def test_a_case_gives_inputs_and_variables_that_no_file_has():
+    body = (
+        "IF NOT $IN[2] THEN\ngo(1)\nENDIF\nWAIT FOR $IN[2]==FALSE\nIF $IN[2] THEN\ngo(2)\nENDIF\n"
+    )
+    body += "IF missing==3 THEN\ngo(3)\nENDIF\nIF unset THEN\ngo(4)\nENDIF\nIF $TIMER_FLAG[1] THEN\ngo(5)\nENDIF"
+    data = POINTS.replace("ENDDAT", "DECL BOOL unset\nENDDAT")
+    given = {"$in[2]": True, "missing": 3, "unset": True, "$TIMER_FLAG[1]": True}
+    asked = {"points": data, "skip": ["WAIT FOR"]}
+    assert angles(body, variables=given, **asked) == [3, 4, 5]
+    for name in given:
+        with pytest.raises(cl.ClearanceError, match=f"(?i)variables: {{{{0,1}}.{re.escape(name)}"):
+            angles(body, variables={key: one for key, one in given.items() if key != name}, **asked)
+    with pytest.raises(cl.ClearanceError, match=r"1 is given; true or false for \$IN\[1\]"):
+        angles(body, variables={"$IN[2]": 1})
 
 
 def test_what_a_trigger_gives_a_value_may_change_at_any_time():

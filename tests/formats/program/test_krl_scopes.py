@@ -203,9 +203,13 @@ def test_a_branch_of_unknown_routines_says_what_gets_past_it():
         read("a.src", text)
     assert str(caught.value).endswith(
         "line 2: IF decides on B at line 3, and is not known: 'N' is in no file that is given; let the file "
-        "decide it, or program: {beside: [B.src, C.src]}, or skip: [B, C] if they neither move nor set tool, "
+        'decide it, or program: {variables: {"N": …}}, if it holds that until these files change it, or program: '
+        "{beside: [B.src, C.src]}, or skip: [B, C] if they neither move nor set tool, "
         "frame or variables"
     )
     assert len(read("a.src", text, skip=["b", "C"]).moves) == 1
-    with pytest.raises(cl.ClearanceError, match=r"let the file decide it$"):
+    with pytest.raises(
+        cl.ClearanceError,
+        match=r"let the file decide it, or program: {variables: {\"N\": …}}, if it holds .* it$",
+    ):
         read("a.src", text.replace("c()", HOME))

@@ -135,7 +135,7 @@ FAULTS = {
     "while not get_digital_in(1):\nsync()\nend": "line 1: while waits for what is not known",
     "i = 0\nwhile True:\n"
     + Q
-    + "\ni = i + 1\nend": "repeats none of its first 100 passes; write a loop that ends, or set 'i'",
+    + "\nj = i\ni = i + 1\nend": "repeats none of its first 100 passes; write a loop that ends, or set 'i'",
     "servoj([0,0,0,0,0,0])": "line 1: servoj moves the robot on a way",
     TOOL + "movel(p[0,0,0,1e200,0,0])": "line 2: rotation vector: a turn by inf rad",
     "grip(20)": "line 1: 'grip' is no known instruction",
