@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -59,6 +60,18 @@ def pose_from_rpy(xyz: Sequence[float], rpy: Sequence[float]) -> np.ndarray:
         [-sp, cp * sr, cp * cr],
     ]
     return _pose(np.array(rotation), xyz)
+
+
+def rpy_from_pose(pose: np.ndarray) -> tuple[float, float, float]:
+    """The angles [rad] of a pose (4, 4) as `pose_from_rpy` takes them; pitch is within a quarter turn, and roll 0
+    where pitch is one.
+    """
+    turn = pose[:3, :3].tolist()
+    level = math.hypot(turn[0][0], turn[1][0])
+    roll, yaw = math.atan2(turn[2][1], turn[2][2]), math.atan2(turn[1][0], turn[0][0])
+    if level < 1e-12:
+        roll, yaw = 0.0, math.atan2(-turn[0][1], turn[1][1])
+    return roll, math.atan2(-turn[2][0], level), yaw
 
 
 def pose_from_rotation_vector(xyz: Sequence[float], vector: Sequence[float]) -> np.ndarray:

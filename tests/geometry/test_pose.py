@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -11,7 +12,13 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadPose, BadShape, ClearanceError, NotFinite
-from clearance.geometry.pose import inverse, pose_from_quaternion, pose_from_rpy, validated_pose
+from clearance.geometry.pose import (
+    inverse,
+    pose_from_quaternion,
+    pose_from_rpy,
+    rpy_from_pose,
+    validated_pose,
+)
 from clearance.geometry.quaternions import quaternions_of
 
 number = st.floats(-10, 10)
@@ -112,3 +119,10 @@ def test_they_are_those_of_scipy_to_the_last_bit(rotations):
     expected = Rotation.from_matrix(rotations).as_quat(canonical=True) if len(rotations) else found
     assert found.tobytes() == np.ascontiguousarray(expected).tobytes()
     assert found.shape == (len(rotations), 4)
+
+
+@pytest.mark.parametrize("pitch", [0.0, 0.4, -1.5, math.pi / 2, -math.pi / 2])
+def test_the_angles_of_a_pose_make_it_again(pitch):
+    pose = pose_from_rpy([1.0, 2.0, 3.0], [0.3, pitch, -2.0])
+    again = pose_from_rpy([1.0, 2.0, 3.0], rpy_from_pose(pose))
+    assert np.allclose(again, pose, atol=1e-12)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from clearance.errors import BadProgram, BadSyntax, ClearanceError
-from clearance.formats.program.grammar import Grammar
+from clearance.formats.program.grammar import Grammar, is_number
 from clearance.formats.program.tokens import Cursor, Line, Token, on
 
 MOST_PARTS = 200
@@ -197,7 +197,7 @@ def number(value: Any, what: str) -> float:
     Raises:
         BadProgram: it is none.
     """
-    if isinstance(known(value, what), bool) or not isinstance(value, int | float):
+    if not is_number(known(value, what)):
         raise BadProgram(f"{what} is {value!r:.60}", valid="a number")
     return float(value)
 

@@ -45,6 +45,7 @@ from clearance.formats.program.fanuc_words import (
     WAITING,
     Motion,
 )
+from clearance.formats.program.grammar import is_number
 from clearance.formats.program.language import Language, entry_of
 from clearance.formats.program.remarks import LEFT_OUT, NOT_FOLLOWED, UNSAID
 from clearance.formats.program.statements import Assign, Do, For, within
@@ -338,7 +339,7 @@ def _speed(kind: str, unit: str, value: Any, call: Call, run: Execution) -> dict
     Raises:
         BadProgram: it is 0 or less.
     """
-    is_known = isinstance(value, int | float) and not isinstance(value, bool)
+    is_known = is_number(value)
     if is_known and value <= 0.0:
         raise BadProgram(f"a speed of {value:g} {unit}", valid="more than 0")
     if is_known and unit in _SECONDS:

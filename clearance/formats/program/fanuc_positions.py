@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadProgram
-from clearance.geometry.pose import pose_from_rpy
+from clearance.formats.program.grammar import is_number
+from clearance.geometry.pose import pose_from_rpy, rpy_from_pose
 
 MM = 1e-3
 
@@ -71,7 +72,7 @@ class Position:
         Raises:
             TypeError: no number is given.
         """
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if not is_number(value):
             raise TypeError
         return replace(self, values={**self.values, self.keys[number - 1]: float(value)})
 
@@ -117,11 +118,5 @@ def _position(text: str) -> Position:
 
 def position_of(pose: np.ndarray) -> Position:
     """The point of a (4, 4) pose [m], in any frame."""
-    x, y, z = pose[:3, 3] / MM
-    turns = (
-        math.atan2(pose[2, 1], pose[2, 2]),
-        math.atan2(-pose[2, 0], math.hypot(pose[0, 0], pose[1, 0])),
-        math.atan2(pose[1, 0], pose[0, 0]),
-    )
-    values = (x, y, z, *(math.degrees(turn) for turn in turns))
-    return Position(None, None, dict(zip(POSE, map(float, values), strict=True)), {})
+    values = (*(pose[:3, 3] / MM).tolist(), *(math.degrees(turn) for turn in rpy_from_pose(pose)))
+    return Position(None, None, dict(zip(POSE, values, strict=True)), {})

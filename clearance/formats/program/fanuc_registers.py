@@ -12,15 +12,12 @@ from clearance.errors import BadProgram
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Name, Unknown
 from clearance.formats.program.fanuc_positions import Position, position_of
-from clearance.formats.program.fanuc_words import ANY_REGISTER, OUTPUTS, QUIET, WAIT, named
-from clearance.formats.program.given import ALWAYS, AT_START, UNTIL_SET, give, remedy
+from clearance.formats.program.fanuc_words import ANY_REGISTER, QUIET, WAIT, named
+from clearance.formats.program.given import give, kind_of, remedy
 from clearance.formats.program.remarks import LEFT_OUT
 from clearance.formats.program.tokens import Line
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.world.notice import listed
-
-_GIVEN = re.compile(r"(R\[\d+\]|U(?:FRAME|TOOL)_NUM)|(?:([DRUS]I|[DR]O|F)|[GA][IO])\[\d+\]")
-"""Registers, and inputs and outputs, among them those that are on or off: a case may give what they hold."""
 
 
 def give_registers(asked: ProgramFile, run: Execution) -> None:
@@ -30,21 +27,13 @@ def give_registers(asked: ProgramFile, run: Execution) -> None:
         BadProgram: another name or value.
     """
     for given, value in asked.variables.items():
-        name, found = named(given), _GIVEN.fullmatch(named(given))
-        if found is None or isinstance(value, bool) != bool(found[2]):
-            valid = "a number for R[1], UFRAME_NUM or GI[1], true or false for DI[1], DO[1] or F[1]"
-            raise BadProgram(f"{value} is given", where=f"variables: {given}", valid=valid)
-        give(run, name, value, _lasting(name))
+        if kind_of(named(given))[0] == "…":
+            valid = "a register or a signal, as R[1], UFRAME_NUM, DI[1], DO[1] or F[1]"
+            raise BadProgram(f"{given!r} is given", where="variables", valid=valid)
+        give(run, named(given), value)
     for given, frame in asked.frames.items():
         if re.fullmatch(r"PR\[\d+\]", named(given)):
             run.variables[named(given)] = position_of(frame.matrix())
-
-
-def _lasting(name: str) -> str:
-    """How long the value that a case gives holds."""
-    if name.partition("[")[0] in OUTPUTS:
-        return UNTIL_SET
-    return ALWAYS if "I[" in name else AT_START
 
 
 def value_of_register(name: str, run: Execution) -> Any:
@@ -55,12 +44,12 @@ def value_of_register(name: str, run: Execution) -> Any:
     if re.fullmatch(r"PR\[\d+\]", name):
         key = f'program: {{frames: {{"{name}": {{xyz: […], rpy: […]}}}}}} in m and rad'
         return Unknown(f"{name} is in no listing", remedy=key)
-    if found := _GIVEN.fullmatch(name):
-        key = remedy(name, "true" if found[2] else "0", _lasting(name))
-        text = f"{name!r} is in no file that is given"
-        return Unknown(text if found[1] else f"only the controller knows {name}", remedy=key)
-    is_own = name.startswith(("R[", "U", "AR["))
-    return None if is_own else Unknown(f"only the controller knows {name}")
+    key = "" if kind_of(name)[0] == "…" else remedy(name)
+    is_own = name.startswith(("R[", "UF", "UT", "AR["))
+    text = (
+        f"{name!r} is in no file that is given" if is_own else f"only the controller knows {name}"
+    )
+    return Unknown(text, remedy=key) if key or not is_own else None
 
 
 def known_register(name: str, run: Execution) -> Position:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import chain
 from typing import Any
@@ -25,38 +25,56 @@ from clearance.formats.program.statements import Do, assigned, within
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
-AT_START, ALWAYS, UNTIL_SET = (
-    "at the start",
-    "all the time, unless a wait needs another",
-    "until these files change it",
-)
-"""How long a value of the case holds: of a register, an input, and an output."""
+_AT_START, _UNTIL_SET = "at the start", "until these files change it"
+_ALWAYS = "all the time, unless a wait needs another"
+
+KINDS: Mapping[str, tuple[str, str]] = {
+    **dict.fromkeys(("R[", "UFRAME_NUM", "UTOOL_NUM"), ("0", _AT_START)),
+    **dict.fromkeys(("DI[", "RI[", "UI[", "SI[", "$IN[", "$TIMER_FLAG["), ("true", _ALWAYS)),
+    **dict.fromkeys(("GI[", "AI[", "$ANIN["), ("0", _ALWAYS)),
+    **dict.fromkeys(("DO[", "RO[", "F[", "$OUT[", "$FLAG["), ("true", _UNTIL_SET)),
+    **dict.fromkeys(("GO[", "AO["), ("0", _UNTIL_SET)),
+}
+"""A value of each register, input, output and flag, and how long one of the case holds."""
 
 NAMED = ("tools", "frames", "units", "zones", "variables")
 """Keys of a case that give values by name."""
 
 
-def remedy(name: str, value: str, holds: str) -> str:
-    """The key of a case that gives a value which holds for some time, and what it means."""
+def kind_of(name: str) -> tuple[str, str]:
+    """A value as a variable has it, and how long one of the case holds."""
+    return KINDS.get(re.sub(r"(?<=\[)\d+\]$", "", name), ("…", _UNTIL_SET))
+
+
+def remedy(name: str) -> str:
+    """The key of a case that gives a variable, and what it means."""
+    value, holds = kind_of(name)
     return f'program: {{variables: {{"{name}": {value}}}}}, if it holds that {holds}'
 
 
-def give(run: Any, name: str, value: Any, holds: str) -> None:
-    """Gives a variable of a run the value that the case says, which holds for some time.
+def give(run: Any, name: str, value: Any) -> None:
+    """Gives a variable of a run the value that the case says.
 
     Raises:
-        BadProgram: a line may set it by a number that is not read.
+        BadProgram: another value than its kind has; a line may set it by a number that is not read.
     """
+    where, (usual, holds) = f"variables: {name}", kind_of(name)
+    if usual != "…" and isinstance(value, bool) != (usual == "true"):
+        raise BadProgram(
+            f"{value} is given",
+            where=where,
+            valid="true or false" if usual == "true" else "a number",
+        )
     root, every = name.partition("[")[0], (within(one.body) for one in run.routines.values())
     for call in (one.call for one in chain(*every) if isinstance(one, Do)):
         target = assigned(call.args[0]) if call.name in run.language.signals and call.args else None
         if target is not None and target.name.partition("[")[0] == root:
             if target is not call.args[0] or not re.fullmatch(r"[^[]*\[\d+\]", target.name):
                 fault = f"{call.name} at {call.line} may set it by a number that is not read"
-                raise BadProgram(fault, where=f"variables: {name}", valid="a number in that line")
+                raise BadProgram(fault, where=where, valid="a number in that line")
     run.variables[name] = value
     run.given.add(name)
-    lasts = "" if holds == AT_START else f", which is taken to hold that {holds}"
+    lasts = "" if holds == _AT_START else f", which is taken to hold that {holds}"
     run.persistent.put(name, f"{name} of the case decides{lasts}", run.variables)
 
 

@@ -15,12 +15,17 @@ LARGEST = 2**63
 """Whole numbers are smaller: they would grow without bound in a loop."""
 
 
+def is_number(value: object) -> bool:
+    """True for a number; a truth value is none."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
 def numeric(act: Act) -> Act:
     """An operator that refuses all but numbers, and what is too large for a whole one."""
 
     def applied(a: Any, b: Any) -> Any:
         for one in (a, b):
-            if not isinstance(one, float | int) or isinstance(one, bool):
+            if not is_number(one):
                 raise TypeError
         found = act(a, b)
         if isinstance(found, int) and abs(found) >= LARGEST:

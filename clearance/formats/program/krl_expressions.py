@@ -27,7 +27,7 @@ from clearance.formats.program.expressions import (
 from clearance.formats.program.grammar import Grammar, Spelled, numeric, ranked
 from clearance.formats.program.statements import Assign, Do, Routine, Statement, assigned
 from clearance.formats.program.tokens import NEWLINE, Cursor, Line, Token
-from clearance.geometry.pose import pose_from_rpy
+from clearance.geometry.pose import pose_from_rpy, rpy_from_pose
 
 MM = 1e-3
 
@@ -62,14 +62,8 @@ def matrix_of(frame: Aggregate, shown: str) -> np.ndarray:
 
 def frame_of(pose: np.ndarray) -> Aggregate:
     """The aggregate of a pose (4, 4) [m]; B is within 90 degrees."""
-    x, y, z = (float(one) for one in pose[:3, 3] / MM)
-    turn = pose[:3, :3]
-    level = math.hypot(turn[0, 0], turn[1, 0])
-    a, c = math.atan2(turn[1, 0], turn[0, 0]), math.atan2(turn[2, 1], turn[2, 2])
-    if level < 1e-12:
-        a, c = math.atan2(-turn[0, 1], turn[1, 1]), 0.0
-    angles = (math.degrees(one) for one in (a, math.atan2(-turn[2, 0], level), c))
-    return dict(zip(FRAME, (x, y, z, *angles), strict=True))
+    c, b, a = (math.degrees(one) for one in rpy_from_pose(pose))
+    return dict(zip(FRAME, (*(pose[:3, 3] / MM).tolist(), a, b, c), strict=True))
 
 
 def composed(one: Any, other: Any) -> Aggregate:

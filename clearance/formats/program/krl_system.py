@@ -17,7 +17,7 @@ import numpy as np
 from clearance.errors import BadProgram, MissingKey
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import Unknown
-from clearance.formats.program.given import ALWAYS, UNTIL_SET, give, remedy
+from clearance.formats.program.given import give, remedy
 from clearance.formats.program.krl_expressions import (
     GRAMMAR,
     MM,
@@ -59,11 +59,8 @@ def state_of(name: str) -> Unknown | None:
 
 def remedy_of(name: str) -> str:
     """How a case gives a signal or a variable, as of an `Unknown`; empty of other system variables."""
-    root = name.partition("[")[0]
-    if name.startswith("$") and root not in NUMBERED:
-        return ""
-    value = "…" if root == name else "0" if root == "$ANIN" else "true"
-    return remedy(str(name), value, _lasting(name))
+    is_one = not name.startswith("$") or name.partition("[")[0] in NUMBERED
+    return remedy(str(name)) if is_one else ""
 
 
 def give_variables(asked: ProgramFile, run: Execution, of_module: str) -> None:
@@ -77,22 +74,13 @@ def give_variables(asked: ProgramFile, run: Execution, of_module: str) -> None:
     """
     for given, value in asked.variables.items():
         name = GRAMMAR.folded(re.sub(r"\s", "", given))
-        root = name.partition("[")[0]
-        if root in NUMBERED and isinstance(value, bool) != (root != "$ANIN"):
-            valid = "true or false for $IN[1], $OUT[1] or $FLAG[1], a number for $ANIN[1]"
-            raise BadProgram(f"{value} is given", where=f"variables: {given}", valid=valid)
         own = GRAMMAR.folded(f"{name}{of_module}")
         others = [one for one in run.variables if f"{one}" == name and one not in (own, name)]
         places = [own, name, *(others if len(others) == 1 else ())]
         unknown = (one for one in places if isinstance(run.variables.get(one), Unknown))
         place = next(unknown, name)
         if isinstance(run.variables.get(place, Unknown("")), Unknown):
-            give(run, place, value, _lasting(name))
-
-
-def _lasting(name: str) -> str:
-    """How long the value that a case gives holds."""
-    return ALWAYS if name.startswith(("$IN", "$ANIN", "$TIMER")) else UNTIL_SET
+            give(run, place, value)
 
 
 def require_followed(settings: Settings) -> None:

@@ -128,14 +128,14 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
          'or program: {variables: {"DI[5]": true}}, if it holds that all'),
         (WAY.replace("R[1]=2", "DO[5]"), {}, "only the controller knows DO[5]; let the file decide it"),
         ("DO[5]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {}, "only the controller knows DO[5]; let"),
-        (go(2), {"variables": {"DO[1]": 1}}, "variables: DO[1]: 1 is given; a number for R[1]"),
-        (go(2), {"variables": {"SO[1]": True}}, "variables: SO[1]: True is given; a number for R[1]"),
+        (go(2), {"variables": {"DO[1]": 1}}, "variables: DO[1]: 1 is given; true or false"),
+        (go(2), {"variables": {"SO[1]": True}}, "variables: 'SO[1]' is given; a register or a signal, as R[1]"),
         ("DO[R[1]]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {"variables": {"DO[5]": True}},
          "variables: DO[5]: DO at line 8 may set it by a number that is not read"),
         ("WAIT DI[5]=OFF ;\n" + go(2), {"variables": {"DI[5]": True}},
          "WAIT waits for what is not known: it does not come true before others change it; let"),
-        (go(2), {"variables": {"R[1]": True}}, "variables: R[1]: True is given; a number for R[1]"),
-        (go(2), {"variables": {"DI[1]": 1}}, "variables: DI[1]: 1 is given; a number for R[1]"),
+        (go(2), {"variables": {"R[1]": True}}, "variables: R[1]: True is given; a number"),
+        (go(2), {"variables": {"DI[1]": 1}}, "variables: DI[1]: 1 is given; true or false"),
     ],
 )  # fmt: skip
 def test_a_register_that_decides_is_asked_for(body, asked, told):

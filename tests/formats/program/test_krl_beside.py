@@ -130,7 +130,7 @@ def test_a_case_gives_inputs_and_variables_that_no_file_has():
     for name in given:
         with pytest.raises(cl.ClearanceError, match=f"(?i)variables: {{{{0,1}}.{re.escape(name)}"):
             angles(body, variables={key: one for key, one in given.items() if key != name}, **asked)
-    with pytest.raises(cl.ClearanceError, match=r"1 is given; true or false for \$IN\[1\]"):
+    with pytest.raises(cl.ClearanceError, match=r"1 is given; true or false"):
         angles(body, variables={"$IN[2]": 1})
 
 
