@@ -323,3 +323,18 @@ def test_what_is_no_question_is_refused():
         asked(case, 0.0, pairs=[pair, Pair(pair.b, pair.a)])
     with pytest.raises(BadInput):
         asked(case, 0.0, pairs=[])
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.1])
+@pytest.mark.parametrize(("off", "status"), [(0.0, "near"), (-1e-9, "near"), (1e-9, "violated")])
+def test_a_limit_that_the_distance_is_equal_to_is_kept(aside, off, status):
+    """Two boxes pass each other 0.1 m apart, or come to that at their ends."""
+    robots = (
+        sliding("a", (0.0, 0.0, 0.0), (aside, 1.0, 0.0)),
+        sliding("b", (0.2 + 2.0 * aside, 0.0, 0.0), (-aside, 1.0, 0.0)),
+    )
+    run = cl.check(cl.Case("equal", robots, (), cl.Limits(0.1 + off, 0.2), clock=cl.Clock(FOREVER)))
+    assert run.status == status
+    assert run.passed == (
+        "equal to the fail limit but for rounding" in run.verdict.at_level or off < 0.0
+    )

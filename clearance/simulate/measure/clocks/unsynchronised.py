@@ -46,15 +46,21 @@ from clearance.simulate.measure.certify import (
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks, actor_of
 from clearance.simulate.measure.layout import lay_out, with_whole_faces
 from clearance.simulate.measure.parts import in_order, parts
+from clearance.simulate.measure.refine import FINER
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.notice import Notice
 from clearance.world.pairs import BodyIndex
+from clearance.world.reach import farthest_reach
 
 COUNTERS = ("rectangles", "apart_by_boxes", "queries", "node_tests", "polygon_tests")
 
 MOST_RECTANGLES = 2**22
 """Rectangles of one interval after which its gap is widened: about a minute. A step of an arm takes tens."""
+
+MOST_AGAIN, MOST_DECIDING = 2**13, 2**18
+"""Rectangles of one interval after which a finer gap is widened, and of all together: about five seconds."""
 
 TIME_ROUNDING = 2.0**-48
 """Rounding of a time in an interval, relative to the greatest time and the slack: some operations, with margin."""
@@ -105,6 +111,7 @@ def least_unsynchronised(
     gap = max(gap for gap, _ in finest)
     goal = CertificateGoal(gap, what.limits.fail, MOST_RECTANGLES)
     intervals, intervals_tally = work.intervals(steps, goal)
+    work.decide(steps, intervals, gap)
     return UnsynchronisedAnswers(
         gap,
         steps,
@@ -208,21 +215,58 @@ class _Work:
         )
         tally = dict.fromkeys(COUNTERS, 0)
         if n > 0 and self.n_b > 1:
-            surface = with_whole_faces(self.surface)
-            tree_b = self._tree(slice(0, self.n_b - 1), 1, of_steps=False)
+            certify = self._certifying(steps)
 
             def run_part(span: slice) -> tuple[int, np.ndarray]:
-                counts = np.zeros(len(COUNTERS), dtype=np.int64)
-                tree_a = self._tree(self._of_a(span), 0, of_steps=False)
                 own = TwoClockBounds(*(column[span] for column in bounds))
-                ends = slice(span.start, span.stop + 1)
-                known = StepsOfClock(steps.clearance[ends], steps.step_b[ends], steps.pair[ends])
-                clocks = self._clocks(tree_a, tree_b)
-                certify_unsynchronised(surface, clocks, known, goal, own, counts)
-                return span.stop, counts
+                return span.stop, certify(span, goal, own)
 
             tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), self.n_a)
         return bounds, tally
+
+    def _certifying(
+        self, steps: StepMinima
+    ) -> Callable[[slice, CertificateGoal, TwoClockBounds], np.ndarray]:
+        """Fills the bounds of some intervals for a goal; counters."""
+        surface = with_whole_faces(self.surface)
+        tree_b = self._tree(slice(0, self.n_b - 1), 1, of_steps=False)
+
+        def certify(span: slice, goal: CertificateGoal, own: TwoClockBounds) -> np.ndarray:
+            counts = np.zeros(len(COUNTERS), dtype=np.int64)
+            tree_a = self._tree(self._of_a(span), 0, of_steps=False)
+            ends = slice(span.start, span.stop + 1)
+            known = StepsOfClock(steps.clearance[ends], steps.step_b[ends], steps.pair[ends])
+            certify_unsynchronised(surface, self._clocks(tree_a, tree_b), known, goal, own, counts)
+            return counts
+
+        return certify
+
+    def decide(self, steps: StepMinima, bounds: TwoClockBounds, gap: float) -> None:
+        """Proves again the intervals by which a limit is open, with ever smaller gaps, as far as that is quick."""
+        certify, n_rectangles = None, 0
+        for goal in self._finer_goals(gap):
+            is_open = (bounds.lower < goal.fail) & (bounds.upper >= goal.fail)
+            for row in np.flatnonzero(is_open).tolist():
+                if n_rectangles > MOST_DECIDING:
+                    return
+                certify = certify or self._certifying(steps)
+                own = TwoClockBounds(*(column[row : row + 1].copy() for column in bounds))
+                n_rectangles += certify(slice(row, row + 1), goal, own)[0]
+                bounds.lower[row] = max(bounds.lower[row], own.lower[0])
+                if own.upper[0] < bounds.upper[row]:
+                    for column, seen in zip(bounds[1:], own[1:], strict=True):
+                        column[row] = seen[0]
+
+    def _finer_goals(self, gap: float) -> Iterator[CertificateGoal]:
+        """For each limit goals that are ever finer; a clearance that is less by rounding is at the limit."""
+        limits = self.what.limits
+        reach = max(farthest_reach(side.case, side.motions) for side in (self.what.a, self.what.b))
+        finest = FINEST_CERTIFY_GAP * reach
+        for level in sorted({limits.fail, limits.warn} - {0.0}):
+            finer = gap
+            while finer > finest:
+                finer = max(finer * FINER, finest)
+                yield CertificateGoal(finer, level - limits.rounding, MOST_AGAIN)
 
     def _of_a(self, span: slice) -> slice:
         """The rows of the path at some steps or intervals of clock a."""
