@@ -98,6 +98,13 @@ def bodies_text(finding: Finding) -> str:
     return f"{names} (occurrence {finding.occurrence + 1})" if finding.occurrence else names
 
 
+def who_text(finding: Finding) -> str:
+    """The two bodies; of a finding without bodies, what it is of."""
+    if finding.kind == UNPROVEN:
+        return bodies_text(finding) or "any pair"
+    return bodies_text(finding) or finding.text or "no pair is near"
+
+
 def when_text(finding: Finding) -> str:
     """When it is least: `1.220 s, step 61`."""
     if finding.time is None or finding.step is None:

@@ -9,7 +9,7 @@ from clearance.codes import coded
 from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
-from clearance.findings.finding_text import bodies_text, waived_text
+from clearance.findings.finding_text import bodies_text, waived_text, who_text
 from clearance.record.wording import count, near_mm
 from clearance.report.moment import name_shown
 from clearance.world.notice import listed
@@ -105,8 +105,8 @@ def comparison_cells(row: ComparedFinding, unit: str = "") -> tuple[str, ...]:
     both = (row.before, row.now)
     statuses = ["" if one is None else _standing(one) for one in both]
     least = ["" if one is None else _near(one, unit) for one in both]
-    who = bodies_text(finding) or finding.text or finding.kind
-    return (str(row.change), *statuses, *least, name_shown(finding.rule), who, row.why)
+    who = name_shown(finding.rule), who_text(finding)
+    return (str(row.change), *statuses, *least, *who, row.why)
 
 
 def _standing(finding: Finding) -> str:

@@ -164,7 +164,7 @@ def _of_finding(finding: Finding) -> TestResult:
         f"{coded_line(finding)} (finding {finding.id})",
     )
     if finding.kind == UNPROVEN:
-        group, name = "unproven", f"{name or 'the motion between the samples'}"
+        group, name = "unproven", f"{bodies_text(finding) or 'the motion between the samples'}{by}"
     if finding.kind in OF_TOLERANCES:
         return _of_tolerances(finding, text)
     if finding.waived is not None:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from clearance.findings.comparison import Comparison
 from clearance.findings.finding import Finding
-from clearance.findings.finding_text import bodies_text, finding_line, waived_text, when_text
+from clearance.findings.finding_text import finding_line, waived_text, when_text, who_text
 from clearance.findings.verdict import Verdict
 from clearance.record.wording import count
 from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
@@ -95,7 +95,7 @@ def _table(findings: Sequence[Finding], comparison: Comparison | None) -> list[s
         cells = [
             f"{one.status}, waived" if one.waived else one.status,
             name_shown(one.rule),
-            bodies_text(one) or one.text or one.kind,
+            who_text(one),
             *figures(one),
             when_text(one),
             waived_text(one),

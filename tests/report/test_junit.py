@@ -6,15 +6,21 @@ import dataclasses
 from datetime import date
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.record.record import ProfileAnswer
 from clearance.report import junit
+from clearance.report.junit_cases import write_run_junit
+from clearance.report.markdown import markdown
 from clearance.run import Question, answer
 from clearance.world.case import Limits, Omission
 from clearance.world.notice import Notice, Severity
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
+from tests.made_cases import at
+from tests.report.cells import sliding
 from tests.report.junit_schema import valid_suite
 from tests.report.made import run_of, verdict_of, write_junit
 from tests.report.records import disagreeing, record
@@ -132,3 +138,25 @@ def test_a_file_has_room_for_what_fails_before_all_else(tmp_path, monkeypatch):
     assert n_left_out > 0 and told["cases_left_out"] == str(n_left_out)
     assert suite.get("failures") == valid_suite(whole).get("failures")
     assert (tmp_path / "junit.xml").stat().st_size < 1500 + 1000
+
+
+def test_a_rule_that_no_one_pair_leaves_open_has_a_name_and_the_advice_stands_in_no_column(
+    tmp_path, monkeypatch
+):
+    """Two boxes on clocks that are not tied go at the limit; the proof is given up."""
+    monkeypatch.setattr("clearance.simulate.measure.clocks.unsynchronised.MOST_DECIDING", -1)
+    way = [(0, 0), (0.3, 0.3), (1, 1)]
+    robots = [sliding(name, way, at(y=y, z=0.5)) for name, y in (("a", 0), ("b", 0.2))]
+    limits = cl.Limits(rules=(cl.Rule(("a/*", "b/*"), name="apart", fail=0.1, warn=0.2),))
+    run = cl.check(cl.Case("at", tuple(robots), (), limits, clock=cl.Clock(np.inf)))
+    write_run_junit(run.report, tmp_path / "junit.xml")
+    named = [
+        case.get("name")
+        for case in ElementTree.parse(tmp_path / "junit.xml").getroot().iter("testcase")
+        if case.get("classname") == "unproven"
+    ]
+    assert named == ["the motion between the samples [apart]"]
+    row = "| violated | apart | any pair | "
+    assert sum(line.startswith(row) for line in markdown(run.report).splitlines()) == 1
+    page = run.page()
+    assert "not proven any pair" in page and "not proven a finer proof" not in page

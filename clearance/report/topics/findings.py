@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.finding import Finding
-from clearance.findings.finding_text import bodies_text, stretch_text, waived_text, when_text
+from clearance.findings.finding_text import stretch_text, waived_text, when_text, who_text
 from clearance.record.wording import count, limit_mm, mm, near_mm
 from clearance.report.blocks import (
     At,
@@ -79,7 +79,7 @@ def _since(comparison: Comparison) -> Iterator[Paragraph | Bullets]:
 
 def _row(finding: Finding, since: ComparedFinding | None, compared: bool) -> Row:
     rule = f"profile {finding.rule}" if finding.kind == "profile" else name_shown(finding.rule)
-    who = bodies_text(finding) or finding.text or "no pair is near"
+    who = who_text(finding)
     cells: list[Content | Cell] = [
         Inline(finding.status, f"tag {finding.status}"),
         rule,
