@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from clearance.errors import BadProgram, at
 from clearance.formats.program.controlled_arm import ControlledArm
 from clearance.formats.program.controller_program import ControllerMove, ControllerWait
 
@@ -16,6 +15,9 @@ NO_WAY = 1e-9
 
 ONLY_TURNS = "the tool only turns before or after"
 """Why a corner zone is none where a controller may turn the tool on the way all the same."""
+
+OTHER_TOOL = " has another tool"
+"""Ends why a corner zone is none where a controller may cut the corner all the same."""
 
 
 @dataclass(eq=False)
@@ -35,18 +37,14 @@ class Stops:
     def applied(
         self, moves: Sequence[ControllerMove | ControllerWait]
     ) -> Iterator[ControllerMove | ControllerWait]:
-        """The moves, without corner zones where controllers stop all the same.
-
-        Raises:
-            BadProgram: the tool changes at one.
-        """
+        """The moves, without corner zones where controllers stop all the same."""
         before: ControllerMove | None = None
         after = [*moves, None][1:]
         for one, other in zip(moves, after, strict=True):
             if isinstance(one, ControllerMove):
                 why = self._why_it_stops(before, one, other) if one.zone else ""
                 waits = isinstance(other, ControllerWait) and other.reads_on
-                if why and (waits or why == ONLY_TURNS):
+                if why and (waits or why == ONLY_TURNS or why.endswith(OTHER_TOOL)):
                     text = "a wait follows a corner zone" if waits else f"a corner zone, and {why}"
                     text = f"{one.line}: {text}: the tool is taken to stop"
                     self.cut.append(f"{text}, and the controller may cut the corner")
@@ -61,19 +59,13 @@ class Stops:
         one: ControllerMove,
         other: ControllerMove | ControllerWait | None,
     ) -> str:
-        """Why a corner zone is none; empty where it is one.
-
-        Raises:
-            BadProgram: the tool changes where it is.
-        """
+        """Why a corner zone is none; empty where it is one."""
         if not isinstance(other, ControllerMove):
             return "no move follows at once"
         if one is self.first:
             return "it begins there"
         if not np.array_equal(one.tool, other.tool):
-            with at(str(one.line)):
-                fault = f"it ends in a corner zone, and {other.line} has another tool"
-                raise BadProgram(fault, valid="write it without a zone, or use the same tool")
+            return f"{other.line}{OTHER_TOOL}"
         moved = self._moved(before, one), self._moved(one, other)
         if "" in moved:
             return "it does not move before or after"
