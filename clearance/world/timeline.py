@@ -224,12 +224,18 @@ def _ends(knots: Knots) -> tuple[float, float]:
 
 
 def _span(case: Case, tables: Sequence[_Table]) -> tuple[float, float]:
-    """[s] From the first sample to the last of all that do not loop; what loops may have begun before."""
+    """[s] From the first sample to the last of all that do not loop, and once through each table that does.
+
+    What loops may have begun before.
+    """
     moving = [table for table in tables if table.moves]
     if not moving:
         _ = case.robots[0].given_trajectory  # refuses a case in which nothing moves
-    once = [table for table in moving if table.timing.after != "loop"] or moving
-    return min(table.once[0] for table in once), max(table.once[1] for table in once)
+    loops = [table.once for table in moving if table.timing.after == "loop"]
+    once = [table.once for table in moving if table.timing.after != "loop"]
+    start = min(first for first, _ in once or loops)
+    ends = [last + max(0.0, start - first) for first, last in loops]
+    return start, max(ends + [last for _, last in once])
 
 
 def _laid_out(table: _Table, end: float) -> _Table:
@@ -279,10 +285,10 @@ def _require_within(window: Window, start: float, end: float) -> None:
 
 
 def _steps(laid: Sequence[Knots], cuts: np.ndarray, start: float, end: float) -> np.ndarray:
-    """(n,) [s] all samples and cuts of the run, each once; the table's own array where there is one only."""
+    """(n,) [s] all samples and cuts of the run, and its end, each once; the array of a table that is alone."""
     if len(laid) == 1 and not len(cuts) and start == laid[0].times[0] and end == laid[0].times[-1]:
         return laid[0].times
-    times = np.unique(np.concatenate([*(knots.times for knots in laid), cuts]))
+    times = np.unique(np.concatenate([*(knots.times for knots in laid), cuts, [end]]))
     return times[(times >= start) & (times <= end)]
 
 

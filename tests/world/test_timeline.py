@@ -176,3 +176,16 @@ def test_what_loops_may_be_running_when_the_run_begins():
     poses = link_poses_at(first.case, first.motions, slice(0, 1))[0]
     expected = [pose_at(case, name, 0.0) for name in NAMES]
     assert np.allclose(poses_in(first, poses), expected, rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("begins", [1.0, 0.0, -1.5, -40.0])
+def test_a_run_lasts_once_through_each_table_that_loops(begins):
+    case = cell(7)
+    door = case.obstacles[1]
+    period = 4.0 * END
+    rate = float(np.ptp(door.moves.times)) / period
+    slow = replace(door, moves=replace(door.moves, timing=Timing(begins, rate, "loop")))
+    case = replace(case, obstacles=(case.obstacles[0], slow, *case.obstacles[2:]), carries=())
+    times = timeline(case).times
+    assert times[0] == 0.0
+    assert times[-1] == pytest.approx(max(0.0, begins) + period)
