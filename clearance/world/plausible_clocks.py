@@ -20,6 +20,9 @@ SKEW = 1e-3
 """[s] Recordings that begin within it begin together. Beyond it, and within an interval of theirs, each began with
 its first message: that is a warning."""
 
+LATENCY = 0.1
+"""[s] Two messages that are sent at once are received, or stamped, within it."""
+
 LONGER = 100.0
 """A table in milliseconds takes at least so many times as long as all else that moves: both are of one work, and
 milliseconds read as seconds are 1000 times as long."""
@@ -139,12 +142,13 @@ def _lacking(text: str, asked: Trajectory, slack: float) -> Notice:
 
 
 class _Recording(NamedTuple):
-    """Messages, or a table, that something was recorded to follow.
+    """Messages, or a table, that something was recorded to follow, or a message that it is to follow.
 
     Attributes:
         at_start: [s] what their clock showed at the run's time 0; NaN for a table, whose own times are the run's.
         begins: [s] of the run, their first sample. kind: whose they are, and name.
-        usual: [s] between two samples, by their clock.
+        usual: [s] between two samples, by their clock; of one message `LATENCY`.
+        what: the word for it.
     """
 
     at_start: float
@@ -153,6 +157,7 @@ class _Recording(NamedTuple):
     name: str
     usual: float
     timing: Timing
+    what: str = "recording"
 
     @staticmethod
     def of(
@@ -173,7 +178,7 @@ class _Recording(NamedTuple):
         """Text: it begins so late after another, how it is taken, and which starts keep and drop the delay."""
         whose = first.kind if first.kind != self.kind else ""
         return (
-            f"CHECK CLOCKS: by its stamps the recording of {self.kind}{self.name!r} begins {delay} s after "
+            f"CHECK CLOCKS: by its stamps the {self.what} of {self.kind}{self.name!r} begins {delay} s after "
             f"that of {whose}{first.name!r}, {taken}; beside its file, `start: {keeps}` keeps the delay "
             f"and `start: {drops}` drops it"
         )
@@ -223,9 +228,11 @@ def _recordings(case: Case) -> Iterator[_Recording]:
             continue
         is_table = asked.is_recorded and placed.recording is None
         if asked.began is not None or (is_table and np.ptp(asked.positions, axis=0).any()):
-            yield _Recording.of(
+            found = _Recording.of(
                 "robot ", placed.robot.name, asked.began, asked.times, placed.timing
             )
+            is_message = asked.is_message
+            yield found._replace(usual=LATENCY, what="message") if is_message else found
     for obstacle in case.obstacles:
         moves = obstacle.moves
         if moves is not None and moves.began is not None and changes(moves):

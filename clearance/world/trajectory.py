@@ -104,6 +104,7 @@ class Trajectory:
         velocities: (n, k) as positions, [rad/s] or [m/s], or None.
         path_error: [rad or m] how far joints may be off between samples, and at samples added to the file's.
         began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
+        is_message: True for a planned message, which begins when its stamp says, or as it is received.
         is_recorded: True for a table that is a recording, whose times stay as they are.
         points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
@@ -139,6 +140,7 @@ class Trajectory:
     path_error: float = 0.0
     points: Points | None = None
     began: float | None = None
+    is_message: bool = False
     is_recorded: bool = False
     given_extents: np.ndarray | None = None
     has_way_in: bool = False

@@ -159,12 +159,12 @@ def test_a_robot_that_a_program_moves_too_has_its_clock():
     assert clocks[False, 0] == clocks[False, 1] == clocks[False, 3] != clocks[False, 2]
 
 
-def two_recordings(folder, apart, *changes):
+def two_recordings(folder, apart, *changes, **more):
     """Both arms by recordings of which the right one's first stamp is some seconds after the left one's."""
     files = "joints: {shoulder: 0.2}", "trajectory: path.csv"
     case = load_cell(folder, *files, *changes)
     left, right = (
-        replace(one, trajectory=replace(one.given_trajectory, began=EPOCH + late))
+        replace(one, trajectory=replace(one.given_trajectory, began=EPOCH + late, **more))
         for one, late in zip(case.robots, (0.0, apart), strict=True)
     )
     return replace(case, robots=(left, right))
@@ -209,6 +209,16 @@ def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_pa
     assert one.severity == "warning" and "begins 0.25 s after that of 'left'" in one.text
     (one,) = [n for n in notices_of(two_recordings(tmp_path, 1.25)) if n.kind == "clocks"]
     assert one.severity == "suspect"
+
+
+def test_planned_messages_that_begin_apart_are_suspect_whatever_is_between_their_points(tmp_path):
+    """The points are half a second apart; the stamps of two messages at once are nearer than a tenth."""
+    (text,) = reported(two_recordings(tmp_path, 0.25, is_message=True))
+    assert "by its stamps the message of robot 'right' begins 0.25 s after that of 'left'" in text
+    for late, severity in ((0.25, "suspect"), (0.05, "warning")):
+        case = two_recordings(tmp_path, late, is_message=True)
+        (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
+        assert one.severity == severity
 
 
 @pytest.mark.parametrize("start", [0, 0.5, 3.25])

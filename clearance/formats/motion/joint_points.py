@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,7 +32,7 @@ from clearance.formats.message.documents import (
     yaml_documents,
 )
 from clearance.formats.message.times import NANO, nanoseconds_in
-from clearance.formats.message.values import require_fields
+from clearance.formats.message.values import header_of, require_fields
 from clearance.formats.motion.joint_messages import JointMessage, chosen, messages_in
 from clearance.formats.motion.message_fields import start_of, with_start, with_unread
 from clearance.formats.motion.trajectory_file import ReadTrajectory, TrajectoryRequest
@@ -77,12 +78,13 @@ class _Point(NamedTuple):
 
 
 def trajectory_of_message(
-    message: JointMessage, most: int, joints_needed: bool = True
+    message: JointMessage, most: int, joints_needed: bool = True, received: int = 0
 ) -> ReadTrajectory:
     """The trajectory that a message holds.
 
     Args:
         most: how many numbers there may be, so that aliases do not make more of a file than it holds.
+        received: [ns] when, by the clock of stamps; 0 if nobody says. A message without a stamp begins then.
 
     Raises:
         BadInput: with the line and the keys that lead to what is wrong.
@@ -115,6 +117,8 @@ def trajectory_of_message(
         trajectory = _assembled(names, points)
     trajectory, on_start = with_start(trajectory, start)
     trajectory, on_unread = with_unread(trajectory, message, start)
+    if stamp := nanoseconds_in(header_of(given).get("stamp")) or received:
+        trajectory = replace(trajectory, began=stamp / NANO, is_message=True)
     return ReadTrajectory(trajectory, (*_notes(points, trajectory), *on_start, *on_unread))
 
 

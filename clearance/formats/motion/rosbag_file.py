@@ -44,6 +44,9 @@ _PLANNED = (
 """Kinds of messages that hold what was planned. Goals are topics in ROS 1; in ROS 2 they are recorded as events of
 the service `_action/send_goal`, where its introspection is on."""
 
+_PLANS = frozenset(one for one in _PLANNED if one.startswith("moveit") and "Execute" not in one)
+"""Those that no robot follows as they are received."""
+
 _STATES = "sensor_msgs/msg/JointState"
 MOST_MESSAGES = 1_000_000
 """Of one topic; some 70 s."""
@@ -72,9 +75,12 @@ def read_bag(
             choice.refuse_others({"topic", "gaps"}, "recorded joint states")
             return trajectory_of_states(_states(reader, topic), turns, choice.gaps, wrapping)
         choice.refuse_others({"topic", "which"}, "messages in a bag")
-        plain = (_plain(one) for _, one in _messages(reader, topic))
-        planned = messages_in([*_goals_once(plain)], sys.maxsize)
-        return trajectory_of_message(chosen(planned, choice.which), sys.maxsize)
+        plain = ((time, _plain(one)) for time, one in _messages(reader, topic))
+        goals = [*_goals_once(plain)]
+        message = chosen(messages_in([one for _, one in goals], sys.maxsize), choice.which)
+        whole = message.around[0][1] if message.around else message.trajectory
+        received = 0 if kind in _PLANS else next(time for time, one in goals if one is whole)
+        return trajectory_of_message(message, sys.maxsize, received=received)
 
 
 @contextmanager
@@ -166,16 +172,16 @@ def _states(reader: AnyReader, topic: str) -> list[JointState]:
     return states
 
 
-def _goals_once(messages: Iterable[Any]) -> Iterator[Any]:
+def _goals_once(messages: Iterable[tuple[int, Any]]) -> Iterator[tuple[int, Any]]:
     """The messages; of the events of one goal, which client and server both tell of, the first."""
     seen: set[str] = set()
-    for message in messages:
+    for time, message in messages:
         if isinstance(message, Fields) and isinstance(message.get("request"), list):
             goals = {str(one.get("goal_id")) for one in message["request"]}
             if goals <= seen:
                 continue
             seen |= goals
-        yield message
+        yield time, message
 
 
 DEFINITIONS: dict[str, str] = {

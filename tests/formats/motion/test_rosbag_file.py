@@ -110,6 +110,14 @@ def test_a_goal_of_an_action_is_an_event_in_ros_2(tmp_path, container):
     assert EVENT.endswith("_SendGoal_Event")
 
 
+def test_a_message_without_a_stamp_begins_as_it_is_received(tmp_path):
+    """What MoveIt shows is not followed then."""
+    topics = {"/plan": [MOVE, MOVE], "/display": [displayed(MOVE)]}
+    path = write_bag(tmp_path, "mcap", topics)
+    assert read(path, topic="/plan", which=2).trajectory.began == 2.0
+    assert read(path, topic="/display").trajectory.began is None
+
+
 @pytest.mark.slow
 def test_a_bag_without_definitions_is_read_by_ours(tmp_path):
     bag = without_definitions(write_bag(tmp_path / "a", "rosbag2 sqlite3", {"/plan": [MOVE]}))
