@@ -27,6 +27,10 @@ LONGER = 100.0
 """A table in milliseconds takes at least so many times as long as all else that moves: both are of one work, and
 milliseconds read as seconds are 1000 times as long."""
 
+STANDS, MINUTE = 20.0, 60.0
+"""[-], [s] A cell stands this many times as long as all its tables take, and longer than a minute, where a `start`
+or times are milliseconds."""
+
 SLOW_SLIDE, SLOW_TURN = 5e-3, 1e-2
 """[m/s], [rad/s] A thousandth of what conveyors, slides and joints do at most."""
 
@@ -36,6 +40,7 @@ class _Table(NamedTuple):
 
     Attributes:
         length: [s] of the run, once through. speeds: what gives its greatest speeds [m/s], [rad/s].
+        moves: False for what stands, and is in the cell for this time only.
     """
 
     start: float
@@ -44,11 +49,13 @@ class _Table(NamedTuple):
     timing: Timing
     length: float
     speeds: Callable[[], Sequence[float]]
+    moves: bool
 
     @property
     def text(self) -> str:
         until = "on" if self.end == math.inf else f"to {time_text(self.end)} s"
-        return f"{self.name} moves from {time_text(self.start)} {until}"
+        does = "moves" if self.moves else "is in the cell"
+        return f"{self.name} {does} from {time_text(self.start)} {until}"
 
     @property
     def is_slow(self) -> bool:
@@ -64,28 +71,44 @@ class _Table(NamedTuple):
 
 
 def notices_on_clocks(case: Case) -> list[Notice]:
-    """Notices on tables that end before others begin, and on recordings that are shifted against their stamps.
-
-    There is none where the case says `start` or `after`.
-    """
+    """Notices on tables that end before others begin, and on recordings that are shifted against their stamps."""
     if case.clock.slack == math.inf:
         return []
-    tables, found = sorted(_tables(case)), list(_times_lacking(case))
-    for i, later in enumerate(tables[1:], 1):
-        earlier = max(tables[:i], key=lambda table: table.end)
-        meant = earlier.timing.says_after or later.timing.says_start
-        if earlier.end < later.start and not meant:
+    tables = sorted(_tables(case))
+    return [
+        *_times_lacking(case),
+        *_never_together(tables),
+        *_a_thousand_times_as_long([table for table in tables if table.moves]),
+        *_recordings_begin_unlike(case),
+        *_recorded_tables_begin_later(case),
+    ]
+
+
+def _never_together(tables: Sequence[_Table]) -> Iterator[Notice]:
+    """Notices on tables that end before others begin; where the case says `start` or `after`, if that is long."""
+    lengths = [table.length for table in tables if table.moves]
+    far = max(MINUTE, STANDS * sum(lengths))
+    for i, later in enumerate(tables):
+        before = [table for table in tables[:i] if table.moves]
+        earlier = max(before, key=lambda table: table.end, default=later)
+        wait = later.start - earlier.end
+        if wait <= 0.0:
+            continue
+        if not (earlier.timing.says_after or later.timing.says_start):
             text = (
                 f"CHECK CLOCKS: {earlier.text}, {later.text}: they never move together; do their times "
                 "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
             )
-            found.append(Notice(Severity.SUSPECT, "clocks", text))
-    return [
-        *found,
-        *_a_thousand_times_as_long(tables),
-        *_recordings_begin_unlike(case),
-        *_recorded_tables_begin_later(case),
-    ]
+            yield Notice(Severity.SUSPECT, "clocks", text)
+        elif wait > (max(lengths) if later.timing.start else far):
+            text = (
+                f"nothing moves from {time_text(earlier.end)} to {time_text(later.start)} s, when {later.name} "
+                "begins: `start` and times are in seconds, is this milliseconds?"
+            )
+            if wait > far:
+                yield Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}")
+            else:
+                yield Notice(Severity.WARNING, "units", text)
 
 
 def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
@@ -111,7 +134,7 @@ def _times_lacking(case: Case) -> Iterator[Notice]:
         asked = placed.trajectory
         if asked is None or not (asked.left_out or asked.is_rough):
             continue
-        moving = [table.name for table in _tables(case)]
+        moving = [table.name for table in _tables(case) if table.moves]
         own = [f"robot {name!r}" for name in (placed.robot.name, *asked.drives)]
         others = listed([name for name in moving if name not in own])
         if others and asked.left_out:
@@ -240,20 +263,27 @@ def _recordings(case: Case) -> Iterator[_Recording]:
 
 
 def _tables(case: Case) -> Iterator[_Table]:
+    """Of all that moves, and of what stands but comes and goes."""
     for placed in case.robots:
-        if placed.trajectory is not None and np.ptp(placed.trajectory.positions, axis=0).any():
-            name = f"robot {placed.robot.name!r}"
-            speeds = partial(greatest_speeds, placed)
-            yield _table(name, placed.trajectory.times, placed.timing, speeds)
+        if placed.trajectory is not None:
+            name, asked = f"robot {placed.robot.name!r}", placed.trajectory
+            speeds, moves = partial(greatest_speeds, placed), np.ptp(asked.positions, axis=0).any()
+            yield from _table(name, asked.times, placed.timing, speeds, bool(moves))
     for obstacle in case.obstacles:
-        if obstacle.moves is not None and changes(obstacle.moves):
-            name, moves = f"obstacle {obstacle.name!r}", obstacle.moves
-            yield _table(name, moves.times, moves.timing, partial(greatest_speeds_in, moves))
+        if obstacle.moves is not None:
+            name, table = f"obstacle {obstacle.name!r}", obstacle.moves
+            speeds = partial(greatest_speeds_in, table)
+            yield from _table(name, table.times, table.timing, speeds, changes(table))
 
 
 def _table(
-    name: str, times: np.ndarray, timing: Timing, speeds: Callable[[], Sequence[float]]
-) -> _Table:
-    start, end = timing.run_times(times)[[0, -1]].tolist()
-    until = math.inf if timing.after == "loop" else end
-    return _Table(start, until, name, timing, end - start, speeds)
+    name: str,
+    times: np.ndarray,
+    timing: Timing,
+    speeds: Callable[[], Sequence[float]],
+    moves: bool,
+) -> Iterator[_Table]:
+    if moves or timing.after == "absent":
+        start, end = timing.run_times(times)[[0, -1]].tolist()
+        until = math.inf if timing.after == "loop" else end
+        yield _Table(start, until, name, timing, end - start, speeds, moves)

@@ -97,6 +97,31 @@ def test_what_the_case_says_is_meant(tmp_path, door, arm):
     assert not reported(cell(tmp_path, 3.0, *changes))
 
 
+@pytest.mark.parametrize(
+    ("start", "severity"), [(1.5, None), (3.0, "warning"), (50.0, "warning"), (700.0, "suspect")]
+)
+def test_a_start_that_leaves_all_standing_longer_than_any_table_takes(tmp_path, start, severity):
+    """Both tables take a second."""
+    arm = "trajectory: path.csv", f"trajectory: {{file: path.csv, start: {start}}}"
+    windows = [f"from: {start + late}, until: {start + late + 0.25}" for late in (0.25, 0.5)]
+    changes = "from: 0.25, until: 0.75", windows[0], "from: 0.5, until: 1", windows[1]
+    case = load_cell(tmp_path, *arm, *changes, trajectory=PATH.format(0, 1))
+    found = [one for one in notices_of(case) if one.kind == "units"]
+    assert [str(one.severity) for one in found] == ([severity] if severity else [])
+    assert all(f"nothing moves from 1 to {start:g} s" in one.text for one in found)
+
+
+@pytest.mark.parametrize(("start", "n_found"), [(0.5, 0), (500.0, 1)])
+def test_what_stands_in_the_cell_for_a_time_only_after_all_motion_is_suspect(
+    tmp_path, start, n_found
+):
+    door = "moves: door.csv", "moves: {file: door.csv, after: absent}"
+    stands = "time,x,y,z,qx,qy,qz,qw\n{0},4,0,0,0,0,0,1\n{1},4,0,0,0,0,0,1\n"
+    found = reported(cell(tmp_path, 0.0, *door, door=stands.format(start, 6.0 * start)))
+    assert len(found) == n_found
+    assert all("obstacle 'door' is in the cell from 500 to 3000 s" in text for text in found)
+
+
 def test_when_the_earlier_begins_does_not_say_why_the_later_is_later(tmp_path):
     assert reported(cell(tmp_path, EPOCH, "moves: door.csv", "moves: {file: door.csv, start: 0}"))
 
