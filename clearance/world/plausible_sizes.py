@@ -26,6 +26,7 @@ from clearance.world.extents import (
     slides_of,
 )
 from clearance.world.forest import owner_of, resolved_mount
+from clearance.world.holders import robots_below
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
@@ -80,11 +81,7 @@ def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:
     odd = [
         f"{what} stands {metres(away)} m away" for away, what in greatest(far) if away > FAR_ORIGIN
     ]
-    return (
-        [f"{listed(odd)} from its link's frame; lengths are in metres, is this millimetres?"]
-        if odd
-        else []
-    )
+    return [f"{listed(odd)} from its link's frame; {_IN_METRES}"] if odd else []
 
 
 def _odd_links(placed: PlacedRobot, before: str) -> list[str]:
@@ -114,9 +111,8 @@ def _lengths_in_words(
     ]
 
 
-_TOO_LARGE = (
-    "lengths are in metres, is this millimetres (a mesh file in millimetres needs scale 0.001)?"
-)
+_IN_METRES = "lengths are in metres, is this millimetres?"
+_TOO_LARGE = f"{_IN_METRES[:-1]} (a mesh file in millimetres needs scale 0.001)?"
 _TOO_SMALL = (
     "lengths are in metres, is it a thousand times too small (a mesh file in metres has scale 1)?"
 )
@@ -175,7 +171,7 @@ class Place(NamedTuple):
     """About where something is.
 
     Attributes:
-        pose: (4, 4) in the world [m], at one time. travel: [m] its origin is no farther from there at any other.
+        pose: (4, 4) in the world [m], at one time or amid all. travel: [m] its origin never is farther from there.
     """
 
     pose: np.ndarray
@@ -183,15 +179,36 @@ class Place(NamedTuple):
 
 
 def odd_places(case: Case) -> list[str]:
-    """Obstacles, or else a base, that stand where no robot of the case gets."""
+    """Obstacles, or else bases, that stand where no robot of the case gets, or far from all else."""
     bases = _bases(case)
     reaches = [reach_of(placed) for placed in case.robots]
-    far = []
-    for obstacle, gaps in zip(case.obstacles, _gaps(case, bases, of_units=True), strict=True):
-        near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(gaps, reaches, strict=True))
-        if not near and not _may_be_wall(obstacle.body, min(gaps)):
-            far.append((min(gaps), obstacle.name))
-    return _in_words(case, greatest(far), bases) if far else []
+    far, gaps = [], _gaps(case, bases, of_units=True)
+    for obstacle, own in zip(case.obstacles, gaps, strict=True):
+        near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(own, reaches, strict=True))
+        if not near and not _may_be_wall(obstacle.body, min(own)):
+            far.append((min(own), obstacle.name))
+    return _in_words(case, greatest(far), bases) if far else _odd_bases(case, bases, gaps)
+
+
+def _odd_bases(case: Case, bases: Sequence[Place], gaps: Sequence[Sequence[float]]) -> list[str]:
+    """A line on robots that stand far from all that is not on them: from another robot, and from each obstacle."""
+    farthest, far = FAR * max(1.0, *map(reach_of, case.robots)), []
+    for i, base in enumerate(bases):
+        on = {(False, k) for k in range(len(bases)) if i in (k, *robots_below(case, k))}
+        away = [_apart(base, other) for k, other in enumerate(bases) if (False, k) not in on]
+        for one, own in zip(case.obstacles, gaps, strict=True):
+            if away and (one.mount is None or owner_of(case, one.mount) not in on):
+                away.append(own[i])
+        if min(away, default=0.0) > farthest:
+            far.append((min(away), f"robot {case.robots[i].robot.name!r} stands"))
+    stand = [f"{text} {metres(gap)} m away from all else" for gap, text in greatest(far)]
+    return [f"{listed(stand)}; {_IN_METRES}"] if far else []
+
+
+def _apart(one: Place, other: Place) -> float:
+    """[m] Two origins never are nearer."""
+    between = float(np.linalg.norm(one.pose[:3, 3] - other.pose[:3, 3]))
+    return between - one.travel - other.travel
 
 
 def _may_be_wall(body: Body, gap: float) -> bool:
@@ -296,13 +313,12 @@ def _gaps(case: Case, bases: Sequence[Place], of_units: bool = False) -> list[li
 
 def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> list[str]:
     base = max(float(np.abs(place.pose[:3, 3]).max()) for place in bases)
-    hint = "lengths are in metres, is this millimetres?"
     whose = _whose_base(case)
     if len(far) == len(case.obstacles) and base > FAR:
         gap_text = f"{metres(far[-1][0])} m from the nearest obstacle"
-        return [f"{whose} stands {metres(base)} m away, {gap_text}; {hint}"]
+        return [f"{whose} stands {metres(base)} m away, {gap_text}; {_IN_METRES}"]
     stand = [f"obstacle {name!r} stands {metres(gap)} m away from {whose}" for gap, name in far]
-    return [f"{listed(stand)}; {hint}"]
+    return [f"{listed(stand)}; {_IN_METRES}"]
 
 
 def notices_on_planes(case: Case) -> Iterator[Notice]:
@@ -369,10 +385,10 @@ def _obstacle_place(case: Case, i_obstacle: int, at_first: bool = False) -> Plac
     travel = below.travel if stays else np.inf
     if obstacle.moves is None:
         return Place(below.pose, travel)
-    positions, start = obstacle.moves.positions, np.eye(4)
-    start[:3, 3] = positions[0]
-    travelled = float(np.linalg.norm(positions - positions[0], axis=1).max())
-    return Place(below.pose @ start, travel + travelled)
+    positions, middle = obstacle.moves.positions, np.eye(4)
+    middle[:3, 3] = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
+    travelled = float(np.linalg.norm(positions - middle[:3, 3], axis=1).max())
+    return Place(below.pose @ middle, travel + travelled)
 
 
 def _mounted(case: Case, mount: Mount) -> Place:

@@ -207,7 +207,7 @@ def test_a_far_cell_whose_robots_stand_on_its_table_is_not_suspect(tmp_path):
 
 def test_a_table_in_millimetres(tmp_path):
     place, travel = told(tmp_path, door=table(1000.0))
-    assert place.startswith("CHECK UNITS: obstacle 'door' stands 2993 m away from every robot's")
+    assert place.startswith("CHECK UNITS: obstacle 'door' stands 3525 m away from every robot's")
     assert travel.startswith("CHECK UNITS: obstacle 'door' moves 1000 m; lengths are in metres")
 
 

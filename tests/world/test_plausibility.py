@@ -97,6 +97,31 @@ def test_what_rides_on_a_link_is_not_many_times_the_reach():
     assert reported(replace(case, obstacles=(riding,))) == [("suspect", "units")]
 
 
+@pytest.mark.parametrize("mount", [None, "block", "arm/upper"])
+def test_a_robot_that_stands_far_from_all_else_is_suspect(mount):
+    """The block is near the first one; a tool on the second does not count as near it."""
+    case = case_of()
+    for away, expected in ((0.9, []), (900.0, [("suspect", "units")])):
+        placed = {"mount": Mount(mount, at(away))} if mount else {"world_from_base": at(away)}
+        other = PlacedRobot(replace(arm(), name="other"), **placed)
+        tool = PlacedRobot(replace(arm(), name="tool"), mount=Mount("other/upper", at(0.1)))
+        held = replace(case.obstacles[0], body=replace(case.obstacles[0].body, name="held"))
+        held = Obstacle(held.body, mount=Mount("other/upper", at(0.1)))
+        robots, obstacles = (*case.robots, other, tool), (*case.obstacles, held)
+        assert reported(replace(case, robots=robots, obstacles=obstacles)) == expected
+
+
+@pytest.mark.parametrize("mount", [None, Mount("upper", at(0.1))])
+def test_a_table_whose_poses_all_are_far_away_is_suspect(mount):
+    """From 50 to 90 m: nearer to its first pose than the poses are to each other."""
+    case = case_of()
+    for unit, expected in ((1e-3, []), (1.0, [("suspect", "units")])):
+        positions = unit * np.array([[0.0, 0.0, 50.0], [0.0, 0.0, 90.0]])
+        moves = PoseTable(np.array([0.0, 3.0]), positions, np.tile([0.0, 0.0, 0.0, 1.0], (2, 1)))
+        slide = Obstacle(Body("slide", box((0.1, 0.1, 0.1))), mount=mount, moves=moves)
+        assert reported(replace(case, obstacles=(*case.obstacles, slide))) == expected
+
+
 @pytest.mark.parametrize("by", ["upper", "cart"])
 @pytest.mark.parametrize("mount", [None, Mount("upper", at(200.0))])
 def test_a_part_that_lies_far_away_as_a_robot_picks_it_up_is_suspect(by, mount):
