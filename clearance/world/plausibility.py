@@ -63,11 +63,11 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
         before = case.prefix_of(placed)
         if placed.trajectory is not None:
             found += notices_on_motion(placed, before)
-            found += notices_on_rest(placed, before)
             found += notices_on_speed(placed, case.limits.joints, before)
             found += notices_on_holes(placed, before)
             found += notices_on_unproven(placed, before)
             found += notices_on_wrap(placed, before)
+        found += notices_on_rest(placed, before)
         found += notices_on_joints(placed, case.limits.joints, before)
         found += _limbs_not_measured(placed)
     return worst_first(found)

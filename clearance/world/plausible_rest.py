@@ -1,4 +1,4 @@
-"""Notices on joints that a trajectory leaves out and nobody else gives: they stay at 0; and on such bases."""
+"""Notices on joints that no trajectory moves and nobody else gives: they stay at 0; and on such bases."""
 
 from __future__ import annotations
 
@@ -54,18 +54,18 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
         before: what stands before the names of joints.
     """
     asked, joints = placed.trajectory, placed.robot.moving_joints
-    if asked is None:
-        return []
-    given = {*asked.joint_names, *placed.fixed_positions}
+    moved = set() if asked is None else {*asked.joint_names}
+    given = moved | {*placed.fixed_positions}
     resting = [joint for joint in joints if joint.name not in given]
     if not resting:
         return []
-    between = _between(placed.robot, resting, {*asked.joint_names})
+    between = _between(placed.robot, resting, moved)
     names = [repr(before + one.name) for one in sorted(resting, key=lambda one: one not in between)]
     are = "is given by nobody and stays" if len(resting) == 1 else "are given by nobody and stay"
     text = f"{len(resting)} of {len(joints)} joints {are} at 0: {listed(names, 4)}; "
     text += f"joints on both sides of {names[0]} are given, " if between else ""
-    text += "is a column missing? robot: {joints: {NAME: …}} says where they are"
+    text += f"is {'a column' if moved else 'its trajectory'} missing? "
+    text += "robot: {joints: {NAME: …}} says where they are"
     return [Notice(Severity.WARNING, "rest", text, placed.robot.name)]
 
 

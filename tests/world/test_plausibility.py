@@ -103,8 +103,10 @@ def test_a_robot_that_stands_far_from_all_else_is_suspect(mount):
     case = case_of()
     for away, expected in ((0.9, []), (900.0, [("suspect", "units")])):
         placed = {"mount": Mount(mount, at(away))} if mount else {"world_from_base": at(away)}
+        placed["fixed_positions"] = {"elbow": 0.0}
         other = PlacedRobot(replace(arm(), name="other"), **placed)
-        tool = PlacedRobot(replace(arm(), name="tool"), mount=Mount("other/upper", at(0.1)))
+        placed = {"fixed_positions": {"elbow": 0.0}, "mount": Mount("other/upper", at(0.1))}
+        tool = PlacedRobot(replace(arm(), name="tool"), **placed)
         held = replace(case.obstacles[0], body=replace(case.obstacles[0].body, name="held"))
         held = Obstacle(held.body, mount=Mount("other/upper", at(0.1)))
         robots, obstacles = (*case.robots, other, tool), (*case.obstacles, held)
@@ -371,6 +373,15 @@ def test_joints_that_nobody_gives_are_a_warning_since_a_column_may_be_lost(given
     case_says = {f"j{i}": 0.1 for i in "01234" if i not in given}
     assert not texts(fixed_positions=case_says)
     assert not texts(trajectory=None)
+
+
+def test_a_robot_of_which_nothing_is_given_is_a_warning_beside_one_that_moves():
+    case = case_of()
+    other = PlacedRobot(replace(arm(), name="other"), world_from_base=at(0.9))
+    (text,) = [one.text for one in notices_of(replace(case, robots=(*case.robots, other)))]
+    assert text.startswith(
+        "1 of 1 joints is given by nobody and stays at 0: 'other/elbow'; is its traj"
+    )
 
 
 HALF = np.sqrt(0.5)
