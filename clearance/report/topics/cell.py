@@ -114,14 +114,22 @@ def _lengthen(spans: list[list[float]], span: tuple[float, float]) -> None:
 
 
 def carried_of(record: Record) -> list[dict[str, Any]]:
-    """Who carries what, from when until when [s], in order of time; an end of the run is an end."""
+    """Who carries what, from when until when [s], in order of time.
+
+    It ends with the run, and where the part leaves the cell with its carrier and does not come back.
+    """
     times, case = record.timeline.times, record.case
+    parts = [obstacle.name for obstacle in case.obstacles]
+    gone = dict(zip(parts, absences(record)[1], strict=True))
+    left = {
+        part: spans[-1][0] for part, spans in gone.items() if spans and spans[-1][1] == times[-1]
+    }
     found = [
         {
             "part": carry.part,
             "by": carry.by,
             "from": max(carry.window.start, float(times[0])),
-            "until": min(carry.window.end, float(times[-1])),
+            "until": min(carry.window.end, left.get(carry.part, float(times[-1]))),
             "touch": list(carry.touch),
             "grasp": "exact" if carry.exact_grasp else "as driven",
         }

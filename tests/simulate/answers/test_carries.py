@@ -9,9 +9,9 @@ import clearance as cl
 from clearance.world.carry import Carry
 from clearance.world.mount import Mount
 from clearance.world.robot import Joint, JointKind
-from clearance.world.timing import Window
+from clearance.world.timing import Timing, Window
 from tests.made_cases import at
-from tests.report.cells import box, cell, sliding
+from tests.report.cells import box, cell, sliding, table_of
 
 
 def told(obstacles, *carries):
@@ -78,3 +78,46 @@ def test_a_part_is_far_from_what_grips_it_wherever_the_rest_of_the_arm_is(by, x,
     case = cl.Case("far", (placed,), obstacles, carries=(Carry("part", by, Window(0.0)),))
     warnings = [one for one in cl.check(case).verdict.warnings if "picks it up" in one]
     assert len(warnings) == (told is not None) and all(told in one for one in warnings)
+
+
+WALL = box("wall", (1, 1, 0.1), at(z=-1.0))
+
+
+@pytest.mark.parametrize(
+    ("window", "tells"),
+    [
+        ((0.5, 1.5), ("picks up part 'a/0' at 0.5 s", "lets go of part 'a/0' at 1.5 s")),
+        ((1.0, 1.5), ("lets go of part 'a/0' at 1.5 s",)),
+        ((1.0,), ()),
+    ],
+)
+def test_a_tool_that_grips_or_lets_go_without_stopping_is_warned_of(window, tells):
+    """It turns back at 1 s."""
+    said = told((PART, WALL), Carry("a/0", "left/tool", Window(*window)))
+    said = [one for one in said if "in passing, at 1 m/s: check the times" in one]
+    assert len(said) == len(tells) and all(map(str.__contains__, said, tells))
+
+
+def test_a_part_that_changes_hands_or_comes_to_what_stands_is_not_taken_in_passing():
+    hands = Carry("a/0", "left/tool", Window(1.0, 1.5)), Carry("a/0", "wall", Window(1.5))
+    assert not [one for one in told((PART, WALL), *hands) if "in passing" in one]
+    comes = table_of([(0, 3.1, 0, 0.5), (1, 1.1, 0, 0.5)])
+    part = box("a/0", (0.1, 0.1, 0.1), moves=comes)
+    said = told((part, WALL), Carry("a/0", "wall", Window(0.5)))
+    assert not [one for one in said if "in passing" in one]
+
+
+@pytest.mark.parametrize(("by", "n_told"), [("left/base", 1), ("left/tool", 0)])
+def test_a_part_from_which_the_nearest_of_its_carrier_goes_away_is_warned_of(by, n_told):
+    said = told((PART, WALL), Carry("a/0", by, Window(1.0)))
+    text = f"1 m farther away from all of what picked it up ({by}) at 2 s: check who carries it"
+    assert len(said) == n_told and all(text in one for one in said)
+
+
+def test_a_part_that_leaves_with_a_robot_is_told_of_and_is_carried_until_then():
+    left = sliding("left", [(0, 0), (1, 1), (2, 0)], timing=Timing(after="absent"))
+    robots = left, sliding("right", [(0, 3), (4, 3.5)])
+    result = cl.check(cell((), robots, (PART, WALL), (Carry("a/0", "left/tool", Window(1.0)),)))
+    (said,) = [one for one in result.verdict.warnings if "[CL428]" in one]
+    assert "part 'a/0' leaves the cell at 2 s with left/tool (after: absent)" in said
+    assert [(row["from"], row["until"]) for row in result.summary["carries"]] == [(1.0, 2.0)]
