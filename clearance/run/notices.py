@@ -79,11 +79,8 @@ def _why_idle(case: Case, plan: SectionPlan, rule: Rule) -> Iterator[str]:
     for reason, pairs in by_reason.items():
         yield f"{listed(pairs)} {'is' if len(pairs) == 1 else 'are'} not measured ({reason})"
     if any(rule.matches(*(names_of(case, body) for body in pair)) for pair in plan.pairs):
-        yield (
-            "its other pairs are judged by later rules, or outside its time"
-            if by_reason
-            else ("its pairs are judged by later rules, or outside its time")
-        )
+        others = "other " if by_reason else ""
+        yield f"its {others}pairs are judged by later rules, or outside its time, or stand in it"
 
 
 def _waivers_of_all(case: Case) -> Iterator[Notice]:
