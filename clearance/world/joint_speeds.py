@@ -24,7 +24,7 @@ JUMP = 50.0
 
 ALONE, RARE = 3.0, 20
 """[-] So does one that is this many times as fast, if it is too fast in no more than one of so many intervals, or
-if it goes back in most of them, as where a table has the rows of two robots."""
+if it goes back in most of them, or in more than `RARE` and a third of those, as with the rows of two robots."""
 
 STEP_TURN, STEP_SLIDE = 0.05, 5e-3
 """[rad], [m] A shorter way in an interval is no jump: stamps of recordings that lie close make it fast."""
@@ -108,8 +108,8 @@ def _jumps(course: JointCourse, speeds: np.ndarray, most: float, n_beyond: int) 
         return True
     ways, least = np.diff(course.at_samples), STEP_TURN if turns(course.joint) else STEP_SLIDE
     too_fast = (np.abs(ways) > least) & (speeds > ALONE * most)
-    back = too_fast[1:] & (ways[1:] * ways[:-1] < 0.0)
-    if 2 * int(back.sum()) > len(speeds):
+    n_back = int((too_fast[1:] & (ways[1:] * ways[:-1] < 0.0)).sum())
+    if 2 * n_back > len(speeds) or (n_back > RARE and 3 * n_back > int(too_fast.sum())):
         return True
     return bool(too_fast[int(speeds.argmax())]) and n_beyond * RARE <= len(speeds)
 

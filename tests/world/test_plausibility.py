@@ -318,6 +318,9 @@ def test_a_joint_that_goes_to_and_fro_all_the_time_is_that_of_two_robots():
     assert reported(case_of(arm(velocity=2.0), positions=braided, times=times)) == [
         ("suspect", "limits")
     ]
+    uneven = np.where(np.arange(120) % 3 == 1, -0.2, 0.2)  # of drivers of 100 and 50 Hz
+    uneven = {"positions": uneven, "times": 0.005 * np.arange(120)}
+    assert reported(case_of(arm(velocity=20.0), **uneven)) == [("suspect", "limits")]
     fast = {"positions": 0.05 * np.arange(40), "times": times}
     assert reported(case_of(arm(velocity=2.0), **fast)) == [("warning", "limits")]
 
