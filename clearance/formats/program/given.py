@@ -95,7 +95,7 @@ def require_used(
     words = [*_words(request)]
     known = {word.lower() for word in words}
     for name in request.asked.skip:
-        if not {part.lower() for part in re.findall(r"\w+", name)} <= known:
+        if not {part.lower() for part in re.findall(r"[$\w]+", name)} <= known:
             raise BadProgram(
                 f"{name!r} is in no file of it", where="skip", valid=_nearest(name, words)
             )

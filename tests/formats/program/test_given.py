@@ -96,3 +96,10 @@ def test_all_values_that_the_files_lack_are_asked_for_at_once(name, text, asked)
         MissingKey, match=r"tools: \{tcp: \{xyz: \[…\]\}\}\}, its pose on the flange"
     ):
         reader(request)
+
+
+def test_a_word_with_a_dollar_that_a_refusal_asks_for_may_be_skipped():
+    text = test_fanuc.listing(
+        test_fanuc.FRAMES + "$SSR.$SINGLESTEP=0 ;\nL P[2] 100mm/sec FINE ;", test_fanuc.POINTS
+    )
+    assert len(check("a.ls", text, skip=["$SSR.$SINGLESTEP"], **test_fanuc.CASE).moves) == 1
