@@ -12,6 +12,14 @@ from clearance.run import Run
 from clearance.world.case import index_of_robot
 from clearance.world.placed_robot import PlacedRobot
 
+SHOWN = {
+    "rad": (math.degrees(1.0), "deg"),
+    "m": (1e3, "mm"),
+    "s": (1.0, "s"),
+    "share": (100.0, "%"),
+}
+"""What an amount of a unit is multiplied by to be shown, and the unit that it then has."""
+
 STILL = 1e-9
 """[rad], [m] or [s]: what moves no farther is not told as moved."""
 
@@ -90,15 +98,13 @@ def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> lis
     return found
 
 
-def size_unit(gain: Gain) -> tuple[float, str]:
-    """What a size is multiplied by to be shown, and its unit: millimetres where all joints slide."""
-    if gain.request.slow_down:
-        return 100.0, "%"
-    if gain.request.kind != "waypoints":
-        return (1.0, "s") if gain.request.kind == "timing" else (1e3, "mm")
-    from clearance.gains.offsets import SLIDE
+def size_in_unit(gain: Gain) -> tuple[float, float, str]:
+    """Size and lower bound, and their unit: metres where all joints of a path slide."""
+    if gain.request.kind == "waypoints" and not turning(gain):
+        from clearance.gains.offsets import SLIDE
 
-    return (1e3 / SLIDE, "mm") if not turning(gain) else (math.degrees(1.0), "deg")
+        return gain.size / SLIDE, gain.lower_bound / SLIDE, "m"
+    return gain.size, gain.lower_bound, gain.unit
 
 
 def turning(gain: Gain) -> bool:

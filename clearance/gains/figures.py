@@ -14,6 +14,7 @@ from clearance.gains.change_parts import (
     joint_parts,
     proven_after,
     proven_bound,
+    size_in_unit,
 )
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.result import Gain
@@ -108,6 +109,7 @@ def figures_schema() -> dict[str, Any]:
 def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
     """All figures, in metres, radians and seconds."""
     request, blocked = gain.request, gain.blocked
+    size, least, unit = size_in_unit(gain)
     return {
         "$schema": SCHEMA,
         "format": FORMAT,
@@ -135,9 +137,9 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "within": None if request.within is None else [list(ends) for ends in request.within],
         "turn": None if request.turn is None else vars(request.turn),
         "slow_down": request.slow_down,
-        "size": gain.size,
-        "unit": gain.unit,
-        "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,
+        "size": size,
+        "unit": unit,
+        "lower_bound": least if least > 0.0 else None,
         "parts": [asdict(part) for part in change_parts(gain)],
         "before": _of_run(gain.before, proven_bound(gain.before)),
         "after": _of_run(gain.after, proven_after(gain)),

@@ -30,8 +30,9 @@ class Gain:
         change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
             samples of a path, one such array for each of several robots; (1,) [s] of a delay, or the share
             by which a path takes longer.
-        size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
-            kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
+        size: of it [m], [rad] or [s]; of a path [rad], where 0.5 m of a slide count as 1 rad; 0 where nothing had
+            to be changed. lower_bound: no smaller change of the kind is enough; 0 where nothing is known.
+        who: the robot or obstacle that is changed.
         before, after: certified runs of both cases, by their own limits.
         blocked: what stays too near, where clearances are not kept. binding: what the best that was reached is
             up against, a line each.

@@ -11,10 +11,11 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, ROUND_UP, Decimal
 
 from clearance.gains.change_parts import (
+    SHOWN,
     ChangePart,
     change_parts,
     joint_parts,
-    size_unit,
+    size_in_unit,
     sliding,
     turning,
 )
@@ -213,13 +214,7 @@ def tool_lines(gain: Gain) -> Iterator[str]:
 
 def amount_text(part: ChangePart) -> str:
     """How far a part moves, without a sign."""
-    units = {
-        "rad": (math.degrees(1.0), "deg"),
-        "m": (1e3, "mm"),
-        "s": (1.0, "s"),
-        "share": (100.0, "%"),
-    }
-    factor, unit = units[part.unit]
+    factor, unit = SHOWN[part.unit]
     return f"{_up(abs(part.amount) * factor)} {unit}"
 
 
@@ -231,8 +226,9 @@ def signed_text(part: ChangePart) -> str:
 
 def size_text(gain: Gain) -> str:
     """The size of the change."""
-    factor, unit = size_unit(gain)
-    return f"{_up(gain.size * factor)} {unit}"
+    size, _, unit = size_in_unit(gain)
+    factor, shown = SHOWN[unit]
+    return f"{_up(size * factor)} {shown}"
 
 
 def bound_text(gain: Gain) -> str:
@@ -241,8 +237,9 @@ def bound_text(gain: Gain) -> str:
         return (
             f"not known how little would be enough{f'; {_LOCAL}' if gain.clearances_kept else ''}"
         )
-    factor, unit = size_unit(gain)
-    bound = f"{_down(gain.lower_bound * factor)} {unit}{_counted(gain)}"
+    _, least, unit = size_in_unit(gain)
+    factor, shown = SHOWN[unit]
+    bound = f"{_down(least * factor)} {shown}{_counted(gain)}"
     if not gain.clearances_kept:
         return f"at least {bound} is needed"
     if gain.lower_bound >= gain.size * (1.0 - TIGHT):
