@@ -14,6 +14,7 @@ from clearance.findings.finding import (
     Finding,
 )
 from clearance.record.wording import (
+    at_least_mm,
     gap_text,
     limit_mm,
     mm,
@@ -70,7 +71,7 @@ def _judged_by(finding: Finding) -> str:
 def _unproven(finding: Finding) -> str:
     name, limit = ("fail", finding.fail) if finding.broken else ("warn", finding.warn)
     who = f": {bodies_text(finding)}" if finding.body_a else ""
-    proven = "" if finding.proven is None else f", at least {mm(finding.proven)} mm"
+    proven = "" if finding.proven is None else f", {at_least_mm(finding.proven)}"
     claim = (
         f"not proven to stay above the {name} limit of {limit_mm(limit)} mm{of_rule(finding.rule)}"
     )
@@ -84,9 +85,7 @@ def _with_tolerances(finding: Finding) -> str:
     claim = f"not proven to keep {limit} with the tolerances"
     if finding.proven is None:
         return f"{claim}: {finding.text}"
-    remaining = (
-        f"at least {mm(finding.proven)} mm" if finding.proven > 0.0 else "contact is not ruled out"
-    )
+    remaining = at_least_mm(finding.proven) if finding.proven > 0.0 else "contact is not ruled out"
     who = f": {bodies_text(finding)} at {when_text(finding)}" if finding.body_a else ""
     nominal = "" if finding.clearance is None else f", {mm(finding.clearance)} mm nominal"
     return f"{claim}: {remaining}{nominal}{who}" + (f"; {finding.text}" if finding.text else "")

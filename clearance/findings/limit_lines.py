@@ -18,11 +18,11 @@ from clearance.record.moment import Moment
 from clearance.record.record import ProfileAnswer, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.wording import (
+    at_least_mm,
     depth_text,
     gap_text,
     limit_mm,
     limits_text,
-    mm,
     moment_text,
     of_rule,
     padded_mm,
@@ -82,8 +82,8 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
     when = span_text(start, end, record.moves.over(start, end))
     above = f"above the {name} limit of {limit_mm(limit)} mm" if limit > 0.0 else "out of contact"
     line = (
-        f"not proven to stay {above}{of_rule(rule.name)}: at least "
-        f"{mm(least)} mm, {when}; {why_undecided(record.case)}"
+        f"not proven to stay {above}{of_rule(rule.name)}: {at_least_mm(least)}, {when}; "
+        f"{why_undecided(record.case)}"
     )
     return coded_of(line, UNPROVEN)
 

@@ -25,7 +25,7 @@ from clearance.record.budget import RuleBudget
 from clearance.record.record import Record
 from clearance.record.session import Session
 from clearance.record.status import STATUSES, Status
-from clearance.record.wording import mm, of_rule
+from clearance.record.wording import at_least_mm, mm, of_rule
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
 from clearance.world.plausible_recordings import not_measured
@@ -152,7 +152,7 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
     basis = "the samples only" if one.between is None else _motion_text(record)
     waived = " (waived pairs among them)" if record.case.waivers else ""
-    remaining = f"at least {mm(proven)} mm remain{waived}"
+    remaining = f"{at_least_mm(proven)} remain{waived}"
     if proven <= 0.0:
         remaining = "contact is not ruled out"  # a number below 0 says no depth
     line = f"With all errors at their worst at once {remaining}{of_rule(one.rule)}; proven for {basis}."

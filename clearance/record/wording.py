@@ -36,6 +36,11 @@ def mm(metres: float, levels: Sequence[float] = ()) -> str:
     return text
 
 
+def at_least_mm(metres: float) -> str:
+    """`at least 5.000 mm`, rounded down; of less than a micrometre, `more than 0 mm`."""
+    return "more than 0 mm" if 0.0 < metres < 1e-6 else f"at least {mm(metres)} mm"
+
+
 MOST_PLACES = 6
 """Decimals of a millimetre: a nanometre."""
 
@@ -226,7 +231,7 @@ def least_proven(certified: dict) -> str:
     when = "at every moment that is measured" if certified["not_measured"] else "at every moment"
     when = "at every moment that is proven" if certified.get("not_proven") else when
     when = "at this pose" if certified["is_pose"] else when
-    return f"at least {mm(certified['lower_bound'])} mm {when}"
+    return f"{at_least_mm(certified['lower_bound'])} {when}"
 
 
 def certified_text(certified: dict) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from clearance.record.audit import ExcusedPair, PairFinding, PairStatus, ProposedPair
-from clearance.record.wording import count, joint_value, mm
+from clearance.record.wording import at_least_mm, count, joint_value, mm
 from clearance.world.collision_matrix import ADJACENT, NEVER
 from clearance.world.joint_limits import ROUNDING
 from clearance.world.mimics import followers, range_of
@@ -103,7 +103,7 @@ def _finding_text(found: PairFinding, kinds: Mapping[str, str]) -> str:
         f"{name} {joint_value(kinds[name], value)}" for name, value in found.positions.items()
     )
     if found.status is PairStatus.APART:
-        return f"proven separate: at least {mm(found.lower_bound)} mm; {mm(found.least)} mm occurs"
+        return f"proven separate: {at_least_mm(found.lower_bound)}; {mm(found.least)} mm occurs"
     at = f" at {where}" if where else ""
     if found.status is PairStatus.MEETS:
         return f"can meet{at}"

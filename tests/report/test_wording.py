@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from clearance.record.wording import joint_value, limit_mm, mm
+from clearance.record.wording import at_least_mm, joint_value, limit_mm, mm
 
 
 @pytest.mark.parametrize(
@@ -28,6 +28,14 @@ from clearance.record.wording import joint_value, limit_mm, mm
 )
 def test_millimetres_by_hand(metres, shown):
     assert mm(metres) == shown
+
+
+@pytest.mark.parametrize(
+    ("metres", "shown"),
+    [(0.0, "at least 0 mm"), (4e-7, "more than 0 mm"), (0.0049999, "at least 4.999 mm")],
+)
+def test_a_lower_bound_reads_as_no_upper_one(metres, shown):
+    assert at_least_mm(metres) == shown
 
 
 @given(some.floats(min_value=1e-6, max_value=1e4))
