@@ -93,8 +93,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
         return _every_kind(read, case, out, asked, force=force)
     with _shown_search(kind):
         found = _found(read, case, kind, asked)
-    _say(found)
-    _save(found, out, force=force)
+    _save_and_say(found, out, force=force)
     return _code(found)
 
 
@@ -130,8 +129,8 @@ def _every_kind(
     for tried in every_kind(read, options, _shown_search):
         if tried.gain is not None:
             click.echo(f"{tried.name}:")
-            _say(tried.gain, "  ")
-            _save(replace(tried.gain, case_file=file), out and out / tried.name, force=force)
+            own = replace(tried.gain, case_file=file)
+            _save_and_say(own, out and out / tried.name, "  ", force=force)
         found.append(tried)
     for line in table_lines(found):
         click.echo(shown(line))
@@ -141,18 +140,18 @@ def _every_kind(
     return min(codes, default=ExitCode.VIOLATED)
 
 
-def _say(found: Gain, before: str = "") -> None:
+def _save_and_say(found: Gain, out: Path | None, before: str = "", *, force: bool) -> None:
+    """Writes the gain, before a reader of the lines can leave, and says it, written or not."""
+    from clearance.gains.folder import save_gain
     from clearance.gains.sentences import lines_of
 
-    for label, line in lines_of(found):
-        click.echo(f"{before}{label:10}{shown(line)}")
-
-
-def _save(found: Gain, out: Path | None, *, force: bool) -> None:
-    from clearance.gains.folder import save_gain
-
+    try:
+        if out is not None:
+            save_gain(found, out, force=force)
+    finally:
+        for label, line in lines_of(found):
+            click.echo(f"{before}{label:10}{shown(line)}")
     if out is not None:
-        save_gain(found, out, force=force)
         click.echo(f"{'written':10}{out}: case.yaml, gain.html, gain.json")
 
 

@@ -47,17 +47,15 @@ def require_finished(report: Path) -> None:
     Raises:
         Incomplete: what is there is of an older run.
     """
-    from clearance.files import LAST
-    from clearance.report.withdrawn import OLDER_SUMMARY
+    from clearance.report.withdrawn import OLDER_SUMMARY, is_withdrawn
 
     folder = report if report.is_dir() else report.parent
-    rows, older = place_of(folder), folder / OLDER_SUMMARY
-    is_withdrawn = older.exists() and not (folder / LAST).exists()
-    if rows.exists() or is_withdrawn:
+    rows = place_of(folder)
+    if rows.exists() or is_withdrawn(folder):
         raise Incomplete(
             "a run into this folder was interrupted or refused, or is not finished; its files are older",
             where=str(folder),
-            valid=f"the same check again, or remove {(rows if rows.exists() else older).name!r}",
+            valid=f"the same check again, or remove {rows.name if rows.exists() else OLDER_SUMMARY!r}",
         )
 
 

@@ -24,11 +24,17 @@ def view(folder: Path, case: str | None) -> None:
         return
     from clearance.case.packed import unpacked
     from clearance.progress import doing
+    from clearance.report.withdrawn import is_withdrawn
     from clearance.view import PAGE, page_in, show
 
     folder = folder.parent if folder.name == PAGE else folder
     with unpacked(folder) as packed:
         place = folder if packed is None else packed.entry
+        if is_withdrawn(place):
+            click.echo(
+                "a later run into this folder has not come to its end: what is shown is older",
+                err=True,
+            )
         page = _checked(folder).encode() if place.is_file() else page_in(place)
         with doing(lambda: ""):
             show(str(folder), page)

@@ -35,6 +35,11 @@ def withdraw_report(folder: Path) -> None:
     withdraw_page(folder / "report.html")
 
 
+def is_withdrawn(folder: Path) -> bool:
+    """Whether the report in a folder is an older one."""
+    return (folder / OLDER_SUMMARY).is_file() and not (folder / LAST).exists()
+
+
 def older_name(file: Path) -> Path:
     """The name of a file while it is not written anew."""
     return file.with_name(f"{file.stem}.older{file.suffix}")

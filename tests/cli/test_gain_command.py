@@ -131,3 +131,15 @@ def test_where_no_kind_applies_it_is_bad_input(slot, capsys):
                     "trajectory: {file: path.csv, after: loop}"))  # fmt: skip
     code, text, _ = said(capsys, slot, "--kind", "all", "--within-mm", "0,0,0")
     assert code == 2 and text.count("does not apply") == 4
+
+
+def test_what_was_found_is_written_before_the_reader_of_its_lines_leaves(
+    slot, tmp_path, monkeypatch
+):
+    def leave(*given, **more):
+        raise BrokenPipeError
+
+    monkeypatch.setattr("click.echo", leave)
+    out = tmp_path / "out"
+    assert run(["gain", str(slot), "--kind", "base", "--out", str(out)]) == 141
+    assert {"case.yaml", "gain.json", "gain.html"} <= {path.name for path in out.iterdir()}

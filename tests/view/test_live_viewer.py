@@ -16,6 +16,7 @@ import pytest
 from clearance import cli
 from clearance.cli import view
 from clearance.errors import BadSyntax, MissingFile
+from clearance.report.withdrawn import withdraw_report
 from clearance.view import Playback, page_in
 from tests.report.browser import chromium, executable
 from tests.report.made import replay_of, run_of, write
@@ -54,6 +55,15 @@ def test_the_page_itself_may_be_named(tmp_path, monkeypatch):
     monkeypatch.setattr("clearance.view.show", lambda name, page: seen.append(page))
     assert cli.run(["view", str(tmp_path / "report.html")]) == 0
     assert seen == [b"<html></html>"]
+
+
+def test_a_report_that_a_later_run_has_withdrawn_is_told_as_older(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("clearance.view.show", lambda name, page: None)
+    write(RUN, tmp_path / "out")
+    for told in (False, True):
+        assert cli.run(["view", str(tmp_path / "out")]) == 0
+        assert ("what is shown is older" in capsys.readouterr().err) == told
+        withdraw_report(tmp_path / "out")
 
 
 def test_the_verdict_of_a_case_is_printed_and_its_run_shown(capsys):
