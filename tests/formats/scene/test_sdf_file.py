@@ -172,6 +172,18 @@ def test_names_are_made_unique_and_shown(tmp_path):
     assert places_of(tmp_path, sdf(world(include(), include(at(3)))))["post/l/c_2"] == 3
 
 
+def test_comments_and_prefixes_are_as_gazebo_takes_them(tmp_path):
+    shape = "<!-- gz topic --echo <box> -->" + collision(BOX) + "<gz:policies gz:type='a'/>"
+    document = sdf(model(link(shape)))
+    (made,) = obstacles_of(tmp_path, document).values()
+    assert made.name == "m/l/c"
+    nested = sdf(model(link("<!-- one <!-- two -->" + collision(BOX) + "-->")))
+    (made,) = obstacles_of(tmp_path, nested).values()
+    assert made.name == "m/l/c"
+    with pytest.raises(BadInput, match=r"not XML: .*line 5"):
+        obstacles_of(tmp_path, sdf("<!--\n\n-- -->\n<model>"))
+
+
 def test_what_is_left_out_is_told(tmp_path):
     seen = f'<visual name="v"><geometry>{BOX}</geometry></visual>'
     joint = '<joint name="j" type="revolute"><parent>a</parent><child>b</child></joint>'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,7 +89,7 @@ def sdf_element(data: bytes) -> tuple[Element, list[Unread]]:
     """
     if len(data) > MOST_BYTES:
         raise BadSyntax(f"{len(data)} bytes are given", valid=f"{MOST_BYTES} or fewer")
-    root = plain_root(data, "an SDF file")
+    root = plain_root(_as_gazebo_reads(data), "an SDF file")
     if root.tag not in ("sdf", "gazebo"):
         raise BadSyntax(f"the root element is <{root.tag}>", valid="<sdf> is needed")
     _require_version(root.get("version") or "")
@@ -99,6 +100,22 @@ def sdf_element(data: bytes) -> tuple[Element, list[Unread]]:
                 where = f"{element.tag} {element.get('name')!r}"
                 raise BadScene(f"two <{tag}> are given", where=where, valid="one")
     return root, found
+
+
+_COMMENT = re.compile(rb"<!\[CDATA\[.*?\]\]>|<!--.*?-->", re.DOTALL)
+_PREFIX = re.compile(rb"[<\s]([A-Za-z_]\w*):\w")
+_DECLARED = re.compile(rb"xmlns:(\w+)\s*=")
+_ROOT = re.compile(rb"<(?:sdf|gazebo)(?=[\s>])")
+
+
+def _as_gazebo_reads(data: bytes) -> bytes:
+    """The document as XML: Gazebo takes two hyphens in a comment, and prefixes as `gz:` that nothing declares."""
+    plain = _COMMENT.sub(
+        lambda found: found[0] if found[0][:3] == b"<![" else b"\n" * found[0].count(b"\n"), data
+    )
+    prefixes = {*_PREFIX.findall(plain)} - {*_DECLARED.findall(plain), b"xml", b"xmlns"}
+    declared = b"".join(b' xmlns:%b="%b"' % (prefix, prefix) for prefix in sorted(prefixes))
+    return _ROOT.sub(lambda found: found[0] + declared, plain, count=1)
 
 
 def name_of(element: Element) -> str:
