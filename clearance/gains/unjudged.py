@@ -18,7 +18,7 @@ from clearance.record.wording import depth_mm
 from clearance.simulate.answers.handling import TOUCHING, depth_between, gap_between
 from clearance.world.carry import Carry
 from clearance.world.forest import WORLD, forest_of, link_poses_at
-from clearance.world.pairs import OBSTACLE, BodyIndex, selected_pairs
+from clearance.world.pairs import OBSTACLE, BodyIndex, bodies_of, selected_pairs
 from clearance.world.phase import Phase
 from clearance.world.timing import time_text
 
@@ -89,13 +89,7 @@ def _placed_pairs(record: Record) -> dict[tuple[str, str], list[_Placed]]:
     found: dict[tuple[str, str], list[_Placed]] = {}
     for phase in record.timeline.phases:
         case = phase.case
-        bodies = [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
-        bodies += [
-            BodyIndex(i, k)
-            for i, one in enumerate(case.robots)
-            for k in range(len(one.robot.bodies))
-        ]
-        called = {body.name_in(case): body for body in bodies}
+        called = {body.name_in(case): body for body in bodies_of(case)}
         rows = {str(row) for row in case.allow}
         steps = np.unique(np.linspace(0, phase.n_steps - 1, MOST_STEPS).astype(int))
         for one in selected_pairs(phase).unmeasured:

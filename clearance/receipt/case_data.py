@@ -20,7 +20,7 @@ from clearance.receipt.proof.motion_data import NONE, Errors, Joints, Shape, Str
 from clearance.world.case import Case, Omission
 from clearance.world.forest import WORLD, forest_of, joined_positions
 from clearance.world.motion import Motion, kinematic_motion
-from clearance.world.pairs import OBSTACLE, BodyIndex, Pair, selected_pairs
+from clearance.world.pairs import BodyIndex, Pair, bodies_of, selected_pairs
 from clearance.world.phase import Phase
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import time_text
@@ -75,7 +75,7 @@ def case_data(case: Case) -> CaseData:
     """
     require_covered(case)
     timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
-    bodies = _bodies(case)
+    bodies = bodies_of(case)
     number = {body: i for i, body in enumerate(bodies)}
     stretches: list[Stretch] = []
     phases: list[Phase] = []
@@ -131,13 +131,6 @@ def require_covered(case: Case) -> None:
         raise NoReceipt(
             "no receipt for cases whose clocks are not tied", where="clock", valid="clock: common"
         )
-
-
-def _bodies(case: Case) -> list[BodyIndex]:
-    links = [
-        BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))
-    ]
-    return links + [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
 
 
 def _shape(case: Case, body: BodyIndex) -> Shape:

@@ -98,6 +98,16 @@ class BodyIndex(NamedTuple):
         return case.robots[self.i_robot].robot.bodies[self.i_body]
 
 
+def bodies_of(case: Case) -> list[BodyIndex]:
+    """All bodies of a case: links robot by robot, then obstacles."""
+    links = [
+        BodyIndex(i, k)
+        for i, placed in enumerate(case.robots)
+        for k in range(len(placed.robot.bodies))
+    ]
+    return links + [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
+
+
 class Pair(NamedTuple):
     """Two bodies whose clearance is wanted.
 

@@ -20,7 +20,7 @@ from clearance.record.replay import LINK, MOVING, PART, STANDING, DrawnCarry
 from clearance.world.case import Case
 from clearance.world.clocks import clocks_of
 from clearance.world.forest import forest_of, positions_between
-from clearance.world.pairs import OBSTACLE, BodyIndex
+from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase
 
 SAME_PLACE = 1e-6
@@ -47,16 +47,6 @@ class FramePlace:
     clearance: float | None
     pair: tuple[str | None, str | None]
     time_b: float | None = None
-
-
-def bodies_of(case: Case) -> list[BodyIndex]:
-    """All bodies of a case: links robot by robot, then obstacles."""
-    links = [
-        BodyIndex(i, k)
-        for i, placed in enumerate(case.robots)
-        for k in range(len(placed.robot.bodies))
-    ]
-    return links + [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
 
 
 def kind_of(case: Case, body: BodyIndex) -> str:

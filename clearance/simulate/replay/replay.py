@@ -29,7 +29,6 @@ from clearance.record.status import STATUSES, Status
 from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.replay.bodies import (
     FramePlace,
-    bodies_of,
     carries_of,
     kind_of,
     packed,
@@ -39,7 +38,7 @@ from clearance.simulate.replay.bodies import (
 from clearance.simulate.replay.curve_moments import curve_moments
 from clearance.simulate.replay.frames import ReplayFrames, least_of
 from clearance.world.case import Case
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import BodyIndex, bodies_of
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
