@@ -27,7 +27,7 @@ from clearance.world.forest import (
 )
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.pairs import OBSTACLE, BodyIndex
+from clearance.world.pairs import OBSTACLE, BodyIndex, bodies_of
 from clearance.world.phase import Phase
 from clearance.world.timing import time_text
 
@@ -55,6 +55,8 @@ def notices_on_carries(phases: Sequence[Phase]) -> Iterator[Notice]:
                 texts += _held_before(first.case, carry)
             gaps.setdefault(carry, []).extend(_gaps(phase, carry))
     for carry, found in gaps.items():
+        if not found:
+            continue
         texts += _far_away(
             carry,
             found,
@@ -171,29 +173,30 @@ def _left_behind(case: Case) -> Iterator[str]:
 def _gaps(phase: Phase, carry: Carry) -> Iterator[tuple[float, float]]:
     """[m] From a part to the nearest body of what carries it, and when [s], at three steps of a phase.
 
+    Parts that change hands together, as shapes of an object, are one: the nearest counts, for the first of them.
     Infinite if that has no body.
     """
-    case = phase.case
-    part = BodyIndex(OBSTACLE, [one.name for one in case.obstacles].index(carry.part))
-    bodies = _gripping(case, carry.by, part)
+    case, hands = phase.case, (carry.by, carry.window)
+    together = {one.part for one in phase.carried.values() if (one.by, one.window) == hands}
+    parts = [BodyIndex(OBSTACLE, i) for i, one in enumerate(case.obstacles) if one.name in together]
+    if carry.part != parts[0].name_in(case):
+        return
+    bodies = _gripping(case, carry.by, parts)
     for step in sorted({0, phase.n_steps // 2, phase.n_steps - 1}):
         poses = link_poses_at(case, phase.motions, slice(step, step + 1))
-        placed = part.shape_in(case), part.poses_in(case, poses)[0]
-        gaps = (
-            gap_between(*placed, one.shape_in(case), one.poses_in(case, poses)[0]) for one in bodies
-        )
+        placed = {
+            one: (one.shape_in(case), one.poses_in(case, poses)[0]) for one in (*parts, *bodies)
+        }
+        gaps = (gap_between(*placed[a], *placed[b]) for a in parts for b in bodies)
         yield min(gaps, default=np.inf), float(phase.times[step])
 
 
-def _gripping(case: Case, name: str, part: BodyIndex) -> list[BodyIndex]:
-    """The bodies beside the part of what is called so: all that fixed joints join to it, and all below that.
+def _gripping(case: Case, name: str, parts: Sequence[BodyIndex]) -> list[BodyIndex]:
+    """The bodies beside the parts of what is called so: all that fixed joints join to it, and all below that.
 
     Where none of this has a shape, it is what that hangs on. An obstacle that stands has what stands on it.
     """
-    bodies = [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
-    for i, placed in enumerate(case.robots):
-        bodies += [BodyIndex(i, k) for k in range(len(placed.robot.bodies))]
-    bodies.remove(part)
+    bodies = [body for body in bodies_of(case) if body not in parts]
     forest = forest_of(case)
     above = {one: {*carried_by(forest, one.frame_in(case))} for one in bodies}
     for top in carried_by(forest, forest.link_called(case, name)):

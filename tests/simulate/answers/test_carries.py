@@ -121,3 +121,15 @@ def test_a_part_that_leaves_with_a_robot_is_told_of_and_is_carried_until_then():
     (said,) = [one for one in result.verdict.warnings if "[CL428]" in one]
     assert "part 'a/0' leaves the cell at 2 s with left/tool (after: absent)" in said
     assert [(row["from"], row["until"]) for row in result.summary["carries"]] == [(1.0, 2.0)]
+
+
+@pytest.mark.parametrize(("x", "n_told"), [(1.2, 0), (1.6, 1)])
+def test_shapes_of_an_object_do_not_hold_one_another(x, n_told):
+    """One of them is to be near the tool, whose end is at 1.05 m; they touch."""
+    shapes = [
+        box("a/0", (0.1, 0.1, 0.1), at(x, 0, 0.5)),
+        box("a/1", (0.3, 0.1, 0.1), at(x + 0.2, 0, 0.5)),
+    ]
+    said = told((*shapes, WALL), *(Carry(f"a/{i}", "left/tool", Window(1.0)) for i in range(2)))
+    text = "part 'a/0' is 0.5 m away from all of what picks it up at 1 s (left/tool)"
+    assert len(said) == n_told and all(text in one for one in said)
