@@ -144,7 +144,7 @@ def _answer(
     with resumable_rows_of(outputs.out, printed.quiet) as rows:
         with shown_progress(not printed.has_words, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-        with shown_work(not printed.has_words, "writing the report"):
+        with shown_work(not printed.has_words, "working out and writing the report"):
             comparison = _comparison_of(run, before)
             notes = outputs.write(run, comparison, ahead)
     with doing(lambda: "working out the nearest pairs, events and slopes of the worst moment"):
