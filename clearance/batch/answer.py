@@ -155,8 +155,8 @@ class BatchAnswer:
         ]
         scopes = defaultdict[str, list[str]](list)
         for case, scope in zip(self.column("case"), self.column("scope"), strict=True):
-            if scope:
-                scopes["; ".join(scope)].append(case)
+            for line in scope or ():
+                scopes[line].append(case)
         return [*_with_cases(differing), *_with_cases([*scopes.items()])]
 
     @property
