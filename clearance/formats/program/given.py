@@ -9,7 +9,6 @@ import difflib
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,6 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
     digits_of,
 )
-from clearance.formats.program.statements import Do, assigned, within
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
@@ -65,13 +63,12 @@ def give(run: Any, name: str, value: Any) -> None:
             where=where,
             valid="true or false" if usual == "true" else "a number",
         )
-    root, every = name.partition("[")[0], (within(one.body) for one in run.routines.values())
-    for call in (one.call for one in chain(*every) if isinstance(one, Do)):
-        target = assigned(call.args[0]) if call.name in run.language.signals and call.args else None
-        if target is not None and target.name.partition("[")[0] == root:
-            if target is not call.args[0] or not re.fullmatch(r"[^[]*\[\d+\]", target.name):
-                fault = f"{call.name} at {call.line} may set it by a number that is not read"
-                raise BadProgram(fault, where=where, valid="a number in that line")
+    root, indexed, _ = name.partition("[")
+    for changed, line in run.effects.changed_in([one.body for one in run.routines.values()]):
+        is_one = re.fullmatch(r"[^[]*\[\d+\]", changed)
+        if indexed and changed.partition("[")[0] == root and not is_one:
+            fault = f"{root} at {line} may set it by a number that is not read"
+            raise BadProgram(fault, where=where, valid="a number in that line")
     run.variables[name] = value
     run.given.add(name)
     lasts = "" if holds == _AT_START else f", which is taken to hold that {holds}"

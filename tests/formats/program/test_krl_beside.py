@@ -101,6 +101,9 @@ SIGNAL_TOLD = "of the case decides, which is taken to hold that until these file
         ("PULSE(lamp,TRUE,0.5)", "PULSE sets it at line 8"),
         ("$OUT[n]=TRUE", r"variables: \$OUT\[3\]: \$OUT at line 8 may set it by a number that is not read"),
         ("SIGNAL all $OUT[1] TO $OUT[8]\nall=255", "may set it by a number that is not read"),
+        (f"n=3\n{WHEN} $OUT[n]=TRUE", r"\$OUT at line 9 may set it by a number that is not read"),
+        (f"SIGNAL all $OUT[1] TO $OUT[8]\n{WHEN} all=5", r"\$OUT at line 9 may set it by a number"),
+        ("n=3\ngrip($OUT[n])", r"\$OUT at line 9 may set it by a number that is not read"),
     ],
 )  # fmt: skip
 def test_an_output_of_the_case_holds_until_the_lines_change_it(body, ends):
