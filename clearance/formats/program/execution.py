@@ -37,7 +37,7 @@ from clearance.formats.program.expressions import (
     with_passed,
 )
 from clearance.formats.program.passes import MOST_PASSES, Jumps, Passes, without_jump
-from clearance.formats.program.remarks import ENDLESS, LEFT_OUT, STILL, UNSAID, WAITS
+from clearance.formats.program.remarks import LEFT_OUT, STILL, UNSAID, WAITS
 from clearance.formats.program.statements import (
     BREAK,
     CONTINUE,
@@ -328,9 +328,8 @@ class Execution(Variables):
         n_passes, passes = 0, Passes("an endless loop", MOST_PASSES)
         endless = is_constant(one.condition)
         while (one.at_end and not n_passes) or self._goes_on(one):
-            if endless and n_passes and passes.repeats(self.state()):
-                self.note(ENDLESS, f"{one.word} ({one.line}), of which {n_passes} are measured")
-                return Leave(one.line, one.word, STOP)
+            if endless and n_passes and (end := passes.end(one, one.body, self)):
+                return end
             self._count()
             left = self.run(one.body)
             n_passes += 1

@@ -9,9 +9,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from clearance.errors import BadProgram, DuplicateName
+from clearance.formats.program.controller_program import ControllerMove
 from clearance.formats.program.expressions import number
 from clearance.formats.program.remarks import ENDLESS
-from clearance.formats.program.statements import JUMP, STOP, Label, Leave, Statement, within
+from clearance.formats.program.statements import (
+    JUMP,
+    STOP,
+    Label,
+    Leave,
+    Statement,
+    While,
+    expressions_of,
+    within,
+)
 from clearance.formats.program.tokens import Line
 from clearance.world.notice import listed
 
@@ -29,6 +39,30 @@ class Passes:
     what: str
     most: int
     states: list[Any] = field(default_factory=list)
+    n_moves: list[int] = field(default_factory=list)
+
+    def end(self, one: While | Leave, body: Sequence[Statement], run: Any) -> Leave | None:
+        """The end of the program, if a pass ends as one before.
+
+        Raises:
+            BadProgram: as of `repeats`; the passes make no move, and rest on a value that may be another one.
+        """
+        state = run.state()
+        if not self.repeats(state):
+            self.n_moves.append(len(run.moves))
+            return None
+        made = run.moves[self.n_moves[self.states.index(state)] :]
+        parts = (part for inner in within(tuple(body)) for part in expressions_of(inner))
+        origin = run.persistent.origin_of(parts)
+        if origin and not any(isinstance(move, ControllerMove) for move in made):
+            fault = (
+                f"{one.word} repeats itself without a move, and what lies behind it is not measured"
+            )
+            valid = "a value with which it ends, or a copy of the program without it"
+            raise BadProgram(f"{fault}: {origin}", where=f"{one.line}", valid=valid)
+        n_passes = len(self.states) + 1
+        run.note(ENDLESS, f"{one.word} ({one.line}), of which {n_passes} are measured")
+        return Leave(one.line, one.word, STOP)
 
     def repeats(self, state: Sequence[Any]) -> bool:
         """Whether a pass ends as one before, so that all further ones repeat those between.
@@ -86,11 +120,8 @@ class Jumps:
         if place is None:
             return left, at
         passes = self._passes.setdefault(place, Passes(f"a loop by {left.word}", MOST_JUMPS))
-        if place < at and passes.repeats(self.run.state()):
-            n_passes = len(passes.states) + 1
-            self.run.note(ENDLESS, f"{left.word} ({left.line}), of which {n_passes} are measured")
-            return Leave(left.line, left.word, STOP), at
-        return None, place
+        end = passes.end(left, self.body[place:at], self.run) if place < at else None
+        return end, at if end else place
 
 
 def without_jump(left: Leave | None, run: Any) -> Leave | None:

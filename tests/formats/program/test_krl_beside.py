@@ -115,6 +115,21 @@ def test_an_output_of_the_case_holds_until_the_lines_change_it(body, ends):
         assert angles(LAMP % body, **asked) == ends
 
 
+@pytest.mark.parametrize("more", ["", "GOTO again\n"])
+def test_a_loop_that_waits_for_another_value_than_the_case_has_is_refused(more):
+    loop = "WAIT SEC 0.1\nIF $IN[1] THEN\n%s\nENDIF"
+    body = (
+        f"again:\n{loop % 'GOTO over'}\n{more}over:" if more else f"LOOP\n{loop % 'EXIT'}\nENDLOOP"
+    )
+    body += "\nPTP XHOME"
+    told = r"(LOOP|GOTO) repeats itself without a move, and what lies behind it is not measured: \$IN\[1\]"
+    with pytest.raises(cl.ClearanceError, match=rf"line \d+: {told}"):
+        program(body, variables={"$IN[1]": False})
+    assert len(program(body, variables={"$IN[1]": True}).moves) == 2
+    moving = "LOOP\ngo(2)\ngo(1)\nIF $IN[1] THEN\nEXIT\nENDIF\nENDLOOP"
+    assert angles(moving, variables={"$IN[1]": False}) == [2, 1, 2, 1]
+
+
 def test_an_output_of_the_case_that_decides_stands_in_the_headline():
     body = LAMP.replace("go(1)", "PTP XHOME").replace("go(2)", "PTP XHOME") % "lamp=TRUE"
     (told,) = program(body, variables={"$OUT[3]": False}).doubts
