@@ -266,8 +266,7 @@ class Execution(Variables):
             BadInput: other arguments than it has; too many routines in one another.
         """
         if len(self.frames) > MOST_CALLS:
-            fault = f"more than {MOST_CALLS} routines call one another"
-            raise BadProgram(fault, valid="end the calls")
+            raise BadProgram(f"more than {MOST_CALLS} routines call one another", valid="end them")
         call = call or Call(routine.name, (), {}, routine.line)
         given, persistent = arguments_of(routine, call), self.persistent
         self.doubts |= self.effects.doubts_on_handlers(routine)
@@ -363,7 +362,8 @@ class Execution(Variables):
     def _come_true(self, one: While) -> None:
         """Gives what a wait waits for its other value, if it is one that is on or off; else it is not known."""
         names = [*dict.fromkeys(self.effects.read_by([one.condition]))]
-        for value in (True, False) if len(names) == 1 and names[0] in self.given else ():
+        on_off = [[one] for one in self.given if isinstance(self.variables[one], bool)]
+        for value in (True, False) if names in on_off else ():
             self.variables[names[0]] = value
             if value_of(one.condition, self) is True:
                 return

@@ -184,6 +184,9 @@ def test_a_wait_for_another_value_than_the_case_says_gives_the_input_that_value(
     asked["variables"]["DI[6]"] = True
     with pytest.raises(cl.ClearanceError, match="given a value by what WAIT waits for at line 8"):
         names(body, **asked)
+    select = f"SELECT GI[1]=1,JMP LBL[1] ;\n=2,JMP LBL[2] ;\nLBL[1] ;\n{go(2)}LBL[2] ;\n{go(3)}"
+    with pytest.raises(cl.ClearanceError, match="given a value by what WAIT waits for at line 8"):
+        names(f"WAIT GI[1]<>0 ;\n{select}", variables={"GI[1]": 0}, skip=["WAIT"])
 
 
 def test_a_counter_that_decides_nothing_does_not_hide_that_an_endless_loop_repeats():
