@@ -20,7 +20,7 @@ from clearance.formats.known_formats import Format, Kind, format_of, function_at
 from clearance.formats.plausibility import odd_in_program
 from clearance.formats.program.controller_program import ProgramRequest
 from clearance.formats.program.conversion import ConvertedProgram, converted
-from clearance.formats.program.given import require_used
+from clearance.formats.program.given import used
 from clearance.formats.schema import program as schema
 from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.timed import TrajectoryFile
@@ -131,7 +131,7 @@ def _read(
     if isinstance(read, schema.Program):
         return shown, _of_schema(read)
     with at(shown), _suspecting(odd_in_program(asked)):
-        require_used(request, function_at(row.read), read)
+        read = used(request, function_at(row.read), read)
         root = None if cell.own.mount else inverse(cell.own.world_from_base)
         return shown, converted(read, asked, cell.robot, start, root)
 

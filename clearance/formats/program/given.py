@@ -20,6 +20,7 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
     digits_of,
 )
+from clearance.formats.program.fanuc_words import named
 
 _WORD = re.compile(r"[$A-Za-z_]\w*(?:\[\d+\])?")
 
@@ -56,7 +57,7 @@ def give(run: Any, name: str, value: Any) -> None:
     Raises:
         BadProgram: another value than its kind has; a line may set it by a number that is not read.
     """
-    where, (usual, holds) = f"variables: {name}", kind_of(name)
+    where, (usual, _) = f"variables: {name}", kind_of(name)
     if usual != "…" and isinstance(value, bool) != (usual == "true"):
         raise BadProgram(
             f"{value} is given",
@@ -71,17 +72,22 @@ def give(run: Any, name: str, value: Any) -> None:
             raise BadProgram(fault, where=where, valid="a number in that line")
     run.variables[name] = value
     run.given.add(name)
-    lasts = "" if holds == _AT_START else f", which is taken to hold that {holds}"
-    run.persistent.put(name, f"{name} of the case decides{lasts}", run.variables)
+    run.persistent.put(name, f"{name} of the case decides{_lasting(name)}", run.variables)
 
 
-def require_used(
+def _lasting(name: str) -> str:
+    """How long a variable of the case is taken to hold its value."""
+    _, holds = kind_of(name)
+    return "" if holds == _AT_START else f", which is taken to hold that {holds}"
+
+
+def used(
     request: ProgramRequest,
     read: Callable[[ProgramRequest], ControllerProgram],
     found: ControllerProgram,
-) -> None:
-    """Nothing, if a program changes without each of the values by name that its case gives, and has each word that
-    the case skips.
+) -> ControllerProgram:
+    """A program, if it changes without each of the values by name that its case gives, and has each word that the
+    case skips. A doubt names each variable that no other doubt names: a line may use it without a branch.
 
     Args:
         read: the reader that made it from the request.
@@ -108,6 +114,12 @@ def require_used(
             if _plain(without) == _plain(found):
                 fault = "it changes no move: the program does not use it, or says it itself"
                 raise BadProgram(fault, where=f"{key}.{name}", valid=_nearest(name, words))
+    told = " ".join(found.doubts)
+    untold = [
+        one for one in map(named, request.asked.variables) if f" {one} of the case" not in told
+    ]
+    more = (f"the moves rest on {one} of the case{_lasting(one)}" for one in untold)
+    return replace(found, doubts=(*found.doubts, *more))
 
 
 def _words(request: ProgramRequest) -> Iterator[str]:

@@ -6,7 +6,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import MissingKey
-from clearance.formats.program.given import require_used
+from clearance.formats.program.given import used
 from tests.formats.program import test_fanuc, test_krl, test_rapid
 from tests.formats.program.reading import reader_and_request
 
@@ -31,9 +31,7 @@ IDLE = "it changes no move: the program does not use it, or says it itself; "
 
 def check(name, text, beside=(), **asked):
     read, request = reader_and_request(name, text, beside, **asked)
-    found = read(request)
-    require_used(request, read, found)
-    return found
+    return used(request, read, read(request))
 
 
 @pytest.mark.parametrize(
@@ -103,3 +101,43 @@ def test_a_word_with_a_dollar_that_a_refusal_asks_for_may_be_skipped():
         test_fanuc.FRAMES + "$SSR.$SINGLESTEP=0 ;\nL P[2] 100mm/sec FINE ;", test_fanuc.POINTS
     )
     assert len(check("a.ls", text, skip=["$SSR.$SINGLESTEP"], **test_fanuc.CASE).moves) == 1
+
+
+HOLDS = "of the case, which is taken to hold that all the time, unless a wait needs another"
+INPUT, UNTIL = f"DI[1] {HOLDS}", "which is taken to hold that until these files change it"
+NEXT = "LBL[1] ;\nL P[3] 9mm/sec FINE ;"
+AXES = "PTP {A1 n,A2 0,A3 0,A4 0,A5 0,A6 0}"
+
+
+@pytest.mark.parametrize(
+    ("body", "given", "told"),
+    [
+        ("PR[1]=P[2] ;\nIF DI[1]=ON,PR[1]=P[3] ;\nL PR[1] 9mm/sec FINE ;", {"DI[1]": False}, [INPUT]),
+        ("PR[1]=P[2] ;\nR[5]=0 ;\nIF DI[1]=ON,R[5]=9 ;\nPR[1,1]=R[5] ;\nL PR[1] 9mm/sec FINE ;", {"DI[1:]": False},
+         [INPUT]),
+        ("IF DI[1]=ON,UFRAME_NUM=2 ;\nPR[1]=P[2] ;\nL PR[1] 9mm/sec FINE ;", {"DI[1]": False}, [INPUT]),
+        ("L P[R[1]] 9mm/sec FINE ;", {"R[1]": 3}, ["R[1] of the case"]),
+        ("JMP LBL[R[1]] ;\nLBL[1] ;\nL P[2] 9mm/sec FINE ;\nLBL[2] ;", {"R[1]": 1}, ["R[1] of the case"]),
+        (f"IF DI[1]=ON OR DI[2]=ON,JMP LBL[1] ;\nL P[2] 9mm/sec FINE ;\n{NEXT}", {"DI[2]": False, "DI[1]": False},
+         [f"DI[2] {HOLDS}"]),
+        (f"F[1]=DI[2] ;\nIF F[1]=ON,JMP LBL[1] ;\nL P[2] 9mm/sec FINE ;\n{NEXT}", {"F[1]": False, "DI[2]": True},
+         [f"DI[2] {HOLDS}"]),
+    ],
+)  # fmt: skip
+def test_each_variable_of_the_case_that_moves_rest_on_stands_in_the_headline(body, given, told):
+    text = test_fanuc.listing(test_fanuc.FRAMES + body, test_fanuc.POINTS)
+    found = check("CELL.LS", text, variables=given, **test_fanuc.CASE)
+    rest = [one for one in found.doubts if one.startswith("the moves rest on ")]
+    assert rest == [f"the moves rest on {one}" for one in told]
+
+
+def test_each_variable_of_a_case_of_krl_that_moves_rest_on_stands_in_the_headline():
+    branch = f"n=10\nIF $IN[1] THEN\nn=170\nENDIF\n{AXES}"
+    for body, name, told in (
+        (branch, "$in[1]", f"the moves rest on $IN[1] {HOLDS}"),
+        (AXES, "n", f"the moves rest on N of the case, {UNTIL}"),
+    ):
+        beside = {"weld.dat": test_krl.POINTS.encode()}
+        value = False if name == "$in[1]" else 9
+        found = check("weld.src", f"{test_krl.HEAD}{body}\nEND\n", beside, variables={name: value})
+        assert found.doubts == (told,)
