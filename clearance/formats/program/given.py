@@ -65,11 +65,15 @@ def give(run: Any, name: str, value: Any) -> None:
             valid="true or false" if usual == "true" else "a number",
         )
     root, indexed, _ = name.partition("[")
+    same = {"DO": "GO", "GO": "DO"}.get(root)
     for changed, line in run.effects.changed_in([one.body for one in run.routines.values()]):
         is_one = re.fullmatch(r"[^[]*\[\d+\]", changed)
         if indexed and changed.partition("[")[0] == root and not is_one:
             fault = f"{root} at {line} may set it by a number that is not read"
             raise BadProgram(fault, where=where, valid="a number in that line")
+        if indexed and changed.partition("[")[0] == same:
+            text = f"{name} of the case is taken to be none of the outputs that {changed} sets"
+            run.doubts[f"{line}: {text}"] = None
     run.variables[name] = value
     run.given.add(name)
     run.persistent.put(name, f"{name} of the case decides{_lasting(name)}", run.variables)

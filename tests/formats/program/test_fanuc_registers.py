@@ -176,6 +176,20 @@ def test_an_output_or_a_flag_of_the_case_holds_until_the_lines_change_it(body, e
     )
 
 
+@pytest.mark.parametrize(
+    ("given", "line"), [({"DO[5]": False}, "GO[1]=255"), ({"GO[5]": 0}, "DO[1]=ON")]
+)
+def test_a_group_of_outputs_may_have_one_that_the_case_gives(given, line):
+    """Only the controller knows which outputs a group has."""
+    (name,) = given
+    way = WAY.replace("R[1]=2", f"{name}=5" if name == "GO[5]" else name)
+    (told, _) = program(f"{FRAMES}{line} ;\n{way}", variables=given).doubts
+    changed = line.partition("=")[0]
+    assert (
+        told == f"line 8: {name} of the case is taken to be none of the outputs that {changed} sets"
+    )
+
+
 def test_a_wait_for_another_value_than_the_case_says_gives_the_input_that_value():
     body = f"WAIT DI[5]=OFF ;\n{WAY.replace('R[1]=2', 'DI[5]=ON')}"
     asked = {"variables": {"DI[5]": True}, "skip": ["WAIT"]}
