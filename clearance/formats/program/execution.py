@@ -282,7 +282,8 @@ class Execution(Variables):
         persistent.origins.pop()
         for name in routine.returned & given.keys():
             if (target := assigned(given[name])) is not None:
-                self._assign(Assign(call.line, given[name], Constant(frame[name])))
+                value_back = self.given_back(target.name, frame[name], call)
+                self._assign(Assign(call.line, given[name], Constant(value_back)))
                 place = self.place(target.name)
                 persistent.put(target.name, origins.get(name, ""), place, True)
         return value, left if left is not None and left.what == STOP else None

@@ -22,6 +22,7 @@ from clearance.formats.program.expressions import (
     Expression,
     ExpressionReader,
     Name,
+    Part,
     Unknown,
 )
 from clearance.formats.program.grammar import Grammar, Spelled, numeric, ranked
@@ -215,7 +216,13 @@ class Expressions(ExpressionReader):
             return found
         kind = next((own[found.name] for own in self.kinds if found.name in own), "")
         if kind.startswith("SIGNAL $"):
-            return Name(kind.removeprefix("SIGNAL "), found.line)
+            name, line = kind.removeprefix("SIGNAL "), found.line
+            timer = re.fullmatch(r"(\$TIMER)\[(\d+)\]", name)  # it runs on, whatever it is set to
+            return (
+                Part(Name(timer[1], line), Constant(int(timer[2])), line)
+                if timer
+                else Name(name, line)
+            )
         index = self.cursor.after(1)
         if found.name in NUMBERED and self.cursor.after(2).text == "]" and index.text.isdigit():
             self.cursor.take(), self.cursor.take(), self.cursor.take()
@@ -302,11 +309,14 @@ def move_of(word: str, line: Line, read: Expressions) -> Call:
 def routines_beside(words: Sequence[Token], kinds: Sequence[Mapping[str, str]]) -> list[Routine]:
     """What an interrupt or a trigger may change, as a routine: `DO n = 2`, or `DO sub(n)` of a procedure.
 
+    An input is one too that gives a variable a value again and again: `ANIN ON n = 2 * $ANIN[1]`.
+
     Args:
         kinds: as of `Expressions`.
     """
     texts = [one.text.upper() for one in words]
-    behind = [*words][texts.index("DO") + 1 :] if "DO" in texts else []
+    do = "ON" if texts[0] in ("ANIN", "DIGIN") else "DO"
+    behind = [*words][texts.index(do) + 1 :] if do in texts else []
     if len(behind) < 2 or behind[0].kind != "name":
         return []
     name, line, body = GRAMMAR.folded(behind[0].text), behind[0].line, list[Statement]()

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from clearance.errors import nearest_name
-from clearance.formats.program.expressions import Name, Unknown
+from clearance.formats.program.expressions import Call, Name, Unknown
 from clearance.formats.program.language import Language
 from clearance.formats.program.remarks import Remarks
 from clearance.formats.program.tokens import Line
@@ -64,6 +64,13 @@ class Variables(Remarks):
         """Where a variable is, or begins to be."""
         own, shared = self.frames[-1], self.language.shares_variables or name in self.variables
         return own if is_own or name in own or not shared else self.variables
+
+    def given_back(self, name: str, value: Any, call: Call) -> Any:
+        """What a variable holds that a routine gives a value; other lines may set an output, too."""
+        if name.partition("[")[0] not in self.language.signals or name in self.given:
+            return value
+        why = f"{name!r} is given a value by {call.name} at {call.line}"
+        return Unknown(why, remedy=self.language.remedy(name))
 
     def forget(self, changed: Iterable[tuple[str, Line]], by: str = "", remedy: str = "") -> None:
         """Makes variables unknown that lines may have changed; a remedy is as of an `Unknown`."""

@@ -83,6 +83,25 @@ def test_a_signal_is_not_known_by_what_it_was_given():
         angles(body.partition("\n")[2], points=data)
 
 
+def test_an_output_that_a_procedure_gives_back_is_one_that_other_lines_may_set():
+    data = POINTS.replace("ENDDAT", "SIGNAL lamp $OUT[3]\nENDDAT")
+    body = "lampset(lamp)\n$OUT[3]=FALSE\nIF lamp THEN\ngo(1)\nENDIF\ngo(2)\n"
+    body += "END\nDEF lampset(o:OUT)\nDECL BOOL o\no=TRUE"
+    with pytest.raises(
+        cl.ClearanceError, match=r"'\$OUT\[3\]' is given a value by LAMPSET at line 7"
+    ):
+        angles(body, points=data)
+    assert angles(body, points=data, variables={"$OUT[3]": False}) == [2]
+    taken = body.replace("$OUT[3]=FALSE\n", "")
+    assert angles(taken, points=data, variables={"$OUT[3]": False}) == [1, 2]
+
+
+def test_a_timer_runs_on_whatever_it_was_set_to():
+    body = "SIGNAL watch $TIMER[1]\nwatch=0\nIF watch>100 THEN\ngo(1)\nENDIF\ngo(2)"
+    with pytest.raises(cl.ClearanceError, match=r"not known: only the controller knows \$TIMER"):
+        angles(body)
+
+
 LAMP = "SIGNAL lamp $OUT[3]\n%s\nIF lamp THEN\ngo(1)\nENDIF\ngo(2)"
 SIGNAL_TOLD = "of the case decides, which is taken to hold that until these files change it"
 
@@ -150,6 +169,14 @@ def test_a_case_gives_inputs_and_variables_that_no_file_has():
             angles(body, variables={key: one for key, one in given.items() if key != name}, **asked)
     with pytest.raises(cl.ClearanceError, match=r"1 is given; true or false"):
         angles(body, variables={"$IN[2]": 1})
+
+
+@pytest.mark.parametrize("word", ["ANIN", "DIGIN"])
+def test_what_an_input_gives_a_value_again_and_again_may_change_at_any_time(word):
+    body = f"REAL n\nn=0\n{word} ON n=1.0*$ANIN[1]+0\nIF n>3 THEN\ngo(2)\nENDIF\ngo(3)"
+    with pytest.raises(cl.ClearanceError, match=f"{word} 'N at line 9' may change it at any time"):
+        angles(body)
+    assert angles(f"n=3\n{word} OFF $ANIN[1]\ngo(n)") == [3]
 
 
 def test_what_a_trigger_gives_a_value_may_change_at_any_time():
