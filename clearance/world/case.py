@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from numbers import Real
 from typing import TYPE_CHECKING, overload
 
@@ -260,7 +261,7 @@ class Case:
         """Where the files were found that it was made from."""
         return tuple(one.read_from for one in self.sources if one.is_file)
 
-    @property
+    @cached_property
     def cell(self) -> Cell:
         """The part of it that no trajectory changes, as a key."""
         objects: list[object] = [*self.obstacles]

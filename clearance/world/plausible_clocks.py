@@ -211,14 +211,22 @@ def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
     """Notices on recordings that begin together in the case, but not by their stamps."""
     recorded = [one for one in _recordings(case) if not one.is_table]
     recorded.sort(key=lambda one: one.at_start)
-    for later in recorded[1:]:
-        first = recorded[0]
+    for i, later in enumerate(recorded[1:], 1):
+        first = _first_like(recorded[:i], later, lambda one: one.at_start)
         delay = later.at_start - first.at_start
         if delay > SKEW and not later.timing.says_start:
             start = time_text(delay / later.timing.rate)
             text = later.after(first, start, "but it is taken from 0 s", keeps=start, drops="0")
             by_chance = delay <= max(later.usual, first.usual)
             yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
+
+
+def _first_like(
+    before: Sequence[_Recording], later: _Recording, begin: Callable[[_Recording], float]
+) -> _Recording:
+    """The first of those before another; one of its own kind where the delay after that is more than usual."""
+    like = next((one for one in before if one.what == later.what), before[0])
+    return like if begin(later) - begin(like) > max(later.usual, like.usual) else before[0]
 
 
 def _recorded_tables_begin_later(case: Case) -> Iterator[Notice]:
@@ -229,8 +237,8 @@ def _recorded_tables_begin_later(case: Case) -> Iterator[Notice]:
     recorded = sorted(_recordings(case), key=lambda one: one.begins)
     earliest = min((table.start for table in _tables(case)), default=math.inf)
     lacks = "and no sample says where it is until then"
-    for later in recorded:
-        first = recorded[0]
+    for i, later in enumerate(recorded):
+        first = _first_like(recorded[: i + 1], later, lambda one: one.begins)
         wait = later.begins - first.begins
         if not later.is_table or later.timing.says_start:
             continue

@@ -246,6 +246,24 @@ def test_planned_messages_that_begin_apart_are_suspect_whatever_is_between_their
         assert one.severity == severity
 
 
+def test_a_planned_message_does_not_excuse_recordings_that_begin_apart(tmp_path):
+    """Their samples are 5 ms apart and they begin 80 ms apart; the message may be that late."""
+    case = two_recordings(tmp_path, 0.08)
+    (left, right), (door, *others) = case.robots, case.obstacles
+    left = replace(left, trajectory=replace(left.trajectory, is_message=True))
+    right, door = (
+        replace(one, **{name: replace(table, times=table.times / 1000.0)})
+        for one, name, table in (
+            (right, "trajectory", right.trajectory),
+            (door, "moves", door.moves),
+        )
+    )
+    door = replace(door, moves=replace(door.moves, began=EPOCH))
+    found = notices_of(replace(case, robots=(left, right), obstacles=(door, *others)))
+    (one,) = [notice for notice in found if "by its stamps" in notice.text]
+    assert one.severity == "suspect" and "after that of obstacle 'door'" in one.text
+
+
 @pytest.mark.parametrize("start", [0, 0.5, 3.25])
 def test_a_recording_begins_when_the_case_says(tmp_path, start):
     said = (

@@ -85,10 +85,6 @@ def test_a_new_checker_answers_for_the_case_as_it_is() -> None:
     obstacles[0] = cl.Obstacle(CUBE, near)
     obstacles.append(obstacles[0])
     assert cl.Checker(case).distance([0.0]).distance == before
-    (robot,) = case.robots
-    link = robot.robot.bodies[0].name
-    robot.padding[link] = 0.25
-    assert cl.Checker(case).distance([0.0]).distance == pytest.approx(before - 0.25)
 
 
 @pytest.mark.parametrize(

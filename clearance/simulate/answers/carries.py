@@ -47,21 +47,16 @@ GOES_ON = 0.1
 
 def notices_on_carries(phases: Sequence[Phase]) -> Iterator[Notice]:
     """A warning on each carry that may not be meant."""
-    first, gaps = phases[0], dict[Carry, list[tuple[float, float]]]()
+    first, held = phases[0], dict[Carry, list[Phase]]()
     texts = [*_left_behind(first.case)]
     for phase in phases:
         for carry in phase.carried.values():
-            if carry.part not in {one.part for one in gaps} and phase is not first:
+            if carry.part not in {one.part for one in held} and phase is not first:
                 texts += _held_before(first.case, carry)
-            gaps.setdefault(carry, []).extend(_gaps(phase, carry))
-    for carry, found in gaps.items():
-        if not found:
-            continue
-        texts += _far_away(
-            carry,
-            found,
-            "the times of its carry" if carry not in first.carried.values() else "its place",
-        )
+            held.setdefault(carry, []).append(phase)
+    for carry, during in held.items():
+        check = "its place" if during[0] is first else "the times of its carry"
+        texts += _far_away(carry, _gaps(carry, during), check)
     for before, phase in itertools.pairwise(phases):
         texts += _in_passing(before, phase)
         texts += _leaves_too(before, phase)
@@ -74,6 +69,8 @@ def _far_away(carry: Carry, gaps: Sequence[tuple[float, float]], check: str) -> 
     Args:
         gaps: [m], [s] how far it is, and when. check: the advice for the first of them.
     """
+    if not gaps:
+        return
     (gap, _), (most, then) = gaps[0], max(gaps)
     if FAR_GRASP < gap < np.inf:
         yield (
@@ -170,25 +167,40 @@ def _left_behind(case: Case) -> Iterator[str]:
             )
 
 
-def _gaps(phase: Phase, carry: Carry) -> Iterator[tuple[float, float]]:
-    """[m] From a part to the nearest body of what carries it, and when [s], at three steps of a phase.
+def _gaps(carry: Carry, during: Sequence[Phase]) -> list[tuple[float, float]]:
+    """[m] From a part to the nearest body of what carries it, and when [s]: at first, halfway, and at last.
 
-    Parts that change hands together, as shapes of an object, are one: the nearest counts, for the first of them.
-    Infinite if that has no body.
+    Shapes of one object that change hands together are one: the nearest counts, for the first of them; none of the
+    others. Infinite if what carries it has no body.
     """
-    case, hands = phase.case, (carry.by, carry.window)
-    together = {one.part for one in phase.carried.values() if (one.by, one.window) == hands}
+    case, whole = during[0].case, carry.part.rpartition("/")[0]
+    together = {
+        one.part
+        for one in during[0].carried.values()
+        if one == carry
+        or (
+            whole
+            and (one.part.rpartition("/")[0], one.by, one.window) == (whole, carry.by, carry.window)
+        )
+    }
     parts = [BodyIndex(OBSTACLE, i) for i, one in enumerate(case.obstacles) if one.name in together]
     if carry.part != parts[0].name_in(case):
-        return
-    bodies = _gripping(case, carry.by, parts)
-    for step in sorted({0, phase.n_steps // 2, phase.n_steps - 1}):
-        poses = link_poses_at(case, phase.motions, slice(step, step + 1))
+        return []
+    bodies, found = _gripping(case, carry.by, parts), []
+    halfway = during[len(during) // 2]
+    for phase, step in (
+        (during[0], 0),
+        (halfway, halfway.n_steps // 2),
+        (during[-1], during[-1].n_steps - 1),
+    ):
+        poses = link_poses_at(phase.case, phase.motions, slice(step, step + 1))
         placed = {
-            one: (one.shape_in(case), one.poses_in(case, poses)[0]) for one in (*parts, *bodies)
+            one: (one.shape_in(case), one.poses_in(phase.case, poses)[0])
+            for one in (*parts, *bodies)
         }
         gaps = (gap_between(*placed[a], *placed[b]) for a in parts for b in bodies)
-        yield min(gaps, default=np.inf), float(phase.times[step])
+        found.append((min(gaps, default=np.inf), float(phase.times[step])))
+    return found
 
 
 def _gripping(case: Case, name: str, parts: Sequence[BodyIndex]) -> list[BodyIndex]:

@@ -100,7 +100,10 @@ def handling_hints(record: Record) -> list[HandlingHint]:
 def _changes(record: Record) -> list[tuple[float, Carry, str]]:
     """When [s] a part is picked up or let go within the run."""
     times = record.timeline.times
-    found = [(c.window.start, c, f"picked up by {c.by}") for c in record.case.carries]
+    found = [
+        (max(c.window.start, times[0]), c, f"picked up by {c.by}")  # from 0 s is from the beginning
+        for c in record.case.carries
+    ]
     found += [(c.window.end, c, f"let go by {c.by}") for c in record.case.carries]
     inside = [one for one in found if times[0] <= one[0] <= times[-1]]
     return sorted(inside, key=lambda one: one[0])
