@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import islice
 from typing import Any
 
@@ -27,6 +28,7 @@ from clearance.formats.program.remarks import UNSAID, WAITS
 from clearance.formats.program.statements import (
     STOP,
     Assign,
+    Do,
     For,
     If,
     Leave,
@@ -243,6 +245,19 @@ class Effects:
                 if name is not None:
                     yield name.name, one.line
 
+    @cached_property
+    def used_by_moves(self) -> set[str]:
+        """The variables that moves and calls of routines are given, and those that these are worked out from."""
+        every = [one for routine in self.routines.values() for one in within(routine.body)]
+        calls = [one.call for one in every if isinstance(one, Do)]
+        moves = [one for one in calls if one.name in self.routines or self.language.moves(one.name)]
+        given = [(assigned(one.target), one.value) for one in every if isinstance(one, Assign)]
+        found, parts = set[str](), list[Expression](moves)
+        while more := {name for part in parts for name in names_in(part)} - found:
+            found |= more
+            parts = [value for target, value in given if target and target.name in more]
+        return found
+
     def changed_by(
         self, routine: Routine, entered: tuple[str, ...] = ()
     ) -> Iterator[tuple[str, Line]]:
@@ -284,16 +299,17 @@ class PersistentValues:
             origins.pop(name, None)
 
     def doubts_on(self, one: If | While | For, origin: str) -> dict[str, None]:
-        """A line on a branch or a loop that a kept value decided, if the robot moves; variables that it changes
-        rest on the value too.
+        """A line on a branch or a loop that a kept value decided, if the robot moves in it, or by what it changes;
+        variables that it changes rest on the value too.
         """
         bodies = [body for _, body in one.branches] if isinstance(one, If) else [one.body]
-        for name, _ in self.effects.changed_in(bodies):
+        changed = {name for name, _ in self.effects.changed_in(bodies)}
+        for name in changed:
             self.origins[-1 if name in self.frames[-1] else 0][name] = origin
         other = "the way not taken is" if isinstance(one, If) else "other numbers of passes are"
         text = f"{one.line}: {other} not measured; {origin}"
         moves = any(True for body in bodies for _ in self.effects.deciding(body))
-        return {text: None} if moves else {}
+        return {text: None} if moves or changed & self.effects.used_by_moves else {}
 
 
 def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:

@@ -104,6 +104,8 @@ def test_a_word_with_a_dollar_that_a_refusal_asks_for_may_be_skipped():
 
 
 HOLDS = "of the case, which is taken to hold that all the time, unless a wait needs another"
+DECIDES = HOLDS.replace("case,", "case decides,")
+WAY = "the way not taken is not measured;"
 INPUT, UNTIL = f"DI[1] {HOLDS}", "which is taken to hold that until these files change it"
 NEXT = "LBL[1] ;\nL P[3] 9mm/sec FINE ;"
 AXES = "PTP {A1 n,A2 0,A3 0,A4 0,A5 0,A6 0}"
@@ -134,10 +136,19 @@ def test_each_variable_of_the_case_that_moves_rest_on_stands_in_the_headline(bod
 def test_each_variable_of_a_case_of_krl_that_moves_rest_on_stands_in_the_headline():
     branch = f"n=10\nIF $IN[1] THEN\nn=170\nENDIF\n{AXES}"
     for body, name, told in (
-        (branch, "$in[1]", f"the moves rest on $IN[1] {HOLDS}"),
+        (branch, "$in[1]", f"line 8: {WAY} $IN[1] {DECIDES}"),
         (AXES, "n", f"the moves rest on N of the case, {UNTIL}"),
     ):
         beside = {"weld.dat": test_krl.POINTS.encode()}
         value = False if name == "$in[1]" else 9
         found = check("weld.src", f"{test_krl.HEAD}{body}\nEND\n", beside, variables={name: value})
         assert found.doubts == (told,)
+
+
+def test_a_kept_value_that_decides_where_moves_go_stands_in_the_headline():
+    data = "MODULE M\nPERS num held:=0;\nPERS num made:=0;\nPROC main()\nVAR num n:=1; VAR num m;\n"
+    move = f"MoveAbsJ [[m,0,0,0,0,0],{test_rapid.NONE}],v100,fine,tool0;"
+    counts = "IF made>9 THEN\nmade:=0;\nENDIF\n"
+    branch = f"{counts}IF held=1 THEN\nn:=7;\nENDIF\nm:=2*n;\n{move}"
+    (told,) = check("a.mod", f"{data}{branch} ENDPROC\nENDMODULE").doubts
+    assert told == f"line 9: {WAY} held (line 2) decides, which the controller keeps between runs"
