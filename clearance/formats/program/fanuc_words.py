@@ -61,5 +61,5 @@ class Motion:
 
 
 def named(text: str) -> str:
-    """The name of a register without its remark: `R[1]` for `R[1:count]`."""
-    return re.sub(r":[^\]]*", "", re.sub(r"\s+", "", text)).upper()
+    """The name of a register without remark and leading zeros: `R[1]` for `R[1:count]` and `R[01]`."""
+    return re.sub(r":[^\]]*|(?<=[\[,])0+(?=\d)", "", re.sub(r"\s+", "", text)).upper()

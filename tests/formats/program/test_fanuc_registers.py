@@ -108,6 +108,8 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
     assert [one.to.name for one in found.moves] == ["P[3]"]
     assert found.doubts == ("line 8: the way not taken is not measured; R[1] of the case decides",)
     assert names(WAY, variables={"R[1:kind]": 1.5}) == ["P[2]", "P[3]"]
+    assert names(WAY.replace("R[1]", "R[ 01:kind]"), variables={"R[001]": 2}) == ["P[3]"]
+    assert names(f"R[01]=2 ;\n{WAY}") == ["P[3]"]
     # a line gives it another value
     assert program(f"{FRAMES}R[1]=R[1]+1 ;\nR[1]=2 ;\n{WAY}", variables={"R[1]": 7}).doubts == ()
     found = program(FRAMES + WAY.replace("R[1]=2", "DI[5]=ON"), variables={"DI[5]": True})
@@ -153,6 +155,7 @@ F, OFF = WAY.replace("R[1]=2", "F[1]=ON"), {"variables": {"F[1]": False}}
         ("", "23"),
         ("F[1:first]=(ON) ;\n", "3"),
         ("F[1]=(!F[1]) ;\n", "3"),
+        ("F[01]=ON ;\n", "3"),
         ("F[2]=(ON) ;\n", "23"),
         ("F[1]=ON ;\nF[1]=OFF ;\n", "23"),
         ("F[1]=DI[1] ;\n", "not known: only the controller knows DI[1]"),
