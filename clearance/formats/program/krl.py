@@ -113,6 +113,10 @@ def read_krl(asked: ProgramRequest) -> ControllerProgram:
                     both = f"{name} is declared at {line} and at {one.line}"
                     run.variables[name] = Unknown(both)
         give_variables(asked.asked, run, of_module)
+        for name, routine in files.routines.items():
+            file = routine.line.file
+            if file.lower().endswith(".sub"):  # the controller runs it all the time
+                run.concurrent |= run.effects.changed_concurrently(file, name)
         entry, own = asked.asked.entry, {str(name): name for name in files.public}
         entry = entry_of("procedure", [*own], entry, (entry or "").upper(), files.public[0])
         run.enter(files.routines[own[entry]])

@@ -8,7 +8,8 @@ import re
 import pytest
 
 import clearance as cl
-from tests.formats.program.test_krl import FRAMES, POINTS, program
+from tests.formats.program.reading import read
+from tests.formats.program.test_krl import FRAMES, HEAD, POINTS, program
 
 WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
 
@@ -169,6 +170,17 @@ def test_a_case_gives_inputs_and_variables_that_no_file_has():
             angles(body, variables={key: one for key, one in given.items() if key != name}, **asked)
     with pytest.raises(cl.ClearanceError, match=r"1 is given; true or false"):
         angles(body, variables={"$IN[2]": 1})
+
+
+def test_what_the_submit_interpreter_sets_may_change_at_any_time():
+    body = f"{HEAD}IF $OUT[1] THEN\nPTP XHOME\nENDIF\nPTP XHOME\nEND\n"
+    beside = {
+        "weld.dat": POINTS.encode(),
+        "sps.sub": b"DEF sps()\nLOOP\n$OUT[1]=TRUE\nENDLOOP\nEND\n",
+    }
+    told = r"sps.sub 'SPS' may change it at any time: '\$OUT\[1\]' at sps.sub line 3"
+    with pytest.raises(cl.ClearanceError, match=told):
+        read("weld.src", body, beside, variables={"$OUT[1]": False})
 
 
 @pytest.mark.parametrize("word", ["ANIN", "DIGIN"])
