@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -83,7 +83,7 @@ def read_fanuc(asked: ProgramRequest) -> ControllerProgram:
         routines = {one.name: one for one in (*others, *blocks, main)}
         entry = asked.asked.entry
         entry_of("program", [main.name], entry, (entry or "").upper(), main.name)
-        language = _Fanuc(asked.asked)
+        language = _Fanuc(asked.asked, routines)
         run = Execution(language, routines, frozenset(name.upper() for name in asked.asked.skip))
         statements = (one for listing in routines.values() for one in within(listing.body))
         counters = {one.name.name for one in statements if isinstance(one, For)}
@@ -98,10 +98,12 @@ class _Fanuc(Language):
     """The instructions of a listing.
 
     Attributes:
-        asked: what the case says. share: of all speeds, which `OVERRIDE` says.
+        asked: what the case says. listings: the programs that the files have. share: of all speeds, which
+            `OVERRIDE` says.
     """
 
     asked: ProgramFile
+    listings: Collection[str]
     share: float = 1.0
     maker, base, suffix = "fanuc", BASE, ".LS"
     keeps_counter = shares_variables = True
@@ -118,6 +120,13 @@ class _Fanuc(Language):
     def moves(self, name: str) -> bool | None:
         """Whether an instruction moves the robot, or changes points, frames or registers."""
         return True if name.startswith("$MNU") else super().moves(name)
+
+    def beside(self, call: Call) -> str:
+        """The program that RUN has run, if a file has it."""
+        name = (
+            call.args[0].value if call.name == "RUN" and isinstance(call.args[0], Constant) else ""
+        )
+        return name if name in self.listings else ""
 
     def value_of(self, name: str, run: Execution) -> Any:
         """None, or what is known of an input, which only the controller has."""

@@ -223,9 +223,8 @@ class _Reader(BlockReader):
 
     def _action(self, line: Line, text: str) -> tuple[Statement, ...]:
         """The statements that a condition decides on; they hold no further one."""
-        word = _first(text)
-        if word == "IF":
-            return (Unreadable(line, word, jumps=True),)
+        if _first(text) == "IF":
+            return (Unreadable(line, "IF", jumps=True),)
         return tuple(self._simple(line, text))
 
     def _simple(self, line: Line, text: str) -> list[Statement]:
@@ -246,6 +245,9 @@ class _Reader(BlockReader):
             return [If(line, word, ((_condition(condition, line), self._action(line, action)),))]
         if word == "WAIT":
             return _wait(line, text[4:].strip())
+        if word == "RUN":
+            other = Constant(text[3:].strip().upper())
+            return [Unreadable(line, word), Do(line, Call(word, (other,), {}, line))]
         if word == "CALL":
             return [_call(line, text[4:].strip())]
         if word == "PR" and "=" in text:

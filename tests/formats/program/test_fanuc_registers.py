@@ -7,7 +7,17 @@ import math
 import pytest
 
 import clearance as cl
-from tests.formats.program.test_fanuc import CASE, FRAMES, POINTS, go, names, place, point, program
+from tests.formats.program.test_fanuc import (
+    CASE,
+    FRAMES,
+    POINTS,
+    go,
+    listing,
+    names,
+    place,
+    point,
+    program,
+)
 
 
 def places(body: str, points: str = POINTS, **asked) -> list[list[float]]:
@@ -191,6 +201,19 @@ def test_a_group_of_outputs_may_have_one_that_the_case_gives(given, line):
     assert (
         told == f"line 8: {name} of the case is taken to be none of the outputs that {changed} sets"
     )
+
+
+def test_a_program_that_runs_beside_may_change_registers_though_its_start_is_left_out():
+    body, grip = f"R[1]=0 ;\nRUN GRIP ;\n{WAY}", listing("R[1]=2 ;").replace("CELL", "GRIP")
+    found = program(FRAMES + body, skip=["RUN"])
+    assert len(found.moves) == 2 and "left out as asked: RUN (line 9)" in found.notes
+    with pytest.raises(cl.ClearanceError, match=r"RUN 'GRIP' may change it at any time: 'R\[1\]'"):
+        program(FRAMES + body, beside={"GRIP.LS": grip.encode()}, skip=["RUN"])
+    moving = listing("J P[1] 9% FINE ;").replace("CELL", "GRIP").encode()
+    with pytest.raises(cl.ClearanceError, match="RUN 'GRIP' moves the robot, or may: J at"):
+        program(FRAMES + body, beside={"GRIP.LS": moving}, skip=["RUN"])
+    with pytest.raises(cl.ClearanceError, match=r"line 9: 'RUN' is .*skip: \[RUN\]"):
+        program(FRAMES + body)
 
 
 def test_a_wait_for_another_value_than_the_case_says_gives_the_input_that_value():
