@@ -98,7 +98,7 @@ def bodies_text(finding: Finding) -> str:
 
 
 def who_text(finding: Finding) -> str:
-    """The two bodies; of a finding without bodies, what it is of."""
+    """The names of both bodies, or a text where a finding has none."""
     if finding.kind == UNPROVEN:
         return bodies_text(finding) or "any pair"
     return bodies_text(finding) or finding.text or "no pair is near"

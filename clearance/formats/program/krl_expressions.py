@@ -328,10 +328,8 @@ def routines_beside(words: Sequence[Token], kinds: Sequence[Mapping[str, str]]) 
             body.append(Do(line, call))
     elif behind[1].text != "(" and any(one.text == "=" for one in behind) and name != "$ANOUT":
         target = assigned(read.expression()) or Name(name, line)
-        is_group = any(
-            own.get(target.name) == "SIGNAL" for own in kinds
-        )  # of which outputs is not read
-        targets = (target, Name("$OUT", line)) if is_group else (target,)
+        is_group = any(own.get(target.name) == "SIGNAL" for own in kinds)
+        targets = (target, Name("$OUT", line)) if is_group else (target,)  # which is not read
         body += [Assign(line, one, Constant(Unknown("it is given beside"))) for one in targets]
     return [Routine(f"{name} at {line}", line, (), tuple(body))] if body else []
 

@@ -34,7 +34,6 @@ from clearance.world.timing import time_text
 FAR_GRASP = 0.3
 """[m] No gripper that a model leaves out is so long: a part that is farther away is picked up too soon."""
 
-
 GOES_AWAY = 0.1
 """[m] Fingers go no farther away from a part while their hand carries it."""
 
