@@ -15,7 +15,6 @@ import numpy as np
 from clearance.errors import BadChange
 from clearance.formats.motion.trajectory_writer import untold
 from clearance.gains.basis import Basis
-from clearance.gains.between_samples import values_between
 from clearance.gains.grasp import Grasps
 from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Inequalities
@@ -25,6 +24,7 @@ from clearance.simulate.answers.point_motion import has_joint_between, motion_of
 from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
+from clearance.world.knots import knots_of
 from clearance.world.pairs import Pair
 from clearance.world.phase import Phase
 from clearance.world.placed_robot import PlacedRobot
@@ -160,7 +160,7 @@ class JointOffsets:
         """(k, m) what a spline adds at times of the table (k,) [s], on the lines or cubics between its samples."""
         asked = self.placed.given_trajectory
         rates = None if asked.velocities is None else self.basis.at(asked.times, 1)
-        return values_between(asked, times, self._samples, rates)
+        return knots_of(asked.times, self._samples, rates).values_at(times)
 
     @cached_property
     def columns(self) -> list[int]:
@@ -185,7 +185,7 @@ class JointOffsets:
         placed, asked = self.placed, self.placed.given_trajectory
         times = np.array([one.time for one in self.tool_keeps])
         own = (times - placed.timing.start) * placed.timing.rate
-        positions = values_between(asked, own, asked.positions, asked.velocities)
+        positions = knots_of(asked.times, asked.positions, asked.velocities).values_at(own)
         tool = tool_of(placed, self.tool)
         return ToolPoses(tool, self.tool_keeps, positions, self._between_samples(own))
 

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.findings.of_rule import code_of
-from clearance.gains.between_samples import rates_between, values_between
 from clearance.record.certificate import motion_codes
 from clearance.record.record import Record
 from clearance.record.status import STATUSES, Status
@@ -21,6 +20,7 @@ from clearance.run import Question, Run, answer
 from clearance.simulate.answers.approaches import Approach, OfPair, approaches
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
+from clearance.world.knots import knots_of
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.rules import Rule
 from clearance.world.timeline import Timeline
@@ -338,15 +338,13 @@ def _with_samples(placed: PlacedRobot, times: np.ndarray) -> PlacedRobot:
     asked = placed.given_trajectory
     more = np.setdiff1d(times, asked.times)
     order = np.argsort(np.concatenate([asked.times, more]), kind="stable")
-    at = values_between(asked, more, asked.positions, asked.velocities)
-    velocities = None
+    knots, velocities = knots_of(asked.times, asked.positions, asked.velocities), None
     if asked.velocities is not None:
-        rates = rates_between(asked, more)
-        velocities = np.concatenate([asked.velocities, rates])[order]
+        velocities = np.concatenate([asked.velocities, knots.rates_at(more)])[order]
     finer = replace(
         asked,
         times=np.concatenate([asked.times, more])[order],
-        positions=np.concatenate([asked.positions, at])[order],
+        positions=np.concatenate([asked.positions, knots.values_at(more)])[order],
         velocities=velocities,
     )
     return replace(placed, trajectory=finer)

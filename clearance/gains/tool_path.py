@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 
 from clearance.errors import BadChange
-from clearance.gains.between_samples import values_between
 from clearance.gains.offsets import columns_of, require_path
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import Rows
@@ -24,6 +23,7 @@ from clearance.programs.inverse import MOST_FROM_AFAR, joints_at, least_motion
 from clearance.simulate.answers.approaches import Approach
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
+from clearance.world.knots import knots_of
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timeline import Timeline
@@ -148,9 +148,8 @@ class ToolPathKept(Shift):
         own = (times - timing.start) * timing.rate
         n_samples, *each = solved.followed.shape
         flat = solved.followed.reshape(n_samples, -1)
-        followed = values_between(self.placed.given_trajectory, own, flat, None).reshape(
-            len(own), *each
-        )
+        between = knots_of(self.placed.given_trajectory.times, flat).values_at(own)
+        followed = between.reshape(len(own), *each)
         found = np.einsum("kj,kjm->km", self._by_joint(approach), followed)
         by_base = super().gradient(approach)
         if by_base is not None:

@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.gains.between_samples import values_between
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING
 from clearance.world.joint_positions import extremes_of, joint_courses
 from clearance.world.joint_speeds import greatest_rates
+from clearance.world.knots import knots_of
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.tool import Tool
 
@@ -71,12 +71,8 @@ def _off(before: PlacedRobot, after: PlacedRobot, tool: Tool, times: np.ndarray)
     """(k, 2) how far the origins are apart [m], and how long the difference of the matrices of the turns is."""
     poses = []
     for one in (before, after):
-        at = values_between(
-            one.given_trajectory,
-            times,
-            one.given_trajectory.positions,
-            one.given_trajectory.velocities,
-        )
+        asked = one.given_trajectory
+        at = knots_of(asked.times, asked.positions, asked.velocities).values_at(times)
         poses.append(one.world_from_base @ tool.poses(at))
     off = poses[1] - poses[0]
     turned = np.linalg.norm(off[:, :3, :3], axis=(1, 2))
