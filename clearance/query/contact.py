@@ -7,6 +7,7 @@ whether bodies are in contact (`distance`), which never depends on parts.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -70,10 +71,8 @@ class Contact:
         """The same overlap, its vectors turned and moved by a (4, 4) pose."""
         turn, shift = world_from_b[:3, :3], world_from_b[:3, 3]
         mesh = ClosedMesh(self.region.vertices @ turn.T + shift, self.region.triangles)
-        return Contact(
-            self.penetration, self.penetration_at_least, turn @ self.direction, self.volume,
-            self.volume_at_least, turn @ self.centroid + shift, mesh, self.exact, self.notes,
-        )  # fmt: skip
+        direction, centroid = turn @ self.direction, turn @ self.centroid + shift
+        return replace(self, direction=direction, centroid=centroid, region=mesh)
 
 
 def contact(
@@ -144,7 +143,7 @@ class BodyPair:
     @property
     def is_rated_by_volume(self) -> bool:
         """True where a body was not cut, both have an inside, and manifold3d knows what they share."""
-        parts = (self.parts_a, self.parts_b)
+        parts = self.parts_a, self.parts_b
         known = all(part.solid is not None or part.convex for part in parts)
         return known and all(part.closed for part in parts) and any(part.rough for part in parts)
 
@@ -198,44 +197,40 @@ class _PlacedPair:
             notes=tuple(parts.note for parts in self._both_parts if parts.note),
         )
 
-    @cached_property
-    def outer_a(self) -> list[ConvexCorners]:
-        return [ConvexCorners.placed(part, self.b_from_a) for part in self.pair.parts_a.outer]
-
-    @cached_property
-    def outer_b(self) -> list[ConvexCorners]:
-        return [ConvexCorners(part.vertices, part.normals) for part in self.pair.parts_b.outer]
+    def _corners(
+        self, parts_a: Sequence[Polytope], parts_b: Sequence[Polytope]
+    ) -> tuple[list[ConvexCorners], list[ConvexCorners]]:
+        """Convex parts of a and of b, where they are."""
+        placed = [ConvexCorners.placed(part, self.b_from_a) for part in parts_a]
+        return placed, [ConvexCorners(part.vertices, part.normals) for part in parts_b]
 
     @cached_property
     def size(self) -> float:
         """[m] the sum of the bodies' diagonals."""
-        return float(
-            sum(np.linalg.norm(p.bounds[1] - p.bounds[0]) for p in (self.pair.a, self.pair.b))
-        )
+        diagonals = (np.ptp(body.bounds, axis=0) for body in (self.pair.a, self.pair.b))
+        return float(sum(map(np.linalg.norm, diagonals)))
 
     @property
     def _both_convex(self) -> bool:
-        return self.pair.parts_a.convex and self.pair.parts_b.convex
+        return all(parts.convex for parts in self._both_parts)
 
     @property
     def _both_closed(self) -> bool:
-        return self.pair.parts_a.closed and self.pair.parts_b.closed
-
-    # ---- depth
+        return all(parts.closed for parts in self._both_parts)
 
     def _depth(self, *, bounded: bool) -> tuple[Ray, float]:
         """The separation vector, and a lower bound of its length; 0 where that is neither known nor needed."""
-        whole = penetration(_joined(self.outer_a), _joined(self.outer_b))
+        outer = self._corners(*(parts.outer for parts in self._both_parts))
+        whole = penetration(*map(_joined, outer))
         ray = Ray(whole.depth, whole.direction)
-        if self._both_convex and not self._faceted:
+        if self._both_convex and self.pair.a.excess + self.pair.b.excess == 0.0:
             return ray, whole.at_least
         if self._by_region:
             ray = self._through_region(ray)
         elif self._needs_search:
-            extra = np.array(
-                [whole.direction, *(across.direction for across in self._rays_across())]
-            )
-            rays = separations(self.outer_a, self.outer_b, whole.depth, extra)
+            across = (ray.direction for ray in self._rays_across())
+            extra = np.array([whole.direction, *across])
+            rays = separations(*outer, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
         if not bounded:
             return ray, 0.0
@@ -251,28 +246,20 @@ class _PlacedPair:
     @property
     def _by_region(self) -> bool:
         """True where a body was not cut, and what both share is known."""
-        is_rough = any(parts.rough for parts in self._both_parts)
-        return (
-            is_rough
-            and self._both_closed
-            and self._mesh_shared is not None
-            and not self._mesh_shared.is_empty
-        )
+        if not self._both_closed or not any(parts.rough for parts in self._both_parts):
+            return False
+        return self._mesh_shared is not None and not self._mesh_shared.is_empty
 
     def _through_region(self, proven: Ray) -> Ray:
         """The shortest translation that the bodies confirm, along thin directions or normals of the region."""
-        region = self._region[0]
-        rays = sorted([*self._rays_across(), *ways_through(region)], key=lambda ray: ray.length)
-        found = shortened_through(
-            self._padded(rays), proven.length, self._is_clear, self._still_shared
-        )
+        rays = [*self._rays_across(), *ways_through(self._region[0])]
+        padded = self._padded(sorted(rays, key=lambda ray: ray.length))
+        found = shortened_through(padded, proven.length, self._is_clear, self._still_shared)
         return found or self._confirmed([proven])
 
     def _still_shared(self, shift: np.ndarray, along: np.ndarray) -> float:
         """[m] how thick what both share is along a unit direction after a translation (3,) of a; 0 if nothing."""
-        pose = self.b_from_a.copy()
-        pose[:3, 3] += shift
-        mesh = _PlacedPair(self.pair, pose, self.witness)._mesh_shared
+        mesh = _PlacedPair(self.pair, self._moved(shift), self.witness)._mesh_shared
         return 0.0 if mesh is None or mesh.is_empty else float(thickness(mesh, along[None, :])[0])
 
     def _depth_of_balls(self) -> float:
@@ -292,17 +279,20 @@ class _PlacedPair:
         return shortened(padded, self._is_clear) or padded[-1]
 
     def _is_clear(self, shift: np.ndarray) -> bool:
+        return distance(self.pair.a, self.pair.b, pose_a=self._moved(shift)).distance > 0.0
+
+    def _moved(self, shift: np.ndarray) -> np.ndarray:
+        """(4, 4) [m] the pose of a after a translation (3,)."""
         pose = self.b_from_a.copy()
         pose[:3, 3] += shift
-        return distance(self.pair.a, self.pair.b, pose_a=pose).distance > 0.0
+        return pose
 
     def _depth_of_inner(self) -> float:
         """[m] the depth of the convex bodies inside both: no translation that separates the bodies is shorter.
 
         Pairs in turn by what 26 directions leave of their depth, until that is no more than the greatest found.
         """
-        inner_a = [ConvexCorners.placed(part, self.b_from_a) for part in self.pair.parts_a.inner]
-        inner_b = [ConvexCorners(part.vertices, part.normals) for part in self.pair.parts_b.inner]
+        inner_a, inner_b = self._corners(*(parts.inner for parts in self._both_parts))
         at_most = depths_at_most(inner_a, inner_b)
         found = 0.0
         for row in np.argsort(-at_most, axis=None, kind="stable"):
@@ -344,17 +334,13 @@ class _PlacedPair:
             return 0.0
         return max((penetration(part, part).at_least for part in parts), default=0.0)
 
-    @property
-    def _faceted(self) -> bool:
-        return self.pair.a.excess + self.pair.b.excess > 0.0
-
     @cached_property
     def _region(self) -> tuple[ClosedMesh, float, float]:
         """The region, or that of the hulls, and its volume [m^3] from above and from below."""
         mesh = self._mesh_shared
         if mesh is not None:
             return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh))
-        shared = intersect(self._hulls())
+        shared = intersect([self.pair.hull_a.moved(self.b_from_a), self.pair.hull_b])
         mesh = _mesh_of(shared)
         if self._both_convex:
             return mesh, shared.volume, max(0.0, shared.volume - self._shell(mesh))
@@ -368,9 +354,6 @@ class _PlacedPair:
         ]
         shared = [intersect([p, q]).volume for p in inner_a for q in self.pair.parts_b.inner]
         return max(shared, default=0.0)
-
-    def _hulls(self) -> list[Polytope]:
-        return [self.pair.hull_a.moved(self.b_from_a), self.pair.hull_b]
 
     @property
     def _both_parts(self) -> tuple[ConvexParts, ConvexParts]:
