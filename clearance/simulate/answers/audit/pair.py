@@ -8,6 +8,7 @@ moves most, until all are proven disjoint, or one is so small that the links com
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -212,14 +213,7 @@ def audit(
         for pair in self_pairs(robot, matrix, trust_never=True)
         if pair.excused not in (None, RIGID)
     ]
-    found = []
-    for i, pair in enumerate(excused, start=1):
-        finding = audit_pair(robot, pair.link_a, pair.link_b)
-        joined = pair.excused == ADJACENT and not _is_apart_at_home(robot, pair)
-        found.append(ExcusedPair(str(pair.excused), finding, joined))
-        if progress:
-            progress(i, len(excused))
-    return found
+    return [_excused(robot, pair) for pair in _each(excused, progress)]
 
 
 def propose(robot: Robot, progress: Progress | None = None) -> list[ProposedPair]:
@@ -228,17 +222,26 @@ def propose(robot: Robot, progress: Progress | None = None) -> list[ProposedPair
     Neighbours that are apart at home, and are not proven to stay so, are to be measured.
     """
     pairs = [pair for pair in self_pairs(robot) if pair.excused != RIGID]
-    found = []
+    return [_proposed(robot, pair) for pair in _each(pairs, progress)]
+
+
+def _each(pairs: list[SelfPair], progress: Progress | None) -> Iterator[SelfPair]:
+    """The pairs; progress is reported after each."""
     for i, pair in enumerate(pairs, start=1):
-        found.append(_proposed(robot, pair))
+        yield pair
         if progress:
             progress(i, len(pairs))
-    return found
 
 
 def _is_apart_at_home(robot: Robot, pair: SelfPair) -> bool:
     bodies = {body.name: body for body in robot.bodies}
     return Neighbours(robot, bodies[pair.link_a], bodies[pair.link_b]).is_apart_at_home
+
+
+def _excused(robot: Robot, pair: SelfPair) -> ExcusedPair:
+    finding = audit_pair(robot, pair.link_a, pair.link_b)
+    joined = pair.excused == ADJACENT and not _is_apart_at_home(robot, pair)
+    return ExcusedPair(str(pair.excused), finding, joined)
 
 
 def _proposed(robot: Robot, pair: SelfPair) -> ProposedPair:
