@@ -12,6 +12,7 @@ from clearance.record.record import Record
 from clearance.record.row_status import RowStatus, status_codes_of
 from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.answers.motion_levels import MotionLevels, Span, moment_fields
+from clearance.simulate.answers.stretches import runs_of
 
 MOST_LISTED = 10_000
 """Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""
@@ -150,13 +151,7 @@ def _level_runs(record: Record) -> dict[str, np.ndarray]:
     codes = status_codes_of(record.rows)
     if record.need == "minimum":
         codes = codes[:0]
-    return {level: _runs(codes >= least) for level, least in LEVELS.items()}
-
-
-def _runs(inside: np.ndarray) -> np.ndarray:
-    """(k, 2) half-open index ranges of the runs of True."""
-    change = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]]).astype(np.int8)))
-    return change.reshape(-1, 2)
+    return {level: runs_of(codes >= least) for level, least in LEVELS.items()}
 
 
 @dataclass(frozen=True, eq=False)

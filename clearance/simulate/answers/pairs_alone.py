@@ -19,6 +19,7 @@ from clearance.record.moment import Moment
 from clearance.record.rule_answer import NearRows
 from clearance.simulate.answers.rule_pairs import MeasuredRule, RulePairs, measured_rule
 from clearance.simulate.answers.run_answer import joined, joined_certificates
+from clearance.simulate.answers.stretches import runs_of
 from clearance.simulate.measure.certify import (
     BEYOND,
     MOST_PARTS,
@@ -81,19 +82,13 @@ def near_between(answer: SectionAnswer, within: float, known: set[int]) -> set[i
     reach = within + section.padding
     seen = certificate.pair[(certificate.pair >= 0) & (certificate.upper_bound < reach)]
     known = known | set(section.places[seen].tolist())
-    spans = _runs(certificate.lower_bound[:-1] < reach)
+    spans = [slice(a, b + 1) for a, b in runs_of(certificate.lower_bound[:-1] < reach).tolist()]
     while True:
         rest = np.array([i for i, place in enumerate(section.places) if place not in known])
         new = {int(section.places[i]) for span in spans for i in _nearer(answer, rest, span, reach)}
         if not new:
             return known
         known |= new
-
-
-def _runs(is_open: np.ndarray) -> list[slice]:
-    """The longest runs of True, each with the step after it."""
-    change = np.flatnonzero(np.diff(np.concatenate([[False], is_open, [False]]).astype(np.int8)))
-    return [slice(start, end + 1) for start, end in change.reshape(-1, 2).tolist()]
 
 
 def _nearer(answer: SectionAnswer, pairs: np.ndarray, steps: slice, reach: float) -> set[int]:

@@ -26,6 +26,7 @@ from clearance.simulate.measure.moment_query import MomentQuery
 from clearance.simulate.measure.sections import Section, SectionAnswer
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.forest import positions_along
+from clearance.world.motion import place_in
 
 FINEST_TIME, FINEST_SHARE = 1e-3, 0.01
 """[s] and [-] The length of a part of an interval: the greater of both."""
@@ -148,12 +149,10 @@ class RuleStretches:
             found = answer.certificate.moment_of(step)
         else:
             if time is not None:
-                times = phase.motions[0].times
-                step = min(int(np.searchsorted(times, time, side="right")) - 1, len(times) - 2)
-                share = float((time - times[step]) / (times[step + 1] - times[step]))
+                step, share = place_in(phase.motions[0].times, time)
             moments = MomentQuery(phase.case, phase.motions, section.pairs)
             pair = int(parts.pair[row])
-            found = moments.between(step, share, pair) if share > 0.0 else moments.at(step, pair)
+            found = moments.between(step, max(share, 0.0), pair)
         return found.of_run(phase.first, section.padding, self.rule.name)
 
 
@@ -165,6 +164,12 @@ def joined_spans(spans: np.ndarray) -> np.ndarray:
     reached = np.maximum.accumulate(spans[:, 1])
     first = np.flatnonzero(np.append(True, spans[1:, 0] > reached[:-1]))
     return np.column_stack([spans[first, 0], np.append(reached[first[1:] - 1], reached[-1])])
+
+
+def runs_of(marked: np.ndarray) -> np.ndarray:
+    """(k, 2) first and, after the last, of each run of True."""
+    change = np.flatnonzero(np.diff(np.concatenate([[False], marked, [False]]).astype(np.int8)))
+    return change.reshape(-1, 2)
 
 
 def _places(n: int, test: Callable[[slice], np.ndarray]) -> np.ndarray:
@@ -283,9 +288,8 @@ class _Intervals:
         another need no visit if they join a step that is above the level; of others one moment is measured.
         """
         n, ends = len(proven), ~self.below(slice(step, step + 2))
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], proven, [False]]).astype(np.int8)))
         outside = proven.copy()
-        for first, stop in edges.reshape(-1, 2).tolist():
+        for first, stop in runs_of(proven).tolist():
             if (first == 0 and ends[0]) or (stop == n and ends[1]):
                 continue
             phase, what = self.answer.section.phase, self.answer.section.in_motion
