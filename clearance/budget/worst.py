@@ -170,10 +170,8 @@ def _measured(low: _LowMoment) -> Moment:
     """The pair, measured without errors, in its phase."""
     phase = low.section.section.phase
     moments = MomentQuery(phase.case, phase.motions, low.section.section.pairs)
-    if low.share == 0.0 or phase.n_steps == 1:
-        return moments.at(low.interval, low.pair)
     if low.share == 1.0:
-        return moments.at(low.interval + 1, low.pair)
+        return moments.between(low.interval + 1, 0.0, low.pair)
     return moments.between(low.interval, low.share, low.pair)
 
 

@@ -25,23 +25,19 @@ def clock_pair(case: Case, one: BodyIndex, other: BodyIndex) -> tuple[int, int] 
     if case.clock.slack == 0.0:
         return None
     clocks = clocks_of(case)
-    a, b = clocks[one.is_obstacle, _index(one)], clocks[other.is_obstacle, _index(other)]
+    a, b = clocks[one.thing], clocks[other.thing]
     return None if NO_CLOCK in (a, b) or a == b else (a, b)
 
 
 def actors_of_clock(case: Case, body: BodyIndex) -> frozenset[BodyIndex]:
     """The robots (body 0 of each) and the obstacles that move by the clock of a body."""
     clocks = clocks_of(case)
-    own = clocks[body.is_obstacle, _index(body)]
+    own = clocks[body.thing]
     return frozenset(
         BodyIndex(OBSTACLE, i) if is_obstacle else BodyIndex(i, 0)
         for (is_obstacle, i), clock in clocks.items()
         if clock == own
     )
-
-
-def _index(body: BodyIndex) -> int:
-    return body.i_body if body.is_obstacle else body.i_robot
 
 
 @once_a_cell(16)

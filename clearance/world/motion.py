@@ -50,6 +50,8 @@ class Motion:
 
     def positions_after(self, step: int, share: float) -> np.ndarray:
         """(k,) [rad] or [m] where the joints are when a share (0 to 1) of the interval after a step has passed."""
+        if share == 0.0:  # of the last step too
+            return self.positions[step]
         ends = slice(step, step + 2)
         if self.velocities is None:
             before, after = self.positions[ends]
@@ -59,13 +61,7 @@ class Motion:
 
     def positions_at(self, time: float) -> np.ndarray:
         """(k,) [rad] or [m] where the joints are at a time [s] of the motion."""
-        step = int(
-            np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, self.n_steps - 1)
-        )
-        if self.times[step] == time or step == self.n_steps - 1:
-            return self.positions[step]
-        length = self.times[step + 1] - self.times[step]
-        return self.positions_after(step, float((time - self.times[step]) / length))
+        return self.positions_after(*place_in(self.times, time))
 
     def velocities_after(self, step: int, share: float) -> np.ndarray:
         """(k,) [rad/s] or [m/s] how fast the joints then are on their cubics; zeros where they move linearly."""
@@ -74,6 +70,14 @@ class Motion:
         ends = slice(step, step + 2)
         cubics = cubics_of(self.times[ends], self.positions[ends], self.velocities[ends])
         return velocity_on(cubics, np.array(share))[0] / (self.times[step + 1] - self.times[step])
+
+
+def place_in(times: np.ndarray, time: float) -> tuple[int, float]:
+    """The last step not after a time [s], and the share of its interval; of a time beyond, the nearer end."""
+    step = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 1))
+    if step == len(times) - 1:
+        return step, 0.0
+    return step, max(0.0, float((time - times[step]) / (times[step + 1] - times[step])))
 
 
 def kinematic_motion(placed: PlacedRobot) -> Motion:

@@ -46,6 +46,11 @@ class BodyIndex(NamedTuple):
         """False for a link of a robot."""
         return self.i_robot == OBSTACLE
 
+    @property
+    def thing(self) -> tuple[bool, int]:
+        """What it is of: an obstacle (True, i) or a robot (False, i)."""
+        return self.is_obstacle, self.i_body if self.is_obstacle else self.i_robot
+
     def shape_in(self, case: Case) -> Polyhedron:
         """Its shape, in its own frame."""
         return self.body_in(case).shape

@@ -73,8 +73,7 @@ def moves_with_obstacle(case: Case, body: BodyIndex, i_obstacle: int) -> bool:
 
 def owners_of(case: Case, body: BodyIndex) -> tuple[Thing, ...]:
     """The obstacle or robot that a body is of, and all that it stands on, nearest first."""
-    i = body.i_body if body.is_obstacle else body.i_robot
-    return things_under(case, (body.is_obstacle, i))
+    return things_under(case, body.thing)
 
 
 def things_under(case: Case, thing: Thing) -> tuple[Thing, ...]:

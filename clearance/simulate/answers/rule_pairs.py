@@ -170,7 +170,7 @@ def _moment(answer: SectionAnswer, step: int, pair: int) -> Moment:
     section = answer.section
     case, motions = section.phase.case, section.phase.motions
     if section.tied:
-        return MomentQuery(case, motions, section.pairs).at(step, pair)
+        return MomentQuery(case, motions, section.pairs).between(step, 0.0, pair)
     names = pair_names(case, section.pairs)
     return SampleMoments(names, motions).at(answer.found, "", step)
 

@@ -22,7 +22,7 @@ from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.answers.transfers import Transfers
 from clearance.simulate.measure.sections import Section
 from clearance.world.case import Case
-from clearance.world.forest import forest_of, joined_positions, positions_between
+from clearance.world.forest import forest_of, positions_between
 from clearance.world.pairs import BodyIndex, Pair
 
 STEP = 1e-7
@@ -117,10 +117,7 @@ def _near(section: Section, moment: Moment) -> list[_NearPair]:
     """The pairs of a section that are at most `BAND` farther than the moment's."""
     case, own = section.phase.case, moment.step - section.phase.first
     motions = section.phase.motions
-    if moment.between:
-        columns = positions_between(case, motions, own, moment.share)
-    else:
-        columns = joined_positions(case, motions, np.array([own]))[0]
+    columns = positions_between(case, motions, own, moment.share)
     poses = forest_of(case).poses(columns[None])
     reach = moment.clearance + section.padding + BAND
     found = []

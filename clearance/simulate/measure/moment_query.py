@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
-
-import numpy as np
+from typing import Any
 
 from clearance.query.distance import distance
+from clearance.query.result import Nearest
 from clearance.record.moment import Moment
 from clearance.world.case import Case
-from clearance.world.forest import forest_of, joined_positions, positions_between
+from clearance.world.forest import forest_of, positions_between
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -30,55 +29,38 @@ class MomentQuery:
         Args:
             touches: the pair is known to be in contact there, which rounding of the pose could hide.
         """
-        return self._measured(
-            i_pair,
-            _Place(
-                step + int(share == 1.0),
-                share % 1.0,
-                tuple(motion.positions_after(step, share) for motion in self.motions),
-                positions_between(self.case, self.motions, step, share),
-            ),
-            touches,
-        )
-
-    def at(self, step: int, i_pair: int) -> Moment:
-        """The moment of a step."""
-        positions = tuple(motion.positions[step] for motion in self.motions)
-        steps = np.array([step])
-        columns = joined_positions(self.case, self.motions, steps)[0]
-        return self._measured(i_pair, _Place(step, 0.0, positions, columns), touches=False)
-
-    def _measured(self, i_pair: int, at: _Place, touches: bool) -> Moment:
         a, b = self.pairs[i_pair]
-        poses = forest_of(self.case).poses(at.columns[None])
+        poses = forest_of(self.case).poses(
+            positions_between(self.case, self.motions, step, share)[None]
+        )
         found = distance(
             a.shape_in(self.case),
             b.shape_in(self.case),
             pose_a=a.poses_in(self.case, poses)[0],
             pose_b=b.poses_in(self.case, poses)[0],
         )
+        positions = tuple(motion.positions_after(step, share) for motion in self.motions)
+        step, share = step + int(share == 1.0), share % 1.0
         times = self.motions[0].times
-        end = times[min(at.step + 1, len(times) - 1)]
-        point = tuple(found.point_b.tolist())
+        end = times[min(step + 1, len(times) - 1)]
         return Moment(
-            step=at.step,
-            time=float(times[at.step] + at.share * (end - times[at.step])),
-            between=at.share > 0.0,
-            clearance=0.0 if touches else found.distance,
+            step=step,
+            time=float(times[step] + share * (end - times[step])),
+            between=share > 0.0,
             link=a.name_in(self.case),
             obstacle=b.name_in(self.case),
-            point_link=point if touches else tuple(found.point_a.tolist()),
-            point_obstacle=point,
-            positions=at.positions,
-            share=at.share,
-            touches=touches or found.distance <= 0.0,
+            positions=positions,
+            share=share,
+            **as_seen(found, touches),
         )
 
 
-class _Place(NamedTuple):
-    """When all is where: the step, the share of the way to the next, the robots' joints, and all columns."""
-
-    step: int
-    share: float
-    positions: tuple[np.ndarray, ...]
-    columns: np.ndarray
+def as_seen(found: Nearest, touches: bool) -> dict[str, Any]:
+    """The fields of a moment from what is measured of its pair, which may be known to be in contact there."""
+    point = tuple(found.point_b.tolist())
+    return {
+        "clearance": 0.0 if touches else found.distance,
+        "point_link": point if touches else tuple(found.point_a.tolist()),
+        "point_obstacle": point,
+        "touches": touches or found.distance <= 0.0,
+    }

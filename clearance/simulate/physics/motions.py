@@ -17,7 +17,7 @@ from clearance.simulate.physics.course import notices_on_limits
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
 from clearance.world.holders import link_below, robots_below
-from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.motion import Motion, kinematic_motion, place_in
 from clearance.world.timeline import Timeline, timeline_of
 
 
@@ -106,18 +106,11 @@ def _standing_base(asked: Timeline, i_robot: int) -> np.ndarray | None:
 
 def _base_rotations(asked: Timeline, i_robot: int, times: np.ndarray) -> np.ndarray:
     """(n, 3, 3) `world_from_base` at times [s] of the run; before and after it, those of its ends."""
-    steps = asked.times
-    if len(steps) == 1:
-        (phase,) = asked.phases
-        start = forest_of(phase.case).robot_starts[i_robot]
-        only = link_poses_at(phase.case, phase.motions, slice(0, 1))[0, start, :3, :3]
-        return np.tile(only, (len(times), 1, 1))
     found = np.empty((len(times), 3, 3))
-    for row, time in enumerate(np.clip(times, steps[0], steps[-1])):
-        step = max(0, min(int(np.searchsorted(steps, time, side="right")) - 1, len(steps) - 2))
+    for row, time in enumerate(times):
+        step, share = place_in(asked.times, time)
         phase = asked.phase_of(step)
-        share = (time - steps[step]) / (steps[step + 1] - steps[step])
-        columns = positions_between(phase.case, phase.motions, step - phase.first, float(share))
+        columns = positions_between(phase.case, phase.motions, step - phase.first, share)
         forest = forest_of(phase.case)
         found[row] = forest.poses(columns[None])[0, forest.robot_starts[i_robot], :3, :3]
     return found

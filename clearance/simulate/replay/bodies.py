@@ -20,6 +20,7 @@ from clearance.record.replay import LINK, MOVING, PART, STANDING, DrawnCarry
 from clearance.world.case import Case
 from clearance.world.clocks import clocks_of
 from clearance.world.forest import forest_of, positions_between
+from clearance.world.motion import place_in
 from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase
 
@@ -120,17 +121,11 @@ def _by_phase(record: Record, frames: Sequence[FramePlace]) -> Iterator[tuple[Ph
 def _link_poses(phase: Phase, frames: Sequence[FramePlace]) -> np.ndarray:
     """(k, links, 4, 4) of a phase's forest at frames of it."""
     forest = forest_of(phase.case)
-    columns = [_columns(phase, frame.step, frame.share) for frame in frames]
+    columns = [
+        positions_between(phase.case, phase.motions, frame.step - phase.first, frame.share)
+        for frame in frames
+    ]
     return forest.poses(np.array(columns).reshape(len(frames), -1))
-
-
-def _columns(phase: Phase, step: int, share: float) -> np.ndarray:
-    """(columns,) of a phase's forest at one moment of it."""
-    own = step - phase.first
-    if share > 0.0:
-        return positions_between(phase.case, phase.motions, own, share)
-    moving = [o.moves.columns[own] for o in phase.case.obstacles if o.moves is not None]
-    return np.concatenate([*(motion.positions[own] for motion in phase.motions), *moving])
 
 
 def _is_absent(phase: Phase, body: BodyIndex) -> bool:
@@ -186,21 +181,15 @@ def _put_second(
     record: Record, bodies: Sequence[BodyIndex], frame: FramePlace, poses: np.ndarray
 ) -> None:
     """Puts what moves by the clock of the frame's second body where that is then."""
-    case, times = record.case, record.timeline.times
+    case = record.case
     assert frame.time_b is not None
     clocks = clocks_of(case)
-    clock = {
-        body: clocks[body.is_obstacle, body.i_body if body.is_obstacle else body.i_robot]
-        for body in bodies
-    }
     second = next((body for body in bodies if body.name_in(case) == frame.pair[1]), None)
-    step = int(np.clip(np.searchsorted(times, frame.time_b, side="right") - 1, 0, len(times) - 1))
-    length = times[step + 1] - times[step] if step + 1 < len(times) else 0.0
-    share = float((frame.time_b - times[step]) / length) if length > 0.0 else 0.0
+    step, share = place_in(record.timeline.times, frame.time_b)
     phase = record.timeline.phase_of(step)
     link_poses = _link_poses(phase, [FramePlace(step, share, None, (None, None))])
     for k, body in enumerate(bodies):
-        if second is not None and clock[body] == clock[second]:
+        if second is not None and clocks[body.thing] == clocks[second.thing]:
             poses[k] = body.poses_in(phase.case, link_poses)[0]
 
 

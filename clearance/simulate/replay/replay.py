@@ -38,6 +38,7 @@ from clearance.simulate.replay.bodies import (
 from clearance.simulate.replay.curve_moments import curve_moments
 from clearance.simulate.replay.frames import ReplayFrames, least_of
 from clearance.world.case import Case
+from clearance.world.motion import place_in
 from clearance.world.pairs import BodyIndex, bodies_of
 
 if TYPE_CHECKING:
@@ -267,7 +268,8 @@ def earlier_motion(earlier: Record, replay: Replay) -> list[EarlierBody]:
     Args:
         earlier: a run of the same bodies.
     """
-    frames = [_place(earlier.timeline.times, time) for time in replay.times]
+    places = (place_in(earlier.timeline.times, time) for time in replay.times)
+    frames = [FramePlace(*place, None, (None, None)) for place in places]
     drawn = placed_bodies(earlier, bodies_of(earlier.case), frames)
     was = [packed(poses) for poses in drawn.poses]
     return [
@@ -275,12 +277,3 @@ def earlier_motion(earlier: Record, replay: Replay) -> list[EarlierBody]:
         for i, (before, after, shown) in enumerate(zip(was, replay.poses, drawn.shown, strict=True))
         if (np.abs(before - after) > MOVED).any()
     ]
-
-
-def _place(times: np.ndarray, time: float) -> FramePlace:
-    """When a time [s] is in a run, at the nearest of its ends where it is beyond."""
-    step = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 1))
-    share = 0.0
-    if step + 1 < len(times):
-        share = float(np.clip((time - times[step]) / (times[step + 1] - times[step]), 0.0, 1.0))
-    return FramePlace(step, share, None, (None, None))

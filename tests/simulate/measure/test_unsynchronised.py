@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.errors import BadInput, BadTime
 from clearance.simulate.measure.certify import certify_motion
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.measure.clocks.unsynchronised import (
@@ -310,19 +309,6 @@ def exact_bodies(placed: PlacedRobot, step: float, share: float) -> list:
     values = dict(zip(names, positions.tolist(), strict=True))
     poses = exact_link_poses(placed.robot, values, placed.world_from_base)
     return [exactly_placed(body.shape.vertices, poses[body.name]) for body in placed.robot.bodies]
-
-
-def test_what_is_no_question_is_refused():
-    case = two_robots(0)
-    with pytest.raises(BadTime):
-        asked(case, -1.0)
-    with pytest.raises(BadTime):
-        asked(case, float("nan"))
-    pair = measured_pairs(case)[0][0]
-    with pytest.raises(BadInput):
-        asked(case, 0.0, pairs=[pair, Pair(pair.b, pair.a)])
-    with pytest.raises(BadInput):
-        asked(case, 0.0, pairs=[])
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.1])

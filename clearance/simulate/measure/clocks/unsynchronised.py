@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.errors import BadInput, BadTime
 from clearance.kernels.clocks.clock_rectangles import Band
 from clearance.kernels.clocks.clock_tree import (
     ClockTree,
@@ -45,6 +44,7 @@ from clearance.simulate.measure.certify import (
 )
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks, actor_of
 from clearance.simulate.measure.layout import lay_out, with_whole_faces
+from clearance.simulate.measure.moment_query import as_seen
 from clearance.simulate.measure.parts import in_order, parts
 from clearance.simulate.measure.refine import FINER
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
@@ -96,13 +96,7 @@ def least_unsynchronised(
 
     Args:
         gap: [m] the lower bounds are within it of a distance that occurs; None to check the steps only.
-
-    Raises:
-        BadTime: a slack that is no time. BadInput: pairs that are not of two clocks.
     """
-    if not what.slack >= 0.0:
-        raise BadTime(f"a slack of {what.slack} s", valid="0 or more, or infinite")
-    _require_two_clocks(what)
     work = _Work.of(what, resources)
     steps, steps_tally = work.steps()
     if gap is None:
@@ -125,23 +119,11 @@ def least_unsynchronised(
 
 def least_of_all_steps(what: PairsOfTwoClocks, resources: Resources) -> StepMinima:
     """The least of all steps of the first clock, in the first row of least clearance; others may be too much."""
-    _require_two_clocks(what)
     return _Work.of(what, resources).steps(least_only=True)[0]
 
 
 def _no_moment(interval: int) -> Moment:
     raise AssertionError("nothing is proven of intervals")
-
-
-def _require_two_clocks(what: PairsOfTwoClocks) -> None:
-    if not what.pairs:
-        raise BadInput("no pairs of two clocks", valid="one pair or more")
-    first, second = ({actor_of(body) for body in side} for side in zip(*what.pairs, strict=True))
-    if first & what.actors_of_b or not second <= what.actors_of_b:
-        raise BadInput(
-            "pairs that are not of two clocks",
-            valid="bodies of some actors against bodies of other actors, one pair or more",
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +141,8 @@ class _Work:
 
     @staticmethod
     def of(what: PairsOfTwoClocks, resources: Resources) -> _Work:
+        sides = [[actor_of(body) in what.actors_of_b for body in pair] for pair in what.pairs]
+        assert sides == [[False, True]] * len(what.pairs), "two clocks move the bodies of each pair"
         layout = lay_out(what.case, what.pairs)
         world = layout.world
         bodies = np.unique(world.pairs[:, 0]), np.unique(world.pairs[:, 1])
@@ -317,7 +301,6 @@ class _TwoClockQuery:
             pose_a=pair.a.poses_in(what.a.case, poses[0])[0],
             pose_b=pair.b.poses_in(what.b.case, poses[1])[0],
         )
-        touches = bool(found.upper[interval] <= 0.0)
         names = pair_names(case, [pair])
         positions = tuple(
             what.b.motions[i].positions_after(*at_b)
@@ -325,20 +308,16 @@ class _TwoClockQuery:
             else motion.positions_after(*at_a)
             for i, motion in enumerate(what.a.motions)
         )
-        point_b = tuple(near.point_b.tolist())
         return Moment(
             step=interval + int(share == 1.0),
             time=_time(what.a, *at_a),
             between=0.0 < share < 1.0,
-            clearance=0.0 if touches else near.distance,
             link=names[0][0],
             obstacle=names[1][0],
-            point_link=point_b if touches else tuple(near.point_a.tolist()),
-            point_obstacle=point_b,
             positions=positions,
             share=share % 1.0,
-            touches=touches or near.distance <= 0.0,
             time_b=_time(what.b, *at_b),
+            **as_seen(near, bool(found.upper[interval] <= 0.0)),
         )
 
     @staticmethod
