@@ -294,16 +294,16 @@ class _Comparer:
         """Why a finding of one run says nothing of the other: its robot or its rule is another."""
         for robot in {self._robot_of(name) for name in (finding.body_a, finding.body_b)} - {""}:
             if not self._same(robot):
-                return f"robot {robot!r} is another"
+                return f"robot {robot!r} has changed"
         old, new = (
             [rule for rule in found.measured.rules_of(finding.status) if rule.name == finding.rule]
             for found in (self.before, self.now)
         )
         if old != new:
-            return f"rule {finding.rule!r} is another"
+            return f"rule {finding.rule!r} has changed"
         tolerances = {self.before.measured.tolerances, self.now.measured.tolerances}
         if finding.kind in OF_TOLERANCES and len(tolerances) > 1:
-            return "its tolerances are others"
+            return "its tolerances have changed"
         return ""
 
     def _robot_of(self, body: str) -> str:

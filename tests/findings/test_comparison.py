@@ -164,7 +164,7 @@ def test_a_simulation_in_which_obstacles_push_back_is_another_motion(before, tmp
 def test_other_limits_are_not_comparable(before, tmp_path):
     now = found(tmp_path / "now", BEFORE, limits="{fail: 0.006, warn: 0.02}")
     (row,) = compared(before, now).rows
-    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' is another")
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' has changed")
 
 
 def test_another_warn_limit_changes_nothing_of_what_fails(before, tmp_path):
@@ -178,7 +178,7 @@ def test_another_warn_limit_changes_nothing_of_what_fails(before, tmp_path):
     (row,) = compared(
         near, found(tmp_path / "none", CLEAR, limits="{fail: 0.005, warn: 0.01}")
     ).rows
-    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' is another")
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' has changed")
 
 
 def test_another_robot_is_not_comparable(before, tmp_path):
@@ -186,7 +186,7 @@ def test_another_robot_is_not_comparable(before, tmp_path):
     robots = tuple(dataclasses.replace(r, sha256="0" * 64) for r in now.measured.robots)
     now = dataclasses.replace(now, measured=dataclasses.replace(now.measured, robots=robots))
     (row,) = compared(before, now).rows
-    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "robot 'gantry_box' is another")
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "robot 'gantry_box' has changed")
 
 
 def test_what_a_list_leaves_out_is_not_known(before, tmp_path):

@@ -141,7 +141,7 @@ def test_findings_are_kept_and_compared(tmp_path):
     }
     assert (
         rows[TOLERANCES].change == "not comparable"
-        and rows[TOLERANCES].why == "its tolerances are others"
+        and rows[TOLERANCES].why == "its tolerances have changed"
     )
     assert rows["clearance"].change == "unchanged"
 
