@@ -3,16 +3,24 @@
 It listens on the loopback address only; its address holds a secret that no other user of the machine knows; and it
 answers to no other name of the machine and to no other page's script, so that a foreign page in the same browser
 cannot read the scene, whatever name its site gives our address (DNS rebinding). It is a thread, not a process: no
-end of this process leaves it behind. Not for: what is on the page (`playback`).
+end of this process leaves it behind. Not for: making reports.
 """
 
 from __future__ import annotations
 
 import secrets
+import signal
 import threading
+import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
+from clearance.errors import BadSyntax, MissingFile
+
+PAGE = "report.html"
 LOOPBACK = "127.0.0.1"
 
 GUARDS = {
@@ -26,7 +34,7 @@ GUARDS = {
 
 
 class PageServer:
-    """Serves a page until it is closed; `url` is its address."""
+    """Serves a page until `close`, or as a context manager until its end; `url` is its address."""
 
     def __init__(self, page: bytes) -> None:
         self._server = _Server(page)
@@ -41,6 +49,12 @@ class PageServer:
             self._server.shutdown()
             self._thread.join()
             self._server.server_close()
+
+    def __enter__(self) -> PageServer:
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        self.close()
 
 
 class _Server(ThreadingHTTPServer):
@@ -80,3 +94,42 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: object) -> None:
         """Nothing is written of who has asked."""
+
+
+def show(name: str, page: bytes, open_browser: bool = True) -> None:
+    """Serves a page until the user interrupts; prints its address."""
+    with PageServer(page) as server, _until_interrupted():
+        print(f"{name} is playing at {server.url} (Ctrl-C ends it)", flush=True)
+        if open_browser:
+            webbrowser.open(server.url, new=2)
+        threading.Event().wait()
+
+
+@contextmanager
+def _until_interrupted() -> Iterator[None]:
+    """Ends the block, without an error, at Ctrl-C or where this process is asked to end."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    except KeyboardInterrupt:
+        return
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def page_in(folder: Path) -> bytes:
+    """The page in the folder of a report.
+
+    Raises:
+        MissingFile: the folder is not there or holds no report. BadSyntax: its page is cut off.
+    """
+    written = "a folder that `clearance check --out` wrote"
+    if not folder.is_dir():
+        raise MissingFile("no such folder", where=str(folder), valid=written)
+    path = folder / PAGE
+    if not path.is_file():
+        raise MissingFile("no report here", where=str(path), valid=written)
+    page = path.read_bytes()
+    if not page.rstrip().endswith(b"</html>"):
+        raise BadSyntax("the page is cut off", where=str(path), valid="run `clearance check` again")
+    return page

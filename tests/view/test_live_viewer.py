@@ -17,7 +17,7 @@ from clearance import cli
 from clearance.cli import view
 from clearance.errors import BadSyntax, MissingFile
 from clearance.report.withdrawn import withdraw_report
-from clearance.view import Playback, page_in
+from clearance.view import PageServer, page_in
 from tests.report.browser import chromium, executable
 from tests.report.made import replay_of, run_of, write
 from tests.report.records import record, with_contacts
@@ -30,22 +30,22 @@ RUN = with_contacts(record())
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_it_shows_the_verdict_and_plays_the_replay():
     replay = replay_of(RUN)
-    with Playback(run_of(RUN).page().encode()) as playback, chromium() as page:
-        page.open(playback.url, "window.clearance")
+    with PageServer(run_of(RUN).page().encode()) as server, chromium() as page:
+        page.open(server.url, "window.clearance")
         page.settle()
         state = page.run("window.clearance.state()")
         ends = replay.lines[replay.i_worst].reshape(2, 3)
         assert state["frame"] == replay.i_worst and np.abs(state["dots"] - ends).max() < 1e-9
         assert page.run("document.querySelector('.verdict').textContent").startswith("Contact")
         asked = {url for url in page.requests if not url.startswith(("data:", "blob:"))}
-        assert page.errors == [] and asked == {playback.url}
+        assert page.errors == [] and asked == {server.url}
 
 
 def test_a_folder_is_shown_as_its_page(tmp_path):
     write(RUN, tmp_path / "out")
-    with Playback(page_in(tmp_path / "out")) as playback:
-        assert playback.url.startswith("http://127.0.0.1")
-        page = build_opener(ProxyHandler({})).open(playback.url, timeout=120).read()
+    with PageServer(page_in(tmp_path / "out")) as server:
+        assert server.url.startswith("http://127.0.0.1")
+        page = build_opener(ProxyHandler({})).open(server.url, timeout=120).read()
     assert page == (tmp_path / "out" / "report.html").read_bytes()
 
 
