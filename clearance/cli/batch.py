@@ -66,10 +66,12 @@ def _part(value: str) -> tuple[int, int]:
     return int(first), int(second)
 
 
-def _report_unread(given: dict[str, Any], error: click.UsageError) -> None:
+def _report_unread(
+    error: click.UsageError, place: Path | None, baseline: Path | None, **_: Any
+) -> None:
     """Says in a store that its answer is not of a command line that is not understood."""
-    if given.get("place") is not None and given.get("baseline") is None:  # which may be the same
-        _withdraw(given["place"], error)
+    if place is not None and baseline is None:  # which may be the same
+        _withdraw(place, error)
 
 
 def _withdraw(place: Path, error: Exception | None = None) -> None:

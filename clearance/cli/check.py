@@ -23,12 +23,13 @@ if TYPE_CHECKING:
 ARGUMENTS = {"recorded": "RUN"}
 
 
-def _report_unread(given: dict[str, Any], error: click.UsageError) -> None:
+def _report_unread(
+    error: click.UsageError, case_file: Path | None, baseline: Path | None, **given: Any
+) -> None:
     """Tells build servers of a command line that is not understood."""
-    known: dict[str, Any] = {one.name: given.get(one.name) for one in fields(Outputs)}
-    outputs = Outputs(**known)
-    if given.get("baseline") is None:  # which may lie in --out
-        outputs.report_unread(given.get("case_file") or Path("CASE.yaml"), error)
+    outputs = Outputs(**{one.name: given[one.name] for one in fields(Outputs)})
+    if baseline is None:  # which may lie in --out
+        outputs.report_unread(case_file or Path("CASE.yaml"), error)
 
 
 @click.command(cls=AnsweringCommand, report_unread=_report_unread)

@@ -153,11 +153,14 @@ class Outputs:
             raise
 
     def report_unread(self, case_file: Path, error: click.UsageError) -> None:
-        """Tells build servers of a command line that is not understood: older files say so, and no new ones."""
+        """Tells build servers of a command line that is not understood: older files say so, and no new ones.
+
+        Raises:
+            Unwritable: one of them cannot be written.
+        """
         outputs = self._that_are_there()
-        with suppress(Unwritable):
-            outputs.withdraw_older(case_file)
-            outputs._report_refusal(case_file, error, to_stderr=True)
+        outputs.withdraw_older(case_file)
+        outputs._report_refusal(case_file, error, to_stderr=True)
 
     def _that_are_there(self) -> Outputs:
         """Without the files that do not exist."""

@@ -5,7 +5,6 @@ Not for: comparing (`findings.comparison`).
 
 from __future__ import annotations
 
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,19 +12,12 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.options import AnsweringCommand, OutputPath
-from clearance.errors import Unwritable
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
 
 
-def _report_unread(given: dict[str, Any], _: click.UsageError) -> None:
-    """Marks an older page: it is not of a command line that is not understood."""
-    with suppress(Unwritable):
-        _withdraw_older(given.get("out"))
-
-
-def _withdraw_older(out: Path | None) -> None:
+def _withdraw_older(out: Path | None, **_: Any) -> None:
     """Marks an older page, before anything is read.
 
     Raises:
@@ -38,7 +30,7 @@ def _withdraw_older(out: Path | None) -> None:
         withdraw_page(out / FILE_NAME)
 
 
-@click.command(cls=AnsweringCommand, report_unread=_report_unread)
+@click.command(cls=AnsweringCommand, report_unread=_withdraw_older)
 @click.argument("before", metavar="A", type=click.Path(path_type=Path))
 @click.argument("now", metavar="B", type=click.Path(path_type=Path))
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Write a page with both curves here.")

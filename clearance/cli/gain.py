@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, suppress
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ from clearance.cli import ExitCode
 from clearance.cli.notices import say_notices
 from clearance.cli.options import AnsweringCommand, OutputPath, asked_options, said, spelled_by
 from clearance.cli.progress import shown_work
-from clearance.errors import Unwritable, shown
+from clearance.errors import shown
 from clearance.gains.request import KINDS, Request
 from clearance.options import made, require_needs
 
@@ -21,20 +21,15 @@ if TYPE_CHECKING:
     from clearance.world.case import Case
 
 
-def _report_unread(given: dict[str, Any], _: click.UsageError) -> None:
-    """Marks an older gain: it is not of a command line that is not understood."""
-    if given.get("case") is not None:
-        with suppress(Unwritable):
-            _withdraw_older(given["case"], given.get("kind"), given.get("out"), given.get("force"))
-
-
-def _withdraw_older(case: Path, kind: str | None, out: Path | None, force: bool | None) -> None:
+def _withdraw_older(
+    case: Path | None, kind: str | None, out: Path | None, force: bool | None, **_: Any
+) -> None:
     """Marks the gains that are to be overwritten as older, before anything is read.
 
     Raises:
         Unwritable: one of them cannot be marked, or is the case.
     """
-    if out is None or not force:
+    if case is None or out is None or not force:
         return
     from clearance.files import refuse_inputs
     from clearance.gains.changed_files import CASE
@@ -49,7 +44,7 @@ def _withdraw_older(case: Path, kind: str | None, out: Path | None, force: bool 
         withdraw_gain(page.parent)
 
 
-@click.command(cls=AnsweringCommand, report_unread=_report_unread)
+@click.command(cls=AnsweringCommand, report_unread=_withdraw_older)
 @click.argument("case", metavar="CASE", type=click.Path(path_type=Path))
 @click.option(
     "--kind", type=click.Choice([*KINDS, "all"]), required=True, help="Kind of change to look for."

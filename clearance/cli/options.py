@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
 from clearance.codes import code_of_error, coded
-from clearance.errors import BadInput
+from clearance.errors import BadInput, Unwritable
 from clearance.options import SWITCH, Option, Sort, Spelling, flag_of, options_in
 
 
@@ -62,13 +63,13 @@ class AnsweringCommand(click.Command):
     """A command of which no older answer outlasts a command line that is not understood.
 
     Args:
-        report_unread: is called with the parameters, as far as they are understood, and what is wrong.
+        report_unread: is called with what is wrong as `error`, and the parameters, as far as they are understood.
     """
 
     def __init__(
         self,
         *given: Any,
-        report_unread: Callable[[dict[str, Any], click.UsageError], None],
+        report_unread: Callable[..., None],
         **more: Any,
     ) -> None:
         super().__init__(*given, **more)
@@ -84,9 +85,9 @@ class AnsweringCommand(click.Command):
                 name: True
                 for name in ("resilient_parsing", "ignore_unknown_options", "allow_extra_args")
             }
-            self._report_unread(
-                self.make_context(ctx.info_name, given, ctx.parent, **lenient).params, error
-            )
+            understood = self.make_context(ctx.info_name, given, ctx.parent, **lenient).params
+            with suppress(Unwritable):
+                self._report_unread(error=error, **understood)
             raise
 
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
 from clearance.cli import ExitCode
 from clearance.cli.options import OutputPath, in_order, package_dir_option, xacro_options
-
-if TYPE_CHECKING:
-    from clearance.world.robot import Robot
 
 
 @click.group()
@@ -45,16 +42,7 @@ _robot_options = in_order(
 @click.argument("srdf_file", metavar="ROBOT.srdf", type=click.Path(path_type=Path))
 @_robot_options
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as one JSON object only.")
-def audit(
-    urdf: Path,
-    srdf_file: Path,
-    package_dirs: tuple[Path, ...],
-    geometry: str,
-    collada_up_axis: str,
-    xacro: bool,
-    xacro_args: dict[str, str],
-    as_json: bool,
-) -> int:
+def audit(urdf: Path, srdf_file: Path, as_json: bool, **given: Any) -> int:
     """Proves that excused pairs never meet.
 
     The pairs are those of ROBOT.srdf, at all joint positions within the limits of ROBOT.urdf.
@@ -64,12 +52,13 @@ def audit(
     excused as Adjacent that lies apart at home and can meet gives 1 too.
     """
     from clearance.cli.progress import shown_progress
+    from clearance.formats.robot.formats import load_robot
     from clearance.formats.robot.srdf import load_srdf
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary, narrowed
     from clearance.report.summary import json_text
     from clearance.simulate.answers.audit.pair import audit as audited
 
-    robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
+    robot = load_robot(urdf, **given)
     matrix = load_srdf(srdf_file, robot)
     with shown_progress(as_json, ["auditing"]) as progress:
         pairs = audited(robot, matrix, progress)
@@ -89,15 +78,7 @@ def audit(
 @click.argument("urdf", metavar="ROBOT.urdf", type=click.Path(path_type=Path))
 @_robot_options
 @click.option("--out", metavar="FILE", type=OutputPath(), help="Write it here, not on stdout.")
-def make(
-    urdf: Path,
-    package_dirs: tuple[Path, ...],
-    geometry: str,
-    collada_up_axis: str,
-    xacro: bool,
-    xacro_args: dict[str, str],
-    out: Path | None,
-) -> int:
+def make(urdf: Path, out: Path | None, **given: Any) -> int:
     """Writes an SRDF for ROBOT.urdf.
 
     Excused are pairs that are proven never to meet, and neighbours that lie together at home or never meet.
@@ -107,16 +88,17 @@ def make(
     from clearance.cli.progress import shown_progress
     from clearance.errors import unwritable
     from clearance.files import refuse_inputs, require_file_place
+    from clearance.formats.robot.formats import load_robot
     from clearance.report.srdf import narrowed, proposal_headline, proposed_srdf
     from clearance.simulate.answers.audit.pair import propose
 
     require_file_place(out)
     if out is not None:
         refuse_inputs([out], [urdf])
-    robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
+    robot = load_robot(urdf, **given)
     with shown_progress(False, ["proving"]) as progress:
         pairs = propose(robot, progress)
-    text = proposed_srdf(robot, pairs, geometry)
+    text = proposed_srdf(robot, pairs, given["geometry"])
     if out is None:
         click.echo(text, nl=False)
     else:
@@ -127,26 +109,6 @@ def make(
     for line in narrowed(robot):
         click.echo(f"note: checked: {line}", err=True)
     return ExitCode.CLEAR
-
-
-def _robot(
-    urdf: Path,
-    package_dirs: tuple[Path, ...],
-    geometry: str,
-    up_axis: str,
-    xacro: bool,
-    xacro_args: dict[str, str],
-) -> Robot:
-    from clearance.formats.robot.formats import load_robot
-
-    return load_robot(
-        urdf,
-        package_dirs=package_dirs,
-        geometry=geometry,  # type: ignore[arg-type]  # one of the choices
-        collada_up_axis=up_axis,  # type: ignore[arg-type]
-        xacro=xacro,
-        xacro_args=xacro_args,
-    )
 
 
 def _print_rows(rows: list[tuple[str, str, str]]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,6 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.options import AnsweringCommand, OutputPath, SortParamType
-from clearance.errors import Unwritable
 from clearance.options import LENGTH
 
 if TYPE_CHECKING:
@@ -20,13 +18,7 @@ if TYPE_CHECKING:
 MOST_LINKS = 8
 
 
-def _report_unread(given: dict[str, Any], _: click.UsageError) -> None:
-    """Marks an older answer: it is not of a command line that is not understood."""
-    with suppress(Unwritable):
-        _withdraw_older(given.get("out"), given.get("case_files") or ())
-
-
-def _withdraw_older(out: Path | None, case_files: Sequence[Path]) -> None:
+def _withdraw_older(out: Path | None, case_files: Sequence[Path] | None, **_: Any) -> None:
     """Marks an older answer, before anything is read.
 
     Raises:
@@ -37,11 +29,11 @@ def _withdraw_older(out: Path | None, case_files: Sequence[Path]) -> None:
     from clearance.files import refuse_inputs
     from clearance.report.workspace import OWN, withdraw_workspace
 
-    refuse_inputs([out / name for name in OWN], case_files)
+    refuse_inputs([out / name for name in OWN], case_files or ())
     withdraw_workspace(out)
 
 
-@click.command(cls=AnsweringCommand, report_unread=_report_unread)
+@click.command(cls=AnsweringCommand, report_unread=_withdraw_older)
 @click.argument(
     "case_files", metavar="CASE.yaml...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
