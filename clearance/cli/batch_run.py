@@ -9,7 +9,10 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+
+import click
 
 from clearance.batch.answer import answer_of
 from clearance.batch.engine import Engine, LocalEngine
@@ -26,6 +29,9 @@ from clearance.progress import doing
 from clearance.record.wording import count
 from clearance.simulate.measure.parts import usable_cores
 from clearance.world.waiver import Waiver
+
+say = partial(click.echo, err=True)
+"""Says a line on stderr."""
 
 FEW = 32
 """Cases that one process has measured before others are ready to help."""
@@ -52,7 +58,7 @@ def run_asked(items: Sequence[Item], place: Path, asked: BatchRequest) -> int:
     Raises:
         Incomplete: some cases are not measured, and why; the others are kept.
     """
-    notify = _silent if asked.quiet else say
+    notify = (lambda line: None) if asked.quiet else say
     with open_store(place, shard=asked.shard) as store, store.locked(notify):
         n_cases = f"of {count(len(items), 'case')} some are"
         withdraw_answer(store.place, UNFINISHED.format(n_cases))
@@ -117,15 +123,6 @@ def _jobs(asked: int | None, n_cases: int) -> int:
     if asked is not None:
         return min(asked, n_cases)
     return 1 if n_cases <= FEW else usable_cores()
-
-
-def say(line: str) -> None:
-    """Says something on stderr."""
-    print(line, file=sys.stderr, flush=True)
-
-
-def _silent(line: str) -> None:
-    """Says nothing."""
 
 
 @contextmanager

@@ -97,12 +97,13 @@ def check(
     @outputs.refusal_reported(case_file, to_stderr=as_json)
     def checked() -> ExitCode:
         from clearance.case.case_file import load_case
+        from clearance.cli.run_rows import finished_findings
         from clearance.run import Question
 
         outputs.withdraw_older(case_file)
         question = Question.of(load_case(case_file), options, spelled)
         refuse_inputs(outputs.files, question.case.files_read)
-        before = _baseline_of(baseline)
+        before = None if baseline is None else finished_findings(baseline)
         require_receipt(receipt, outputs.out, question)
         run = _answer(question, before, outputs, jobs, printed)
         write_receipt_of(run, receipt, outputs.out, case_file, options, quiet=not printed.has_words)
@@ -180,21 +181,6 @@ def _files_of(baseline: Path | None) -> list[Path]:
     from clearance.findings.findings_file import FILE_NAME
 
     return [baseline / FILE_NAME if baseline.is_dir() else baseline]
-
-
-def _baseline_of(path: Path | None) -> FindingList | None:
-    """The findings that a run is held against; None where no baseline is given.
-
-    Raises:
-        BadInput: no findings.json, or a damaged one. Incomplete: the run that was to write it was interrupted.
-    """
-    if path is None:
-        return None
-    from clearance.cli.run_rows import require_finished
-    from clearance.findings.findings_file import read_findings
-
-    require_finished(path)
-    return read_findings(path)
 
 
 def _comparison_of(run: Run, baseline: FindingList | None) -> Comparison | None:

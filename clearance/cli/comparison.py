@@ -51,13 +51,10 @@ def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     _withdraw_older(out)
     if _are_stores(before, now):
         return _compare_batches(before, now, out, quiet)
-    from clearance.cli.run_rows import require_finished
+    from clearance.cli.run_rows import finished_findings
     from clearance.findings.comparison import compared
-    from clearance.findings.findings_file import read_findings
 
-    for place in (before, now):
-        require_finished(place)
-    comparison = compared(read_findings(before), read_findings(now))
+    comparison = compared(finished_findings(before), finished_findings(now))
     if out is not None:
         _write(comparison, before, now, out)
     if not quiet:

@@ -6,13 +6,19 @@ Not for: the report itself (`clearance.files`).
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
 
 from clearance.errors import Incomplete
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows, open_resumable_rows
+
+if TYPE_CHECKING:
+    from clearance.findings.findings_file import FindingList
 
 SUFFIX = ".unfinished"
 
@@ -27,7 +33,8 @@ def resumable_rows_of(out: Path | None, quiet: bool) -> Iterator[MeasuredRows]:
     if out is None:
         yield IN_MEMORY
         return
-    with open_resumable_rows(place_of(out), (lambda line: None) if quiet else _say) as rows:
+    say = (lambda line: None) if quiet else partial(click.echo, err=True)
+    with open_resumable_rows(place_of(out), say) as rows:
         yield rows
 
 
@@ -59,5 +66,13 @@ def require_finished(report: Path) -> None:
         )
 
 
-def _say(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
+def finished_findings(report: Path) -> FindingList:
+    """The findings in a report folder, or in a file of one.
+
+    Raises:
+        Incomplete: as `require_finished`. BadInput: no findings.json, or a damaged one.
+    """
+    from clearance.findings.findings_file import read_findings
+
+    require_finished(report)
+    return read_findings(report)
