@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass, replace
+from typing import Any
 
 from clearance.codes import codes
 from clearance.record.moment import Depth
@@ -175,3 +176,10 @@ class FindingName:
         """16 hexadecimal digits, whatever the order of the bodies."""
         parts = [self.case, self.kind, self.rule, sorted(self.bodies), self.occurrence]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]
+
+    def finding(self, **known: Any) -> Finding:
+        """The finding of this name, kept where nothing else is `known` of it."""
+        a, b = (*self.bodies, "", "")[:2]
+        kept = {"status": str(Status.CLEAR), "clearance": None, "proven": None}
+        named = {"body_a": a, "body_b": b, **kept, **known}
+        return Finding(self.id, self.kind, self.rule, occurrence=self.occurrence, **named)

@@ -16,6 +16,7 @@ from clearance.findings.finding import (
 from clearance.record.wording import (
     at_least_mm,
     gap_text,
+    judged_by,
     limit_mm,
     mm,
     of_rule,
@@ -23,7 +24,6 @@ from clearance.record.wording import (
     seconds,
     span_text,
 )
-from clearance.world.rules import DEFAULT
 
 if TYPE_CHECKING:
     from clearance.findings.judgement import Judgement
@@ -56,16 +56,12 @@ def coded_line(finding: Finding) -> str:
 def _how_near(finding: Finding) -> str:
     assert finding.clearance is not None
     if finding.status == "contact":
-        return f"contact{_judged_by(finding)}"
+        return f"contact{judged_by(finding.rule)}"
     near = f"{mm(finding.clearance)} mm"
     if finding.broken or finding.status == "near":
         name, limit = ("fail", finding.fail) if finding.broken else ("warn", finding.warn)
         return f"{near}, below the {name} limit of {limit_mm(limit)} mm{of_rule(finding.rule)}"
-    return f"{near}{_judged_by(finding)}"
-
-
-def _judged_by(finding: Finding) -> str:
-    return "" if finding.rule == DEFAULT else f", judged by rule {finding.rule!r}"
+    return f"{near}{judged_by(finding.rule)}"
 
 
 def _unproven(finding: Finding) -> str:

@@ -21,6 +21,7 @@ from clearance.record.wording import (
     at_least_mm,
     depth_text,
     gap_text,
+    judged_by,
     limit_mm,
     limits_text,
     moment_text,
@@ -30,7 +31,6 @@ from clearance.record.wording import (
     swept_text,
 )
 from clearance.tolerance import SEEN_AT_LEVEL
-from clearance.world.rules import DEFAULT
 
 
 def moment_line(record: Record, moment: Moment) -> str:
@@ -44,17 +44,13 @@ def moment_line(record: Record, moment: Moment) -> str:
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
             return f"{padded_mm(moment, (limit,))}, {below}: {where}"
     kept = f" ({limits_text(limits.fail, limits.warn)})" if record.case.limits.rules else ""
-    return f"{padded_mm(moment)}{_judged_by(moment)}{kept}: {where}"
+    return f"{padded_mm(moment)}{judged_by(moment.rule)}{kept}: {where}"
 
 
 def contact_line(record: Record, moment: Moment) -> str:
     """The depth of a contact, the two bodies and the moment, and the rule that judges them, if there is one."""
     where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
-    return f"{depth_text(moment.depth)}{_judged_by(moment)}: {where}"
-
-
-def _judged_by(moment: Moment) -> str:
-    return "" if moment.rule == DEFAULT else f", judged by rule {moment.rule!r}"
+    return f"{depth_text(moment.depth)}{judged_by(moment.rule)}: {where}"
 
 
 def unproven_line(record: Record, judging: Sequence[RuleAnswer]) -> str | None:

@@ -101,20 +101,9 @@ def _of_waiver(record: Record, waiver: Waiver, one: RuleBudget) -> Finding:
 def _named(record: Record, rule: str, limits: Limits) -> Finding:
     """A finding of a rule of which nothing else is known."""
     tolerance = record.case.tolerance
-    return Finding(
-        id=FindingName(record.case.name, TOLERANCES, rule, ()).id,
-        kind=TOLERANCES,
-        rule=rule,
-        body_a="",
-        body_b="",
-        occurrence=0,
-        status=NOT_PROVEN,
-        clearance=None,
-        proven=None,
-        fail=limits.fail,
-        warn=limits.warn,
-        accepted=tolerance is not None and tolerance.unproven_ok,
-    )
+    accepted = tolerance is not None and tolerance.unproven_ok
+    name = FindingName(record.case.name, TOLERANCES, rule, ())
+    return name.finding(status=NOT_PROVEN, fail=limits.fail, warn=limits.warn, accepted=accepted)
 
 
 def _not_kept(session: Session, named: Finding, budget: RuleBudget) -> Finding:

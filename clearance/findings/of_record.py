@@ -71,14 +71,9 @@ def why_incomplete(session: Session) -> str:
 
 def _of_profile(record: Record, answer: ProfileAnswer) -> Finding:
     status = Status.CLEAR if answer.passed else Status.VIOLATED
-    name = FindingName(record.case.name, PROFILE, answer.name, (), 0)
-    return Finding(
-        id=name.id,
-        kind=PROFILE,
-        rule=answer.name,
+    name = FindingName(record.case.name, PROFILE, answer.name, ())
+    return name.finding(
         body_a=answer.link,
-        body_b="",
-        occurrence=0,
         status=str(status),
         clearance=float(answer.gap),
         proven=float(answer.gap) if answer.mode != "nearest" else None,
@@ -100,17 +95,4 @@ def _of_joints(record: Record) -> Iterator[Finding]:
         numbers[notice.kind, notice.about] += 1
         bodies = (notice.about,)
         name = FindingName(record.case.name, JOINT_LIMITS, notice.kind, bodies, occurrence)
-        yield Finding(
-            id=name.id,
-            kind=JOINT_LIMITS,
-            rule=notice.kind,
-            body_a=notice.about,
-            body_b="",
-            occurrence=occurrence,
-            status=str(Status.VIOLATED),
-            clearance=None,
-            proven=None,
-            fail=0.0,
-            warn=0.0,
-            text=notice.text,
-        )
+        yield name.finding(status=str(Status.VIOLATED), fail=0.0, warn=0.0, text=notice.text)

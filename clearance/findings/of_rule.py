@@ -212,20 +212,10 @@ class RuleFindings:
         self, kind: str, bodies: tuple[str, ...] = (), occurrence: int = 0, **known: Any
     ) -> Finding:
         """A finding of the rule; where nothing is `known` of it, it is kept."""
-        limits, rule = self.rule.limits, self.rule.name
-        a, b = bodies or ("", "")
-        empty: dict[str, Any] = {"status": str(Status.CLEAR), "clearance": None, "proven": None}
-        return Finding(
-            id=FindingName(self.session.record.case.name, kind, rule, bodies, occurrence).id,
-            kind=kind,
-            rule=rule,
-            body_a=a,
-            body_b=b,
-            occurrence=occurrence,
-            fail=limits.fail,
-            warn=limits.warn,
-            **(empty | known),
-        ).with_moves(self.session.record.moves)
+        limits, record = self.rule.limits, self.session.record
+        name = FindingName(record.case.name, kind, self.rule.name, bodies, occurrence)
+        found = name.finding(fail=limits.fail, warn=limits.warn, **known)
+        return found.with_moves(record.moves)
 
 
 def fields_at(record: Record, moment: Moment) -> dict[str, Any]:

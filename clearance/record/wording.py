@@ -192,6 +192,11 @@ def of_rule(rule: str) -> str:
     return "" if rule == DEFAULT else f" of rule {rule!r}"
 
 
+def judged_by(rule: str) -> str:
+    """`, judged by rule 'fence'`; nothing for the limits that hold where no rule does."""
+    return "" if rule == DEFAULT else f", judged by rule {rule!r}"
+
+
 def limits_text(fail: float, warn: float) -> str:
     """`fail below 5 mm, warn below 20 mm`; where no gap is asked for, only contact fails."""
     warned = f"warn below {limit_mm(warn)} mm"
