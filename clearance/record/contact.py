@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, overload
 
@@ -123,9 +123,9 @@ class ContactRows(Sequence[StepContact]):
         return StepContact(step, float(self.times[step]), *pair, known, place in self.known.regions)
 
     @property
-    def worked_out(self) -> Sequence[StepContact]:
-        """The rows that the run has worked out, steps first."""
-        return WorkedContacts(self)
+    def worked_out(self) -> Iterator[StepContact]:
+        """The rows that the run has worked out, steps first; one is made at a time, to save memory."""
+        return (self.row(*row) for row in self.worked.tolist())
 
     def numbers_between(self, start: int, stop: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """The steps of the rows from a step to before another, their depth and volume; NaN if not worked out."""
@@ -135,23 +135,3 @@ class ContactRows(Sequence[StepContact]):
         for name, column in numbers.items():
             column[places >= 0] = self.known.figures[name][places[places >= 0]]
         return self.steps[low:high], numbers
-
-
-@dataclass(frozen=True, eq=False)
-class WorkedContacts(Sequence[StepContact]):
-    """The rows that a run has worked out; one is made at a time, to save memory."""
-
-    rows: ContactRows
-
-    def __len__(self) -> int:
-        return len(self.rows.worked)
-
-    @overload
-    def __getitem__(self, index: int) -> StepContact: ...
-    @overload
-    def __getitem__(self, index: slice) -> tuple[StepContact, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
-        if isinstance(index, slice):
-            return tuple(self.rows.row(*row) for row in self.rows.worked[index].tolist())
-        return self.rows.row(*self.rows.worked[index].tolist())

@@ -8,13 +8,6 @@ import numpy as np
 
 from clearance.record.table import Table
 
-NAMES = ("penetration", "volume")
-
-
-def no_contact_columns(n_steps: int) -> dict[str, np.ndarray]:
-    """The columns where nothing has been worked out."""
-    return {name: np.full(n_steps, np.nan) for name in NAMES}
-
 
 def contact_columns(contacts: Any, block: slice) -> dict[str, np.ndarray]:
     """Of each step the penetration of the deepest pair and the volume of all; NaN unless all are worked out.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
@@ -252,9 +252,9 @@ class Record(Samples):
         return "samples" if self.certificate is None else "motion"
 
     @property
-    def worked_out(self) -> Sequence[StepContact]:
+    def worked_out(self) -> Iterator[StepContact]:
         """The contacts whose depth the run works out: the deepest moment of each event, all, or none."""
-        return self.contacts.worked_out if isinstance(self.contacts, ContactRows) else ()
+        return self.contacts.worked_out if isinstance(self.contacts, ContactRows) else iter(())
 
     @property
     def contact_notes(self) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.record.certificate import Certificate, motion_codes
-from clearance.record.contact_columns import no_contact_columns
 from clearance.record.measurement import Measurement
 from clearance.record.names import SIDES, BodyNames, columns_of
 from clearance.record.rows.blocks import blocks
@@ -110,7 +109,8 @@ class StepColumns:
                 errors = [motion.tracking_error[block] for motion in self.motions]
                 columns["tracking_error"] = np.max(errors, axis=0)
             columns |= _move_columns(moves, self.motions[0].times[block])
-            columns |= no_contact_columns(block.stop - block.start)
+            unknown = np.full(block.stop - block.start, np.nan)
+            columns |= {"penetration": unknown, "volume": unknown}
             yield Table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
 
 

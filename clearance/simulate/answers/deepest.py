@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,7 +67,7 @@ class WorstMoments:
         return found if deeper else known
 
 
-def _deepest_step(rows: Sequence[StepContact], rules: Sequence[MeasuredRule]) -> Moment | None:
+def _deepest_step(rows: Iterable[StepContact], rules: Sequence[MeasuredRule]) -> Moment | None:
     """The first moment of the deepest overlap that one of the rules judges; None where none judges any."""
     for row in sorted(rows, key=lambda row: -row.penetration):
         for rule in rules:

@@ -82,7 +82,7 @@ def test_what_is_worked_out_is_none_the_deepest_moments_or_all(asked, shape):
         asked.clear()
         run = cl.check(sliding(shape), contact=how)
         found[how] = [(row.step, row.known is not None) for row in run.record.contacts]
-        assert len(run.record.worked_out) == len(asked) == n_asked
+        assert len([*run.record.worked_out]) == len(asked) == n_asked
     assert [step for step, _ in found["none"]] == [2, 3, 4, 5, 8]
     assert found["events"] == [(2, False), (3, False), (4, True), (5, False), (8, True)]
     assert all(known for _, known in found["every"]) and not any(
