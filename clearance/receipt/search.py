@@ -33,20 +33,6 @@ class TooManyProofs(BadInput):
     """More than a receipt may have."""
 
 
-def evidence_for(
-    stretches: Sequence[Stretch],
-    shapes: Sequence[Shape],
-    halves: Halves,
-    claims: np.ndarray,
-    most_items: int = MOST_ITEMS,
-    lowest: np.ndarray | None = None,
-) -> EvidenceList:
-    """What proves all that is claimed; arguments and errors are those of `EvidenceSearch`."""
-    search = EvidenceSearch(stretches, shapes, halves, claims, lowest)
-    search.foresee(most_items)
-    return search.finish(most_items)
-
-
 class EvidenceSearch:
     """The search for what proves all that is claimed, first as far as it takes to foresee how long it will be.
 

@@ -14,8 +14,18 @@ from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.stage import Stage
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt, receipt_bytes
+from clearance.receipt.search import MOST_ITEMS, EvidenceSearch
 from clearance.world.robot import Joint, JointKind, Robot
 from tests import cells
+
+
+def evidence_for(
+    stretches, shapes, halves, claims, most_items=MOST_ITEMS, lowest=None
+) -> EvidenceList:
+    """What proves all that is claimed."""
+    search = EvidenceSearch(stretches, shapes, halves, claims, lowest)
+    search.foresee(most_items)
+    return search.finish(most_items)
 
 
 def turning_arm(turn: float = 1.2, far: float = 0.9, n_steps: int = 5) -> cl.Case:

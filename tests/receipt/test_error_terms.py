@@ -14,7 +14,7 @@ from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.separation import Sides, centre_of
 from clearance.receipt.proof.stage import by_balls, by_directions
-from clearance.receipt.proof.views import links_above
+from clearance.receipt.proof.views import chain_above
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.forest import forest_of
 from tests.budget.budget_cases import random_case
@@ -53,8 +53,8 @@ def names_in(case) -> list[str]:
 def link_above(stage, case, a: int, b: int) -> str | None:
     """The nearest link above two bodies, from which they are seen; None for the world."""
     forest, joints, carriers = forest_of(case), stage.stretch.joints, stage.stretch.carriers
-    others = links_above(joints, int(carriers[b]))
-    both = [link for link in links_above(joints, int(carriers[a])) if link in others]
+    others = chain_above(joints.parents, int(carriers[b]))
+    both = [link for link in chain_above(joints.parents, int(carriers[a])) if link in others]
     names = {
         start + i: f"{placed.robot.name}/{name}"
         for placed, start in zip(case.robots, forest.robot_starts, strict=True)

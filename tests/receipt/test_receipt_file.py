@@ -23,10 +23,10 @@ from clearance.receipt.receipt_file import (
     receipt_bytes,
     receipt_of,
 )
-from clearance.receipt.search import EvidenceSearch, TooManyProofs, evidence_for
+from clearance.receipt.search import EvidenceSearch, TooManyProofs
 from clearance.receipt.writing import claims_of
 from clearance.simulate.measure import refine
-from tests.receipt.receipts import Said, turning_arm
+from tests.receipt.receipts import Said, evidence_for, turning_arm
 from tests.receipt.test_forged import loose
 
 

@@ -16,7 +16,7 @@ from clearance.receipt.proof.motion_data import NONE, Shape
 from clearance.receipt.proof.proving import SIZES
 from clearance.receipt.proof.separation import BYTE, directions
 from clearance.receipt.proof.stage import by_balls, by_directions
-from clearance.receipt.proof.views import links_above
+from clearance.receipt.proof.views import chain_above
 from tests import cells
 from tests.examples import first_fast
 from tests.oracle.polyhedra import polyhedron_distance_sq
@@ -189,8 +189,8 @@ def test_what_both_bodies_stand_on_does_not_count():
     stage = stage_of(data, 0)
     for pair, views in zip(stretch.pairs, stage.views.pairs, strict=True):
         links = [int(stretch.carriers[body]) for body in pair]
-        shared = set(links_above(stretch.joints, links[0])) & set(
-            links_above(stretch.joints, links[1])
+        shared = set(chain_above(stretch.joints.parents, links[0])) & set(
+            chain_above(stretch.joints.parents, links[1])
         )
         for view in views:
             frame = int(stage.views.frames[view])

@@ -18,9 +18,15 @@ from clearance.receipt.proof.items import CUT_TIME
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import failure_in
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
-from clearance.receipt.search import evidence_for
 from clearance.report.withdrawn import withdraw_report
-from tests.receipt.receipts import Said, everything_moves, rewritten, saved, turning_arm
+from tests.receipt.receipts import (
+    Said,
+    everything_moves,
+    evidence_for,
+    rewritten,
+    saved,
+    turning_arm,
+)
 
 ROOT = Path(__file__).parents[2]
 

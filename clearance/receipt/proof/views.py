@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.receipt.proof.motion_data import NONE, Joints, Stretch
+from clearance.receipt.proof.motion_data import NONE, Stretch
 
 
 class Views(NamedTuple):
@@ -43,11 +43,6 @@ class Views(NamedTuple):
 def views_of(stretch: Stretch) -> Views:
     """The views of all pairs of a stretch."""
     return _ViewCollector(stretch).views()
-
-
-def links_above(joints: Joints, link: int) -> list[int]:
-    """A link and all above it, nearest first."""
-    return chain_above(joints.parents, link)
 
 
 def chain_above(above: np.ndarray, one: int) -> list[int]:
@@ -85,10 +80,9 @@ class _ViewCollector:
 
     def _pair(self, a: int, b: int) -> tuple[int, int]:
         one, other = (int(self.stretch.carriers[body]) for body in (a, b))
-        others = set(links_above(self.stretch.joints, other))
-        reference = next(
-            (link for link in links_above(self.stretch.joints, one) if link in others), NONE
-        )
+        parents = self.stretch.joints.parents
+        others = set(chain_above(parents, other))
+        reference = next((link for link in chain_above(parents, one) if link in others), NONE)
         return self._view(reference, a, one), self._view(reference, b, other)
 
     def _view(self, reference: int, body: int, link: int) -> int:
