@@ -37,11 +37,6 @@ class Batch(NamedTuple):
     waivers: tuple[Waiver, ...]
 
 
-def items_of(arguments: Sequence[str], said: Mapping[str, Any] = {}) -> tuple[Item, ...]:
-    """The cases of `batch_of`."""
-    return batch_of(arguments, said).items
-
-
 def batch_of(arguments: Sequence[str], said: Mapping[str, Any] = {}) -> Batch:
     """All cases, in the order in which they are given, those of a pattern by name.
 

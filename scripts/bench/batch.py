@@ -29,11 +29,11 @@ from clearance.batch.answer import answer_of
 from clearance.batch.engine import LocalEngine
 from clearance.batch.item import Item
 from clearance.batch.keys import program
-from clearance.batch.manifest import items_of
+from clearance.batch.manifest import batch_of
 from clearance.batch.measuring import Task, measure
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
-from clearance.batch.run import run_batch
+from clearance.batch.run import BatchWatch, run_batch
 from clearance.batch.store import FILE, open_store
 from clearance.batch.workers import WorkerEngine, local_workers
 from clearance.case.case_file import load_case
@@ -61,7 +61,7 @@ def _rates(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Cases a second in a cell of the scenes, in this process."""
     manifest = scene_batch(folder / "rates", asked.scene, asked.cases)
     for certify, basis in ((False, "samples"), (True, "motion")):
-        times = chunk_times(items_of([str(manifest)], {"certify": certify}))
+        times = chunk_times(batch_of([str(manifest)], {"certify": certify}).items)
         yield f"cases a second, 1 core, {basis} (median)", 1.0 / median(times), "1/s"
         yield f"cases a second, 1 core, {basis} (best)", 1.0 / min(times), "1/s"
 
@@ -69,7 +69,7 @@ def _rates(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
 def _workers(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Store and engine, and two workers against one, in the same cell."""
     manifest = scene_batch(folder / "workers", asked.scene, asked.cases)
-    items = items_of([str(manifest)])
+    items = batch_of([str(manifest)]).items
     yield "store and engine a case", 1000.0 * overhead(folder / "over", items), "ms"
     costs: dict[int, list[tuple[float, float]]] = {1: [], 2: []}
     for k in range(TURNS):
@@ -83,7 +83,7 @@ def _workers(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
 def _many(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Memory over many cases, and the second run of the same manifest."""
     manifest = str(cart_batch(folder / "many", asked.many))
-    items = items_of([manifest])
+    items = batch_of([manifest]).items
     with local_workers(2) as engine:
         watch = _Resident(engine, len(items))
         _run(folder / "kept", items, engine, watch)
@@ -93,9 +93,9 @@ def _many(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     yield "store a case", (folder / "kept" / FILE).stat().st_size / len(items), "bytes"
     for name in ("second run", "third run"):
         begun = time.process_time()
-        outcome = Outcome(items_of([manifest]))
+        outcome = Outcome(batch_of([manifest]).items)
         with open_store(folder / "kept") as store:
-            run_batch(outcome, store, _here, _Unseen())
+            run_batch(outcome, store, _here, BatchWatch())
             known = time.process_time()
             write_answer(answer_of(outcome, store), store)
         ended = time.process_time()
@@ -149,23 +149,16 @@ def _processor_time(engine: WorkerEngine) -> float:
     return time.process_time() + ticks / os.sysconf("SC_CLK_TCK")
 
 
-class _Unseen:
-    def begin(self, items, n_cached) -> None:
-        pass
-
-    def tell(self, measured, faults) -> None:
-        pass
-
-
-class _Resident(_Unseen):
+class _Resident(BatchWatch):
     """Notes the memory of this process, which writes, and of its workers, on the way."""
 
     def __init__(self, engine: WorkerEngine, n_items: int) -> None:
+        super().__init__()
         self._engine, self._n, self._done = engine, n_items, 0
         self.early: dict[str, float] = {}
         self.late: dict[str, float] = {}
 
-    def tell(self, measured, faults) -> None:
+    def note(self, measured, faults) -> None:
         before, self._done = self._done, self._done + len(measured) + len(faults)
         if before < self._n // 10 <= self._done:
             self.early = self._now()
@@ -191,7 +184,7 @@ def _run(place: Path, items: Sequence[Item], engine, watch=None) -> None:
         yield engine
 
     with open_store(place) as store:
-        run_batch(Outcome(items), store, opened, watch or _Unseen())
+        run_batch(Outcome(items), store, opened, watch or BatchWatch())
 
 
 @contextmanager

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import pyarrow.parquet as pq
 
 from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.engine import LocalEngine
+from clearance.batch.item import Item
 from clearance.batch.listed import write_list
-from clearance.batch.manifest import items_of
+from clearance.batch.manifest import batch_of
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
@@ -29,6 +31,11 @@ limits: {fail: 0.05, warn: 0.3}
 MANIFEST = 'cell: cell.yaml\ntrajectories: "t*.csv"\n'
 
 ANSWER = ("batch.html", "cases.parquet", "findings.parquet", "junit.xml")
+
+
+def items_of(arguments: Sequence[str], said: Mapping[str, Any] = {}) -> tuple[Item, ...]:
+    """The cases of `batch_of`."""
+    return batch_of(arguments, said).items
 
 
 def write_path(path: Path, nearest: float) -> None:

@@ -2,9 +2,8 @@
 
 import pytest
 
-from clearance.batch.manifest import items_of
 from clearance.errors import BadInput, DuplicateName, MissingFile, MissingKey, UnknownKey
-from tests.batch.batches import CELL, write_cell
+from tests.batch.batches import CELL, items_of, write_cell
 
 
 @pytest.fixture

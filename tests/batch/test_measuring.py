@@ -7,13 +7,12 @@ import pytest
 
 from clearance.batch import measuring
 from clearance.batch.keys import program
-from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, TaskResult, measure, read_item
 from clearance.batch.rows import curve_of, row_of
 from clearance.errors import Incomplete
 from clearance.record.row_status import status_counts
 from clearance.run import answer
-from tests.batch.batches import write_cell
+from tests.batch.batches import items_of, write_cell
 
 NEAREST = [0.5, 0.02, 0.2, 0.4, 0.01, 0.3, 0.25, 0.6, 0.1]
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from clearance.batch.engine import LEAST, MOST, Queue
-from clearance.batch.manifest import items_of
-from tests.batch.batches import write_cell
+from tests.batch.batches import items_of, write_cell
 
 
 @pytest.fixture

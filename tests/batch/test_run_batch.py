@@ -10,7 +10,6 @@ from clearance.batch import engine, file_hashes, rows
 from clearance.batch.engine import LocalEngine
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
-from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, measure
 from clearance.case import packed
 from clearance.case.case_file import load_cell, with_trajectory_file
@@ -24,6 +23,7 @@ from tests.batch.batches import (
     cases,
     column,
     findings,
+    items_of,
     n_rows,
     run_here,
     statuses,

@@ -6,11 +6,10 @@ import pytest
 
 from clearance.batch import workers
 from clearance.batch.engine import Queue
-from clearance.batch.manifest import items_of
 from clearance.batch.measuring import measure
 from clearance.batch.workers import local_workers
 from clearance.errors import Incomplete
-from tests.batch.batches import write_cell
+from tests.batch.batches import items_of, write_cell
 
 pytestmark = [pytest.mark.cold, pytest.mark.slow]
 

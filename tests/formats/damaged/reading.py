@@ -204,11 +204,11 @@ def manifest(path: Path) -> object:
 
 
 def batch_items(path: Path) -> object:
-    from clearance.batch.manifest import items_of
+    from clearance.batch.manifest import batch_of
 
     for name in ("case.yaml", "cell.yaml", "a.csv"):
         (path.parent / name).write_bytes(CASE)
-    return items_of([str(path)])
+    return batch_of([str(path)]).items
 
 
 def case_list(path: Path) -> object:
