@@ -21,6 +21,7 @@ from clearance.batch.rows import CURVE, ERROR
 from clearance.findings.finding import NOT_PROVEN
 from clearance.record.status import Status
 from clearance.record.wording import count
+from clearance.report.curves import millimetres
 from clearance.report.rendering import render
 
 TOPS = 4.0
@@ -79,8 +80,8 @@ def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "headlines": headlines.texts,
         "shade": [shade or ERROR for shade in column("shade")],
         "touches": [int(measured == Status.CONTACT) for measured in column("measured")],
-        "clearance": _millimetres(answer.reached),
-        "bound": _millimetres(column("proven")),
+        "clearance": millimetres(np.array(answer.reached, dtype=float)),
+        "bound": millimetres(np.array(column("proven"), dtype=float)),
         "time": [None if time is None else round(time, 3) for time in column("time")],
         "steps": column("n_steps"),
         "a": bodies.numbers(column("body_a")),
@@ -135,14 +136,6 @@ class _Texts:
         """The number of each text; -1 for none."""
         of = self._numbers
         return [-1 if text is None else of.setdefault(text, len(of)) for text in texts]
-
-
-def _millimetres(lengths: Sequence[float | None]) -> list[float | None]:
-    """[mm] to a thousandth, rounded down."""
-    return [
-        None if length is None or not np.isfinite(length) else float(np.floor(length * 1e6) / 1e3)
-        for length in lengths
-    ]
 
 
 def _top(warn: float | None) -> float:

@@ -19,6 +19,7 @@ from clearance.findings.measurement_conditions import conditions_of
 from clearance.findings.of_budget import least_expected
 from clearance.findings.of_record import why_incomplete
 from clearance.record.record import Record
+from clearance.report.curves import rounded_down
 from clearance.run import Run
 from clearance.world.case import Source
 
@@ -190,9 +191,7 @@ def curve_of(record: Record) -> np.ndarray:
     reached = np.where(np.isnan(clearance), bound, clearance)
     n_parts = min(len(reached), CURVE)
     starts = np.arange(n_parts) * len(reached) // n_parts
-    least = np.minimum.reduceat(reached, starts)
-    near = least.astype(np.float32)
-    return np.where(near > least, np.nextafter(near, np.float32(-np.inf)), near)
+    return rounded_down(np.minimum.reduceat(reached, starts))
 
 
 def error_row(text: str, exit_code: int) -> dict[str, Any]:

@@ -54,7 +54,7 @@ def pair_curves(
     measured.let_go()
     places = {pair: i for i, pair in enumerate(zip(every.links, every.obstacles, strict=True))}
     order = [places[minimum.link, minimum.obstacle] for minimum in minima]
-    return PairCurves(middles, _rounded_down(least.T[order]))
+    return PairCurves(middles, rounded_down(least.T[order]))
 
 
 def _stretches(times: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
@@ -65,7 +65,7 @@ def _stretches(times: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
     return starts, 0.5 * (times[starts] + times[ends])
 
 
-def _rounded_down(values: np.ndarray) -> np.ndarray:
+def rounded_down(values: np.ndarray) -> np.ndarray:
     """The greatest float32 numbers that are not above."""
     near = values.astype(np.float32)
     return np.where(near > values, np.nextafter(near, np.float32(-np.inf)), near)
@@ -154,14 +154,19 @@ def chart_of(
         limit: [m] and what it is `called`.
     """
     drawn = [
-        {"name": one.name, "times": one.times.round(6).tolist(), "clearances": _millimetres(one)}
+        {
+            "name": one.name,
+            "times": one.times.round(6).tolist(),
+            "clearances": millimetres(one.clearances),
+        }
         for one in (curve.thinned for curve in curves)
     ]
     return {"limit": limit * 1000.0, "called": called, "curves": drawn}
 
 
-def _millimetres(curve: ClearanceCurve) -> list[float | None]:
-    down = np.floor(curve.clearances * 1e6) / 1e3
+def millimetres(metres: np.ndarray) -> list[float | None]:
+    """[mm] to a thousandth, rounded down; None where nothing is known."""
+    down = np.floor(metres * 1e6) / 1e3
     return [
         value if known else None
         for value, known in zip(down.tolist(), np.isfinite(down), strict=True)

@@ -13,12 +13,12 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from clearance.findings.measurement_conditions import paddings_in
 from clearance.formats.message.times import split_time
 from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status
 from clearance.report.model import ReportModel
-from clearance.report.topics.cell import paddings_of
 from clearance.report.topics.pairs import PairJudge
 from clearance.world.case import Case
 
@@ -91,7 +91,7 @@ def _of_pair(record: Record, minimum: PairMinimum) -> Moment:
 
 
 def _moment_row(record: Record, names: _Names, moment: Moment, status: str) -> dict[str, Any]:
-    bodies, paddings = (moment.link, moment.obstacle), paddings_of(record)
+    bodies, paddings = (moment.link, moment.obstacle), paddings_in(record.case)
     padding = sum(paddings.get(name, 0.0) for name in bodies)
     row: dict[str, Any] = {"rule": moment.rule, "status": status, "clearance": moment.clearance}
     if padding:

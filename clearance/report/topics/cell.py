@@ -40,7 +40,7 @@ def data(model: ReportModel) -> dict[str, Any]:
         "carries": carried_of(record),
         "clock": clock_of(record),
         "not_measured": [[*span] for span in not_measured(record.case)],
-        "paddings": paddings_of(record),
+        "paddings": paddings_in(record.case),
     }
 
 
@@ -147,11 +147,6 @@ def moves_of(record: Record) -> list[dict[str, Any]]:
     ]
 
 
-def paddings_of(record: Record) -> dict[str, float]:
-    """[m] By how much clearances of a body are lessened; bodies without padding are left out."""
-    return paddings_in(record.case)
-
-
 def clock_of(record: Record) -> dict[str, Any]:
     """How the actors' clocks hang together: "common", within a slack [s], or "unsynchronised"."""
     slack = record.case.clock.slack
@@ -163,7 +158,7 @@ def lines(model: ReportModel) -> Iterator[Line]:
     """Who carries what from when until when, and what clearances are less by."""
     for row in carried_of(model.record)[:MOST_CARRIES]:
         yield "carried", f"{row['part']} by {row['by']}, {span_text(row['from'], row['until'])}"
-    paddings = paddings_of(model.record).items()
+    paddings = paddings_in(model.record.case).items()
     padded = [f"{name} {limit_mm(padding)} mm" for name, padding in paddings]
     if padded:
         yield "padding", f"clearances are less that of both bodies: {listed(padded, MOST_PADDINGS)}"

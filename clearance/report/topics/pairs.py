@@ -19,7 +19,6 @@ from clearance.report.blocks import At, Paragraph, Row, Section, Table, capital,
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment, time_of
 from clearance.report.topic import TerminalTable, Topic
-from clearance.report.topics.cell import paddings_of
 from clearance.world.case import Limits
 from clearance.world.phase import Phase
 from clearance.world.rules import DEFAULT
@@ -53,7 +52,8 @@ class PairJudge:
             if any(one.trajectory and one.trajectory.corners for one in record.case.robots)
             else []
         )
-        return PairJudge(limits, paddings_of(record), record.timeline.path_error, tuple(zones))
+        paddings = paddings_in(record.case)
+        return PairJudge(limits, paddings, record.timeline.path_error, tuple(zones))
 
     def status_of(self, minimum: PairMinimum) -> str:
         """The status; what padding alone brings to 0 or below is violated, no contact."""
