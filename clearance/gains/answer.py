@@ -164,7 +164,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     i_robot = _robot(case, request.one_robot)
     before = case.robots[i_robot]
     require_within_limits(before)
-    way = tool_path_kept(shift, i_robot, request.tool)
+    way = tool_path_kept(shift, request.tool)
     search = Search(way, request.margin)
     first = search.first_state()
     at_least = least_base(way, first, request.margin)
@@ -375,8 +375,9 @@ def _blocked_in_time(found: TimingResult, request: Request, after: Run) -> Obstr
 def _shift(case: Case, request: Request) -> tuple[Shift, str]:
     box = ANYWHERE if request.within is None else Box(*np.array(request.within).T)
     if request.kind == "base":
-        who = case.robots[_robot(case, request.one_robot)].robot.name
-        return base_shift(case, who, box, request.turn), who
+        i_robot = _robot(case, request.one_robot)
+        who = case.robots[i_robot].robot.name
+        return base_shift(case, i_robot, box, request.turn), who
     if not case.obstacles:
         raise BadChange("the case has no obstacle", valid="kind waypoints, base or timing")
     if request.obstacle is None and len(case.obstacles) != 1:

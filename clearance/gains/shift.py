@@ -10,17 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from clearance.errors import BadChange, UnknownObstacle, UnknownRobot, nearest_name
+from clearance.errors import BadChange, UnknownObstacle, nearest_name
 from clearance.gains.grasp import Grasps
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM, Pivot, Turn
 from clearance.geometry.pose import inverse, pose_from_quaternion
 from clearance.simulate.answers.approaches import Approach
-from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
+from clearance.simulate.answers.point_motion import Thing, owners_of
 from clearance.simulate.answers.transfers import Transfers
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
@@ -41,26 +42,27 @@ class Shift:
     """Something that is moved along x, y and z, and turned.
 
     Attributes:
-        moved: whether a body moves with it. place: the case with it moved by (3,) [m], or (4,) with its angle
-            times `turn.ARM`. pose_in: (4, 4) where it stands in a case [m].
-        box: [m] how far it may be moved. transfers: the parts that it hands over elsewhere.
+        thing: what it is. place: the case with it moved by (3,) [m], or (4,) with its angle times `turn.ARM`.
+        pose_in: (4, 4) where it stands in a case [m]. box: [m] how far it may be moved.
         radius: [m] from its origin to the farthest that moves with it, roughly.
-        moved_frame: whether a link moves with it; None for what carries no part.
         pivot: None where it is not turned.
     """
 
     case: Case
-    transfers: Transfers
-    moved: Callable[[Case, BodyIndex], bool]
+    thing: Thing
     place: Callable[[Case, np.ndarray], Case]
     pose_in: Callable[[Case], np.ndarray]
     box: Box
     radius: float
-    moved_frame: Callable[[Case, int], bool] | None = None
     pivot: Pivot | None = None
     price: float = 30.0
     inequalities: None = None
     bends: bool = False
+
+    @cached_property
+    def transfers(self) -> Transfers:
+        """The parts that it hands over elsewhere."""
+        return Transfers(self.case, self.thing)
 
     @property
     def size_of_x(self) -> int:
@@ -83,12 +85,17 @@ class Shift:
     def case_of(self, x: np.ndarray) -> Case:
         return self.place(self.case, x)
 
+    def moved(self, case: Case, body: BodyIndex) -> bool:
+        """Whether a body moves with it."""
+        return self.thing in owners_of(case, body)
+
     def moves(self, case: Case, pair: Pair) -> bool:
         one_moves = self.moved(case, pair.a) != self.moved(case, pair.b)
         return one_moves or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
-        if timeline is not None and self.moved_frame is not None and self.transfers.has(approach):
+        is_obstacle, _ = self.thing
+        if timeline is not None and not is_obstacle and self.transfers.has(approach):
             return Grasps(timeline, self._of_frame, self.size_of_x).gradient(approach)
         case = approach.case
         a, b = (self.moved(case, body) for body in approach.pair)
@@ -103,10 +110,9 @@ class Shift:
     def _of_frame(
         self, phase: Phase, frame: int, steps: np.ndarray, points: np.ndarray
     ) -> np.ndarray:
-        """(k, m, 3) how points that a link carries move with the variables."""
-        assert self.moved_frame is not None
-        moved = np.zeros((len(points), self.size_of_x, 3))
-        if self.moved_frame(phase.case, frame):
+        """(k, m, 3) how points that a link carries move with the variables of a base."""
+        moved, forest = np.zeros((len(points), self.size_of_x, 3)), forest_of(phase.case)
+        if forest.robot_starts[self.thing[1]] in carried_by(forest, frame):
             moved[:, :3] = np.eye(3)
             if self.pivot is not None:
                 moved[:, 3] = self.pivot.by_unit(points, self.pose_in(phase.case))
@@ -162,9 +168,6 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
         obstacles[i_obstacle] = _moved_obstacle(obstacles[i_obstacle], x, pivot)
         return replace(whole, obstacles=tuple(obstacles))
 
-    def moved(plain: Case, body: BodyIndex) -> bool:
-        return moves_with_obstacle(plain, body, i_obstacle)
-
     def pose_in(plain: Case) -> np.ndarray:
         now = plain.obstacles[i_obstacle]
         if asked.moves is None or now.moves is None:
@@ -174,24 +177,19 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
     radius = float(np.linalg.norm(np.abs(asked.body.shape.bounds).max(axis=0)))
     if asked.moves is not None and pivot is not None:
         radius += float(np.linalg.norm(asked.moves.positions - pivot.at, axis=1).max())
-    transfers = Transfers(case, (True, i_obstacle))
-    return _shift(Shift(case, transfers, moved, place, pose_in, box, radius), pivot)
+    return _shift(Shift(case, (True, i_obstacle), place, pose_in, box, radius), pivot)
 
 
-def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = None) -> Shift:
+def base_shift(case: Case, i_robot: int, box: Box = ANYWHERE, turn: Turn | None = None) -> Shift:
     """The shift of a robot's base, its joints as they are.
 
     Raises:
-        UnknownRobot: with the nearest name. BadInput: it stands on something.
+        BadInput: it stands on something.
     """
-    names = [placed.robot.name for placed in case.robots]
-    if name not in names:
-        raise UnknownRobot(f"there is no robot {name!r}", valid=nearest_name(name, names))
-    i_robot = names.index(name)
-    if case.robots[i_robot].mount is not None:
-        raise BadChange(f"robot {name!r} stands on something", valid="one that stands in the world")
-
     asked = case.robots[i_robot]
+    if asked.mount is not None:
+        fault = f"robot {asked.robot.name!r} stands on something"
+        raise BadChange(fault, valid="one that stands in the world")
     pivot = None if turn is None else Pivot(turn, asked.world_from_base)
 
     def place(whole: Case, x: np.ndarray) -> Case:
@@ -200,20 +198,10 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = N
         robots[i_robot] = replace(robots[i_robot], world_from_base=moved_base)
         return replace(whole, robots=tuple(robots))
 
-    def moved(plain: Case, body: BodyIndex) -> bool:
-        return moves_with_robot(plain, body, i_robot)
-
     def pose_in(plain: Case) -> np.ndarray:
         return plain.robots[i_robot].world_from_base
 
-    def moved_frame(plain: Case, frame: int) -> bool:
-        forest = forest_of(plain)
-        return forest.robot_starts[i_robot] in carried_by(forest, frame)
-
-    transfers = Transfers(case, (False, i_robot))
-    radius = reach_of(asked)
-    plain = Shift(case, transfers, moved, place, pose_in, box, radius, moved_frame)
-    return _shift(plain, pivot)
+    return _shift(Shift(case, (False, i_robot), place, pose_in, box, reach_of(asked)), pivot)
 
 
 def _shift(plain: Shift, pivot: Pivot | None) -> Shift:

@@ -64,9 +64,13 @@ class ToolPathKept(Shift):
         tool: what is kept.
     """
 
-    i_robot: int = field(kw_only=True)
     tool: Tool = field(kw_only=True)
     _known: dict[bytes, FollowedPath] = field(default_factory=dict, kw_only=True)
+
+    @property
+    def i_robot(self) -> int:
+        """Which robot."""
+        return self.thing[1]
 
     @property
     def placed(self) -> PlacedRobot:
@@ -197,17 +201,17 @@ def _seen_from_world(rates: np.ndarray, base: np.ndarray) -> np.ndarray:
     return np.asarray(turned @ rates)
 
 
-def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept:
+def tool_path_kept(shift: Shift, name: str | None) -> ToolPathKept:
     """The shift of a base with the path of a tool kept.
 
     Raises:
         BadInput: the robot has no path, one with holes, or joints that cannot make up for any change of its base.
             UnknownLink: no such tool, with the nearest name.
     """
-    placed = shift.case.robots[i_robot]
+    placed = shift.case.robots[shift.thing[1]]
     require_path(placed)
     known = {one.name: getattr(shift, one.name) for one in fields(Shift)}
-    found = ToolPathKept(**known, i_robot=i_robot, tool=tool_of(placed, name))
+    found = ToolPathKept(**known, tool=tool_of(placed, name))
     free = found.box.low < found.box.high
     barred = _same_poses(found.solved(placed.world_from_base)).gradients
     if np.linalg.matrix_rank(np.vstack([barred, np.eye(len(free))[~free]]), 1e-6) == len(free):

@@ -195,7 +195,8 @@ def _near_pair(
     near = [one for one in minima if 0.0 < one.clearance < NEAR]
     if kind == "base":
         who = str(rng.choice([one.robot.name for one in case.robots if one.mount is None]))
-        return (base_shift(case, who), who, near[int(rng.integers(len(near)))]) if near else None
+        way = base_shift(case, index_of_robot(case.robots, who))
+        return (way, who, near[int(rng.integers(len(near)))]) if near else None
     carried = {carry.part for carry in case.carries}
     free = {one.name for one in case.obstacles if one.mount is None and one.name not in carried}
     links = {name for name in (one.link for one in near) if name not in free}

@@ -17,8 +17,8 @@ from tests.gains.test_bounds_that_do_not_follow import part_over_to
 
 def ways(case):
     """A base, one that is turned too, and offsets of the joint."""
-    yield base_shift(case, "table")
-    yield base_shift(case, "table", turn=Turn("z", (0.3, 0.2, 0.0)))
+    yield base_shift(case, 0)
+    yield base_shift(case, 0, turn=Turn("z", (0.3, 0.2, 0.0)))
     yield PathChange((joint_offsets(case, 0, 12, ()),))
 
 

@@ -113,7 +113,7 @@ def arm():
 
 @pytest.mark.parametrize("turn", [None, Turn("z"), Turn("y", (0.4, 0.0, 0.3))])
 def test_the_rows_are_those_of_differences(turn):
-    way = tool_path_kept(base_shift(arm(), "arm", turn=turn), 0, None)
+    way = tool_path_kept(base_shift(arm(), 0, turn=turn), None)
     rng = np.random.default_rng(1)
     x = 0.01 * rng.normal(size=way.size_of_x)
     search, step = Search(way, 0.1), 1e-6 * rng.normal(size=len(x))

@@ -58,21 +58,11 @@ def _has_joint(case: Case, under: set[int], columns: Collection[int]) -> bool:
     )
 
 
-def moves_with_robot(case: Case, body: BodyIndex, i_robot: int) -> bool:
-    """True if a body is carried by a robot's root link, so that it moves where that is placed elsewhere."""
-    return forest_of(case).robot_starts[i_robot] in carrying_links(case, body)
-
-
-def moves_with_obstacle(case: Case, body: BodyIndex, i_obstacle: int) -> bool:
-    """True if a body is an obstacle, or rides on it, so that it moves where that is placed elsewhere.
-
-    Robots between them count: what rides on a robot that stands on the obstacle moves with it.
-    """
-    return (True, i_obstacle) in owners_of(case, body)
-
-
 def owners_of(case: Case, body: BodyIndex) -> tuple[Thing, ...]:
-    """The obstacle or robot that a body is of, and all that it stands on, nearest first."""
+    """The obstacle or robot that a body is of, and all that it stands on, nearest first.
+
+    It moves where one of them is placed elsewhere.
+    """
     return things_under(case, body.thing)
 
 

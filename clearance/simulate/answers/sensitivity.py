@@ -7,7 +7,7 @@ the nearest is measured again a step of `STEP` either way, and each way the leas
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,13 +17,13 @@ from clearance.query.pair_query import Query
 from clearance.record.moment import Moment
 from clearance.record.sensitivity import NO_SLOPE, Rate, Sensitivity
 from clearance.simulate.answers.handling import gap_between
-from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
+from clearance.simulate.answers.point_motion import owners_of
 from clearance.simulate.answers.rule_pairs import MeasuredRule
 from clearance.simulate.answers.transfers import Transfers
 from clearance.simulate.measure.sections import Section
 from clearance.world.case import Case
 from clearance.world.forest import forest_of, positions_between
-from clearance.world.pairs import BodyIndex, Pair
+from clearance.world.pairs import Pair
 
 STEP = 1e-7
 """[rad] or [m] Slopes are off by at most STEP x lever² / (2 x distance), where they change; rounding adds 1e-8."""
@@ -150,21 +150,15 @@ def _of_places(near: list[_NearPair], case: Case) -> Iterator[Rate]:
     Parts that are picked up or let go elsewhere where they are moved are not reported: their way depends on how
     they are turned since.
     """
-    things: list[tuple[str, str, Callable[[Case, BodyIndex, int], bool], int]] = [
-        ("base", placed.robot.name, moves_with_robot, i)
-        for i, placed in enumerate(case.robots)
-        if placed.mount is None
+    robots = [("base", one.robot.name, one.mount, (False, i)) for i, one in enumerate(case.robots)]
+    obstacles = [
+        ("obstacle", one.name, one.mount, (True, i)) for i, one in enumerate(case.obstacles)
     ]
-    things += [
-        ("obstacle", one.name, moves_with_obstacle, i)
-        for i, one in enumerate(case.obstacles)
-        if one.mount is None
-    ]
-    for kind, name, moves, i in things:
-        transfers = Transfers(case, (kind == "obstacle", i))
-        if any(transfers.has_of(one.case, one.pair) for one in near):
+    for kind, name, mount, thing in (*robots, *obstacles):
+        transfers = Transfers(case, thing)
+        if mount is not None or any(transfers.has_of(one.case, one.pair) for one in near):
             continue
-        sides = [tuple(moves(one.case, body, i) for body in one.pair) for one in near]
+        sides = [tuple(thing in owners_of(one.case, body) for body in one.pair) for one in near]
         if not any(a != b for a, b in sides):
             continue
         rows = [one.along(moves_a=a, moves_b=b) for one, (a, b) in zip(near, sides, strict=True)]
