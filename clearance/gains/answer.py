@@ -20,14 +20,15 @@ from clearance.gains.binding_constraints import (
     joints_at_limits,
     tools_at_limits,
 )
-from clearance.gains.delay import TimingResult, least_delay, least_slowing
+from clearance.gains.delay import least_delay, least_slowing
 from clearance.gains.detours import flat_moment, from_detours
 from clearance.gains.joint_ranges import require_within_limits
-from clearance.gains.lower_bounds import least_base, least_offset, least_shift
+from clearance.gains.lower_bounds import least_offset, least_shift
 from clearance.gains.obstruction import (
     HOPELESS,
     HOWEVER_SLOW,
     NOT_FOUND,
+    NOT_PROVEN,
     TOO_FAR,
     TOO_LATE,
     TOO_SLOW,
@@ -44,14 +45,14 @@ from clearance.gains.path_change import PathChange
 from clearance.gains.programme import Box
 from clearance.gains.request import Request
 from clearance.gains.result import Gain
-from clearance.gains.search import Change, Search, SearchResult
+from clearance.gains.search import Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
 from clearance.gains.stretches import fixed_spans, require_in_path, require_in_run, windows_of
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import tool_path_error
 from clearance.options import made
-from clearance.run import Question, Run, answer
+from clearance.run import Question, answer
 from clearance.world.case import Case
 from clearance.world.notice import listed
 
@@ -142,45 +143,23 @@ def _what_may_be_moved(case: Case, used: Container[str]) -> str:
 
 
 def _by_shift(case: Case, request: Request) -> Gain:
-    shift, who = _shift(case, request)
-    if request.tool_path == "kept":
-        return _by_base_alone(case, request, shift)
-    search = Search(shift, request.margin)
+    way, who = _shift(case, request)
+    search = Search(way, request.margin)
     first = search.first_state()
-    at_least = least_shift(shift, first, request.margin)
-    blocked = _shift_obstruction(first, shift)
-    if blocked is None and at_least > shift.farthest:
+    at_least = least_shift(way, first, request.margin)
+    blocked = _shift_obstruction(first, way)
+    if blocked is None and request.tool_path != "kept" and at_least > way.farthest:
         blocked = worst_pair(first, TOO_FAR)
     found = SearchResult(first, None, 1)
     if blocked is None:
-        found = _least_of_several(search, shift, first, at_least)
-    return _gain(
-        case, request, found, shift.change_of(found.state.x), shift, at_least, who, blocked
-    )
-
-
-def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
-    """A base that is moved while its tool goes the same way."""
-    i_robot = _robot(case, request.one_robot)
-    before = case.robots[i_robot]
-    require_within_limits(before)
-    way = tool_path_kept(shift, request.tool)
-    search = Search(way, request.margin)
-    first = search.first_state()
-    at_least = least_base(way, first, request.margin)
-    blocked = _shift_obstruction(first, way)
-    found = SearchResult(first, None, 1)
-    if blocked is None:
         found = _least_of_several(search, way, first, at_least)
-    x = found.state.x
-    who = before.robot.name
-    result = _gain(case, request, found, way.change_of(x), way, at_least, who, blocked)
-    after = found.state.case.robots[i_robot]
-    return replace(
-        result,
-        joint_names=before.given_trajectory.joint_names,
-        tool_path=tool_path_error(before, after, way.tool),
-    )
+    change, size = way.change_of(found.state.x), way.size(found.state.x)
+    result = _gain(case, request, found, change, size, at_least, who, blocked or NOT_FOUND)
+    result = replace(result, binding=_binding(found, way, result))
+    if not isinstance(way, ToolPathKept):
+        return result
+    error = tool_path_error(way.placed, result.case.robots[way.i_robot], way.tool)
+    return replace(result, joint_names=way.placed.given_trajectory.joint_names, tool_path=error)
 
 
 def _shift_obstruction(first: State, way: Shift) -> Obstruction | None:
@@ -246,28 +225,37 @@ def _by_path(case: Case, request: Request) -> Gain:
     who = ", ".join(case.robots[i].robot.name for i in changed)
     changes = offsets.offsets(found.state.x)
     change = changes if len(changes) > 1 else changes[0]
-    result = _gain(case, request, found, change, offsets, at_least, who, blocked)
+    size = offsets.size(found.state.x)
+    result = _gain(case, request, found, change, size, at_least, who, blocked or NOT_FOUND)
     moves = () if offsets.tool_poses is None else tuple(offsets.tool_poses.moves(found.state.x))
-    names = tuple(
-        name for part in offsets.parts for name in part.placed.given_trajectory.joint_names
-    )
-    return replace(result, joint_names=names, tool_moves=moves)
+    tables = (part.placed.given_trajectory for part in offsets.parts)
+    names = tuple(name for table in tables for name in table.joint_names)
+    binding = _binding(found, offsets, result)
+    return replace(result, joint_names=names, tool_moves=moves, binding=binding)
 
 
 def _path_obstruction(first: State, offsets: PathChange, request: Request) -> Obstruction | None:
     """What no change of the path mends; None where that is not known."""
-    blocked = blocked_by(first, offsets.gradient, offsets.transfers)
-    if blocked is not None:
-        return _left_as_it_is(first, offsets, request)
-    return tool_obstruction(first, offsets.parts[0])
+    if blocked_by(first, offsets.gradient, offsets.transfers) is None:
+        return tool_obstruction(first, offsets.parts[0])
+    return _left_as_it_is(first, offsets, request)
 
 
 def _left_as_it_is(state: State, offsets: PathChange, request: Request) -> Obstruction | None:
-    """The worst pair that falls short where every change leaves the path as it is; None without one."""
+    """The worst pair that falls short where every change leaves the path as it is; None without one.
+
+    All that moves the pair may be to stay as it is then: that is the reason.
+    """
     blocked = blocked_by(state, offsets.gradient, offsets.transfers)
     if blocked is None:
         return None
-    blocked = _kept_still(blocked, state, offsets, request)
+    approach, why = approach_of(blocked, state), blocked.why
+    kept = (
+        kept_still(blocked, windows_of(part.case, part.i_robot, request))
+        for part in offsets.parts
+        if part.gradient(approach) is not None
+    )
+    blocked = min(kept, key=lambda one: one.why != why, default=blocked)
     return blocked if blocked.why in HOPELESS else None
 
 
@@ -291,57 +279,43 @@ def _offsets(case: Case, changed: Sequence[int], n_intervals: int, request: Requ
     return PathChange(tuple(parts))
 
 
-def _kept_still(
-    blocked: Obstruction, first: State, offsets: PathChange, request: Request
-) -> Obstruction:
-    """The same, for the reason that all that moves the pair is to stay as it is then, if that is so."""
-    approach = approach_of(blocked, first)
-    blocks = [
-        kept_still(blocked, windows_of(part.case, part.i_robot, request))
-        for part in offsets.parts
-        if part.gradient(approach) is not None
-    ]
-    return next((one for one in blocks if one.why == blocked.why), blocks[0]) if blocks else blocked
-
-
 def _gain(
     case: Case,
     request: Request,
     found: SearchResult,
     change: np.ndarray | tuple[np.ndarray, ...],
-    way: Change,
+    size: float,
     at_least: float,
     who: str,
-    blocked: Obstruction | None,
+    blocked: Obstruction | str,
 ) -> Gain:
-    size = way.size(found.state.x)
+    """The gain of where a search ended.
+
+    Args:
+        blocked: by what, as far as that is known, else why it ended.
+    """
     before, after = answer(Question(case)), answer(Question(found.state.case))
-    binding: tuple[str, ...] = ()
-    if found.kept:
-        at_least = min(at_least, size)
-    elif blocked is None:
-        blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, request.margin)
-        binding = _binding(found, way, blocked)
+    stays = blocked if isinstance(blocked, Obstruction) else None
+    if isinstance(blocked, str) and not found.kept:
+        stays = worst_pair(found.state, blocked) or unproven(after.record, request.margin)
+    at_least = min(at_least, size) if found.kept else at_least
     return Gain(
-        request, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
-        found.n_measured, binding=binding,
+        request, found.kept, found.state.case, change, size, at_least, who, before, after, stays,
+        found.n_measured,
     )  # fmt: skip
 
 
-def _binding(found: SearchResult, way: Change, blocked: Obstruction) -> tuple[str, ...]:
-    """What the best that was reached is up against."""
-    x, robots = found.state.x, found.state.case.robots
+def _binding(found: SearchResult, way: Shift | PathChange, gain: Gain) -> tuple[str, ...]:
+    """What the best that was reached is up against; nothing where that is plain."""
+    blocked, x, robots = gain.blocked, found.state.x, gain.case.robots
+    if blocked is None or blocked.why not in (NOT_FOUND, NOT_PROVEN):
+        return ()
     if isinstance(way, PathChange):
-        binding = bound_by(found.state, blocked, [robots[part.i_robot] for part in way.parts])
-        return (
-            binding
-            if way.tool_poses is None
-            else binding + tools_at_limits(way.tool_poses.moves(x))
-        )
-    binding = bound_by(found.state, blocked)
-    if isinstance(way, ToolPathKept):
-        binding += joints_at_limits(robots[way.i_robot])
-    return binding + ends_reached(x, way.box)
+        moves = () if way.tool_poses is None else way.tool_poses.moves(x)
+        changed = [robots[part.i_robot] for part in way.parts]
+        return (*bound_by(found.state, blocked, changed), *tools_at_limits(moves))
+    joints = joints_at_limits(robots[way.i_robot]) if isinstance(way, ToolPathKept) else ()
+    return (*bound_by(found.state, blocked), *joints, *ends_reached(x, way.box))
 
 
 def _by_delay(case: Case, request: Request) -> Gain:
@@ -350,34 +324,23 @@ def _by_delay(case: Case, request: Request) -> Gain:
         found = least_slowing(case, i_robot, request.margin)
     else:
         found = least_delay(case, i_robot, request.margin, request.most_delay)
-    before, after = answer(Question(case)), answer(Question(found.state.case))
-    blocked, at_least = None, found.at_least
-    if not found.kept:
-        blocked = _blocked_in_time(found, request, after)
-    if np.isinf(at_least):
-        at_least = found.delay
-    return Gain(
-        request, found.kept, found.state.case, np.array([found.delay]), found.delay, at_least,
-        case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,
-    )  # fmt: skip
-
-
-def _blocked_in_time(found: TimingResult, request: Request, after: Run) -> Obstruction:
-    """What stays too near with every delay, else what does with the last that was looked at."""
-    if found.stays is not None and np.isinf(found.at_least):
-        return found.stays
-    why = TOO_SLOW if request.slow_down else TOO_LATE
-    if np.isinf(found.at_least):
-        why = HOWEVER_SLOW
-    return worst_pair(found.state, why) or unproven(after.record, request.margin)
+    none_does = np.isinf(found.at_least)
+    why = HOWEVER_SLOW if none_does else TOO_SLOW if request.slow_down else TOO_LATE
+    at_least, stays = (found.delay, found.stays) if none_does else (found.at_least, None)
+    who, change = case.robots[i_robot].robot.name, np.array([found.delay])
+    return _gain(case, request, found, change, found.delay, at_least, who, stays or why)
 
 
 def _shift(case: Case, request: Request) -> tuple[Shift, str]:
+    """The shift that is asked for, and the name of the thing that is moved."""
     box = ANYWHERE if request.within is None else Box(*np.array(request.within).T)
     if request.kind == "base":
         i_robot = _robot(case, request.one_robot)
-        who = case.robots[i_robot].robot.name
-        return base_shift(case, i_robot, box, request.turn), who
+        placed, shift = case.robots[i_robot], base_shift(case, i_robot, box, request.turn)
+        if request.tool_path == "kept":
+            require_within_limits(placed)
+            shift = tool_path_kept(shift, request.tool)
+        return shift, placed.robot.name
     if not case.obstacles:
         raise BadChange("the case has no obstacle", valid="kind waypoints, base or timing")
     if request.obstacle is None and len(case.obstacles) != 1:

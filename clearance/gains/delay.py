@@ -20,6 +20,7 @@ from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.moved_windows import carries_moved, require_own_parts
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
+from clearance.gains.search import SearchResult
 from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 from clearance.record.record import Record
 from clearance.simulate.answers.approaches import Approach
@@ -46,28 +47,19 @@ Longer = Callable[[State, Approach, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
-class TimingResult:
+class TimingResult(SearchResult):
     """Where the search ended.
 
     Attributes:
         delay: [s], or by what share a path takes longer: the least found that keeps the rules, else the last
             looked at.
         at_least: no less does; infinite where none does.
-        n_measured: how many were measured.
         stays: a pair that stays as near with any change that is greater; None without one.
     """
 
-    state: State
-    record: Record | None
     delay: float
     at_least: float
-    n_measured: int
     stays: Obstruction | None = None
-
-    @property
-    def kept(self) -> bool:
-        """True if every rule is proven to hold."""
-        return self.record is not None and keeps(self.record)
 
 
 def case_later(case: Case, i_robot: int, delay: float) -> Case:
@@ -194,7 +186,7 @@ def _least(
         if max(excluded, delay + stride) > most:
             break
         delay = max(excluded, delay + stride)
-    return TimingResult(state, record, delay, at_least, n_measured, stays)
+    return TimingResult(state, record, n_measured, delay, at_least, stays)
 
 
 def greatest_speed(case: Case, i_robot: int) -> float:

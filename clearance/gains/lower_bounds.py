@@ -16,7 +16,6 @@ from clearance.gains.offsets import JointOffsets
 from clearance.gains.path_change import PathChange
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import State
-from clearance.gains.tool_path import ToolPathKept
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 from clearance.simulate.answers.approaches import Approach
 from clearance.world.case import Case
@@ -32,21 +31,13 @@ INWARD = 1.0 - 2.0**-16
 
 def least_shift(shift: Shift, state: State, margin: float) -> float:
     """[m] No smaller shift, with its turn, makes the rules hold by a margin, whatever its direction."""
-    return _least_of(shift, state.near, margin)
-
-
-def _least_of(shift: Shift, near: Sequence[Approach], margin: float) -> float:
     least = 0.0
-    for approach in near:
-        if shift.gradient(approach) is not None and not shift.transfers.has(approach):
+    for approach in state.near:
+        moves = shift.gradient(approach) is not None and not shift.transfers.has(approach)
+        if moves and shift.is_of_place(approach):
             sizes = way_needed(approach, margin) / shift.factors(approach)
             least = max(least, float(sizes.max(initial=0.0)))
     return INWARD * least
-
-
-def least_base(way: ToolPathKept, state: State, margin: float) -> float:
-    """[m] The same of a base whose tool path is kept: of pairs that no joint of the path moves."""
-    return _least_of(way, [one for one in state.near if way.is_of_base(one)], margin)
 
 
 def least_offset(offsets: PathChange, state: State, margin: float) -> float:

@@ -118,6 +118,10 @@ class Shift:
                 moved[:, 3] = self.pivot.by_unit(points, self.pose_in(phase.case))
         return moved
 
+    def is_of_place(self, approach: Approach) -> bool:
+        """True if its place alone moves the bodies of an approach against each other, and no joint."""
+        return True
+
     def factors(self, approach: Approach) -> np.ndarray | float:
         """[-] How far both bodies move against each other at most, as a multiple of the size of a change."""
         if self.pivot is None:

@@ -172,7 +172,7 @@ class ToolPathKept(Shift):
         tool, frame = forest.robot_starts[self.i_robot] + self.tool.link, body.frame_in(case)
         return frame != WORLD and forest.rigid_part(frame) == forest.rigid_part(tool)
 
-    def is_of_base(self, approach: Approach) -> bool:
+    def is_of_place(self, approach: Approach) -> bool:
         """True if the base alone moves the bodies of an approach against each other, and no joint of its path."""
         return super().gradient(approach) is not None and not self._by_joint(approach).any()
 
