@@ -83,7 +83,7 @@ def _near_what_was_asked(driven: Trajectory, placed: PlacedRobot) -> Trajectory:
     """The recording with whole turns on joints that have no limits, so that it begins next to what was asked."""
     asked, timing = placed.given_trajectory, placed.timing
     start = np.array([max(driven.times[0], timing.run_times(asked.times)[0])])
-    own = positions_along(asked, (start - timing.start) * timing.rate)[0].tolist()
+    own = positions_along(asked, timing.table_times(start))[0].tolist()
     wanted = placed.fixed_positions | dict(zip(asked.joint_names, own, strict=True))
     was, positions = positions_along(driven, start)[0], driven.positions.copy()
     for i, name in enumerate(driven.joint_names):

@@ -74,15 +74,14 @@ def _pairs(state: State, blocked: Obstruction) -> list[str]:
             continue
         if missing.max() < -CLOSE:
             continue
-        phase, step = approach.section.phase, int(approach.steps[missing.argmax()])
-        time = phase.motions[0].times[step - phase.first]
+        time = approach.times[missing.argmax()]
         by_pair.setdefault(names, f"{names[0]} and {names[1]} have no more to give at {time:.3f} s")
     return list(by_pair.values())
 
 
 def _joints(placed: PlacedRobot, time: float) -> list[str]:
     """The joints that are at a limit at the samples next to a time of the run [s]."""
-    own = (time - placed.timing.start) * placed.timing.rate
+    own = placed.timing.table_times(time)
     lines = []
     for one in joint_ranges(placed):
         after = int(np.clip(np.searchsorted(one.times, own), 0, len(one.times) - 1))

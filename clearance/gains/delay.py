@@ -98,7 +98,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingR
     speed = greatest_speed(case, i_robot)
 
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
-        now, times = state.case.robots[i_robot], _times(approach)
+        now, times = state.case.robots[i_robot], approach.times
         known = is_at_any_delay(state.case, i_robot, times)
         since = times - now.timing.run_times(now.given_trajectory.times)[0]
         return np.where(known, _over(ways, speed), np.minimum(_over(ways, speed), since))
@@ -126,8 +126,8 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
 
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
         now = state.case.robots[i_robot]
-        times = _times(approach)
-        at = np.maximum((times - now.timing.start) * now.timing.rate, 0.0)
+        times = approach.times
+        at = np.maximum(now.timing.table_times(times), 0.0)
         then = np.maximum(at - _over(ways, speed), 0.0)
         known = is_at_any_delay(state.case, i_robot, times)
         then = np.where(known, then, np.maximum(then, now.given_trajectory.times[0]))
@@ -227,12 +227,6 @@ def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> floa
         ways = np.maximum(way_needed(approach, margin), 0.0)
         most = max(most, float(longer(state, approach, ways).max(initial=0.0)))
     return INWARD * most
-
-
-def _times(approach: Approach) -> np.ndarray:
-    """(k,) [s of the run] of the steps of an approach."""
-    phase = approach.section.phase
-    return np.asarray(phase.motions[0].times[approach.steps - phase.first])
 
 
 def _require_another(case: Case, i_robot: int) -> None:

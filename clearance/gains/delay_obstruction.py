@@ -51,8 +51,7 @@ def is_at_any_delay(case: Case, i_robot: int, times: np.ndarray) -> np.ndarray:
 
 def _staying(state: State, approach: Approach, i_robot: int) -> Iterator[tuple[int, str]]:
     """The worst row of each reason for which a pair stays as near, and the reason."""
-    case, times = state.case, approach.section.phase.times
-    at = times[approach.steps - approach.section.phase.first]
+    case, at = state.case, approach.times
     missing = state.missing(approach)
     is_always = is_at_any_delay(case, i_robot, at)
     movers = _movers(case, approach)

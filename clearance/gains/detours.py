@@ -56,9 +56,7 @@ def flat_moment(state: State, offsets: PathChange) -> FlatMoment | None:
         flat = np.where(foretold < FLAT * missing, missing, 0.0)
         row = int(flat.argmax())
         if flat[row] > worst:
-            phase = approach.section.phase
-            time = phase.motions[0].times[approach.steps[row] - phase.first]
-            worst, found = float(flat[row]), FlatMoment(approach, float(time))
+            worst, found = float(flat[row]), FlatMoment(approach, float(approach.times[row]))
     return found
 
 
@@ -101,8 +99,8 @@ def _starts(offsets: PathChange, flat: FlatMoment) -> Iterator[np.ndarray]:
 
 def _shapes(part: JointOffsets, time: float) -> list[np.ndarray]:
     """(splines,) how far each goes, of 1: about a moment of the run [s], and all alike."""
-    timing, splines = part.placed.timing, np.arange(part.n_splines)
-    own = part.basis.at(np.array([(time - timing.start) * timing.rate]))[0]
+    splines = np.arange(part.n_splines)
+    own = part.basis.at(np.array([part.placed.timing.table_times(time)]))[0]
     if not own.any():
         return []
     off = np.abs(splines - int(own.argmax()))

@@ -96,12 +96,11 @@ def kept_still(blocked: Obstruction, windows: Sequence[tuple[float, float]]) -> 
 
 def pair_at(state: State, approach: Approach, row: int, why: str) -> Obstruction:
     """What falls short in a row of an approach."""
-    case, phase = approach.case, approach.section.phase
-    step = int(approach.steps[row])
+    case = approach.case
     return Obstruction(
         approach.pair.a.name_in(case),
         approach.pair.b.name_in(case),
-        float(phase.motions[0].times[step - phase.first]),
+        float(approach.times[row]),
         float(approach.clearances[row]),
         approach.rule.limits.fail + state.margin,
         why,
@@ -153,10 +152,8 @@ def tool_obstruction(state: State, offsets: JointOffsets) -> Obstruction | None:
     for approach in state.near:
         if offsets.transfers.has(approach):
             continue
-        phase = approach.section.phase
-        times = phase.times[approach.steps - phase.first]
         for keep in offsets.tool_keeps:
-            for row in np.flatnonzero(np.abs(times - keep.time) <= SAME).tolist():
+            for row in np.flatnonzero(np.abs(approach.times - keep.time) <= SAME).tolist():
                 most = _most(offsets, approach, row, keep, link)
                 if INWARD * float(way_needed(approach, state.margin)[row]) > most:
                     return pair_at(state, approach, row, KEPT_STILL)

@@ -141,7 +141,7 @@ class JointOffsets:
         if not has_joint_between(approach.case, approach.pair, self.columns):
             return None
         by_joint = approach.by_columns()[:, self.columns]
-        splines = self._between_samples(self._table_times(approach))
+        splines = self._between_samples(self.placed.timing.table_times(approach.times))
         return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
 
     def _of_frame(
@@ -150,9 +150,7 @@ class JointOffsets:
         """(k, m, 3) how points that a link carries move with the variables."""
         poses = link_poses_at(phase.case, phase.motions, steps)
         by_joint = motion_of_frame(phase.case, poses, frame, points)[:, self.columns]
-        timing = self.placed.timing
-        times = (phase.times[steps] - timing.start) * timing.rate
-        splines = self._between_samples(times)
+        splines = self._between_samples(self.placed.timing.table_times(phase.times[steps]))
         moved = by_joint[:, :, None, :] * splines[:, None, :, None]
         return np.asarray(moved.reshape(len(points), -1, 3))
 
@@ -167,12 +165,6 @@ class JointOffsets:
         """The column of the case's forest of each joint of the table."""
         return columns_of(self.case, self.i_robot)
 
-    def _table_times(self, approach: Approach) -> np.ndarray:
-        timing = self.placed.timing
-        phase = approach.section.phase
-        times = phase.motions[0].times[approach.steps - phase.first]
-        return np.asarray((times - timing.start) * timing.rate)
-
     def size(self, x: np.ndarray) -> float:
         offsets = self._sized @ x.reshape(self.n_joints, -1).T
         return float((np.abs(offsets) * self.weights).max(initial=0.0))
@@ -184,7 +176,7 @@ class JointOffsets:
             return None
         placed, asked = self.placed, self.placed.given_trajectory
         times = np.array([one.time for one in self.tool_keeps])
-        own = (times - placed.timing.start) * placed.timing.rate
+        own = placed.timing.table_times(times)
         positions = knots_of(asked.times, asked.positions, asked.velocities).values_at(own)
         tool = tool_of(placed, self.tool)
         return ToolPoses(tool, self.tool_keeps, positions, self._between_samples(own))

@@ -328,7 +328,7 @@ def with_moments(case: Case, moments: np.ndarray) -> Case:
             continue
         start, end = placed.timing.run_times(placed.given_trajectory.times)[[0, -1]]
         own = moments[(moments > start) & (moments < end)]
-        robots[i] = _with_samples(placed, (own - placed.timing.start) * placed.timing.rate)
+        robots[i] = _with_samples(placed, placed.timing.table_times(own))
         moments = np.setdiff1d(moments, own)
     return replace(case, robots=tuple(robots))
 

@@ -54,7 +54,7 @@ def fixed_spans(case: Case, i_robot: int, request: Request) -> tuple[tuple[float
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].given_trajectory.times
     kept = np.zeros(len(times), dtype=bool)
     for window in request.keep:
-        start, end = ((time - timing.start) * timing.rate for time in window)
+        start, end = map(timing.table_times, window)
         before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
         after = min(int(np.searchsorted(times, end)), len(times) - 1)
         kept[before : after + 1] = True

@@ -147,9 +147,7 @@ class ToolPathKept(Shift):
         if all(self._stays(approach.case, body) for body in approach.pair):
             return None
         solved = self.solved(self.pose_in(approach.case))
-        timing, phase = self.placed.timing, approach.section.phase
-        times = phase.motions[0].times[approach.steps - phase.first]
-        own = (times - timing.start) * timing.rate
+        own = self.placed.timing.table_times(approach.times)
         n_samples, *each = solved.followed.shape
         flat = solved.followed.reshape(n_samples, -1)
         between = knots_of(self.placed.given_trajectory.times, flat).values_at(own)

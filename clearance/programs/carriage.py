@@ -312,10 +312,9 @@ def _by_time_of(steps: Sequence[Step], timing: Timing) -> tuple[Step, ...]:
     for one in steps:
         if isinstance(one, Handed):
             ways = tuple(_by_time_of(way, timing) for way in one.ways)
-            starts = (one.starts - timing.start) * timing.rate
-            one = Handed(starts, ways, (one.until - timing.start) * timing.rate)
+            one = Handed(timing.table_times(one.starts), ways, timing.table_times(one.until))
         elif not isinstance(one, np.ndarray):
-            knots = (one.table.knots - timing.start) * timing.rate
+            knots = timing.table_times(one.table.knots)
             one = one._replace(table=Cubics(knots, one.table.powers * scale))
         found.append(one)
     return tuple(found)

@@ -108,7 +108,7 @@ def sample_at(placed: PlacedRobot, time: float) -> int:
 def own_time(placed: PlacedRobot, time: float) -> float:
     """A time of the run [s] as its trajectory counts it."""
     times, timing = placed.given_trajectory.times, placed.timing
-    own = (time - timing.start) * timing.rate
+    own = timing.table_times(time)
     span = float(times[-1] - times[0])
     if timing.after == "loop" and span > 0.0 and own > times[-1]:
         own = float(times[0]) + (own - float(times[0])) % span

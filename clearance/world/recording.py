@@ -74,7 +74,7 @@ def recording_of(
         raise BadMotion("the commanded motion begins again and again", valid="after: hold")
     times = _times_of_both(driven, timing.run_times(commanded.times))
     was = dict(zip(driven.joint_names, positions_along(driven, times).T, strict=True))
-    own = positions_along(commanded, (times - timing.start) * timing.rate).T
+    own = positions_along(commanded, timing.table_times(times)).T
     wanted = dict(zip(commanded.joint_names, own, strict=True))
     errors = tuple(
         _error(joint, np.abs(was[joint] - wanted.get(joint, resting.get(joint, 0.0))), times)
@@ -89,9 +89,7 @@ def motion_left_out(found: Recording) -> tuple[JointError, ...]:
     """
     commanded, timing = found.commanded, found.timing
     times = timing.run_times(commanded.times)
-    ends = positions_along(
-        commanded, (np.array([found.start, found.end]) - timing.start) * timing.rate
-    )
+    ends = positions_along(commanded, timing.table_times(np.array([found.start, found.end])))
     before = np.abs(commanded.positions - ends[0]) * (times < found.start)[:, None]
     after = np.abs(commanded.positions - ends[1]) * (times > found.end)[:, None]
     far = np.maximum(before, after)

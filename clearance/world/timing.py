@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from numbers import Real
+from typing import TypeVar
 
 import numpy as np
 
 from clearance.errors import BadInput, BadTime
 from clearance.world.field_types import require_types
+
+Times = TypeVar("Times", float, np.ndarray)
 
 AFTER = ("hold", "loop", "absent")
 """After its last sample an actor stays there, begins again, or is not in the cell, which it is not
@@ -74,6 +77,10 @@ class Timing:
                 valid="a start and a rate that leave samples apart",
             )
         return found
+
+    def table_times(self, times: Times) -> Times:
+        """[s] A table's times of the run's, also where its samples do not reach."""
+        return (times - self.start) * self.rate
 
 
 def time_text(time: float) -> str:

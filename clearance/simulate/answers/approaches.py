@@ -59,6 +59,12 @@ class Approach:
         """The plain case of its part of the run."""
         return self.section.phase.case
 
+    @property
+    def times(self) -> np.ndarray:
+        """(k,) [s of the run] of the steps."""
+        phase = self.section.phase
+        return np.asarray(phase.times[self.steps - phase.first])
+
     def of_bodies(self, moved_a: np.ndarray, moved_b: np.ndarray) -> np.ndarray:
         """(k, ...) what the clearance grows by where the points move by these (k, ..., 3) [m]."""
         return np.einsum("k...i,ki->k...", moved_b - moved_a, self.directions)
