@@ -105,7 +105,17 @@ UNKNOWN_VALUES = frozenset(
 
 WORDS = {
     word.lower(): word
-    for word in (*MOVES, *OTHER_MOVES, *WAITS, *STILL, *WRITES, *UNKNOWN_VALUES, *VALUES, "Present")
+    for word in (
+        *MOVES,
+        *OTHER_MOVES,
+        *WAITS,
+        *LIMITS,
+        *STILL,
+        *WRITES,
+        *UNKNOWN_VALUES,
+        *VALUES,
+        "Present",
+    )
 }
 """All of them as they are written, by their small letters."""
 

@@ -129,6 +129,7 @@ UR_MOVE, RAPID_MOVE, FANUC_MOVE = (
         (lambda: rapid(RAPID_MOVE, "SetDO d,1;", "TPWrite t;"), []),
         (lambda: rapid("VelSet CSpeedOverride(),5000;", RAPID_MOVE), ["the speed of VelSet (line 5)"]),
         (lambda: rapid("AccSet 20,20;", RAPID_MOVE), ["what AccSet (line 5) sets"]),
+        (lambda: rapid("SpeedLimAxis STN_1,1,30;", RAPID_MOVE), ["what SpeedLimAxis (line 5) sets"]),
         (lambda: rapid("MoveL\\Conc,p1,v100,fine,tool0;"), ["\\Conc (line 5)"]),
         (lambda: rapid('MoveLSync p1,v100,fine,tool0,"foo";', "ENDPROC", "PROC foo()"), ["MoveLSync (line 5)"]),
         (lambda: rapid('MoveLSync p1,v100,fine,tool0,"foo";', skip=["foo"]),
