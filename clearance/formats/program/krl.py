@@ -144,7 +144,7 @@ class _Krl(Language):
     root: RobotRoot = field(default_factory=RobotRoot)
     maker, suffix = "kuka", ".src"
     moving = frozenset((*MOVES, *REFUSED, "BAS"))
-    still = frozenset((*QUIET, *FUNCTIONS, AGGREGATE, WAIT))
+    still = frozenset((*QUIET, *SIGNALS, *FUNCTIONS, AGGREGATE, WAIT))
     timed = retiming = (WAIT, *PAUSES)
     stopping = ("BRAKE",)
     packages, signals = PACKAGES, SIGNALS
@@ -157,8 +157,7 @@ class _Krl(Language):
 
     def beside(self, call: Call) -> str:
         """What an interrupt or a trigger calls; nothing where that is known to move nothing."""
-        is_one = call.name in QUIET and call.name not in SIGNALS and call.args
-        (one,) = call.args if is_one else (Constant(""),)
+        (one,) = call.args if call.name in QUIET and call.args else (Constant(""),)
         assert isinstance(one, Constant)
         return "" if one.value == SYSTEM else one.value
 

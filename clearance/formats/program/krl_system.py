@@ -35,9 +35,8 @@ from clearance.world.notice import listed
 
 QUIET = frozenset(
     "$ACT_BASE $ACT_TOOL $ADVANCE $ANIN $ANOUT $BWDSTART $CURR_RED $CYCFLAG $ERR $FLAG $H_POS $IN $LOAD "
-    "$LOAD_A1 $LOAD_A2 $LOAD_A3 $LOOP_MSG $MSG_T $OUT $OV_PRO $OV_ROB $PRO_MODE $SOFTN_END $SOFTP_END $TIMER "
-    "$TIMER_STOP $TORQMON $VEL_EXTAX $ACC_AXIS $ACC_EXTAX $JERK $GEAR_JERK $CP_VEL_TYPE $RED_VEL "
-    "$RED_ACC".split()
+    "$LOAD_A1 $LOAD_A2 $LOAD_A3 $LOOP_MSG $MSG_T $OUT $OV_PRO $PRO_MODE $SOFTN_END $SOFTP_END $TIMER "
+    "$TIMER_STOP $TORQMON $ACC_AXIS".split()
 )
 """Those that say nothing of the way of a move."""
 

@@ -185,7 +185,7 @@ class _Reader(BlockReader):
             read.cursor.take(), read.cursor.take()
             unread = Constant(Unknown(f"PULSE sets it at {line}"))
             return [Do(line, Call(word, (read.expression(), unread), {}, line))]
-        if word in QUIET and word not in SIGNALS:
+        if word in QUIET:
             more = routines_beside(row, self._kinds)
             self._beside |= {one.name: one for one in more}
             calls = (called_beside(row), *((Constant(one.name),) for one in more))

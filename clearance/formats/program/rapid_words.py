@@ -59,17 +59,15 @@ WAITS = frozenset(
 """Waits for signals or other programs."""
 
 STILL = frozenset(
-    "WaitTime Stop Break TPWrite TPErase TPShow UIShow UIMsgBox Set Reset SetDO SetGO SetAO PulseDO InvertDO "
-    "ClkStart ClkStop ClkReset AccSet VelSet ConfJ ConfL GripLoad IDelete ISignalDI ISignalDO ITimer IWatch "
-    "ISleep IEnable IDisable IError IPers Incr Decr Add Clear TriggIO TriggEquip TriggInt TriggRampAO "
-    "TriggCheckIO Open Close Write ErrWrite ErrLog BookErrNo PathAccLim MotionSup ActUnit DeactUnit "
-    "SyncMoveOn SyncMoveOff EOffsOff PDispOff IOEnable IODisable Load UnLoad StartLoad SocketCreate SocketConnect "
-    "SocketSend SocketClose SocketListen SocketBind SocketAccept StopMove StartMove StorePath WorldAccLim "
-    "SetSysData SoftDeact TuneServo TuneReset SpyStart SpyStop WriteStrBin WriteBin Rewind "
-    "ClearIOBuff LoadId SystemStopAction TextTabInstall RMQEmptyQueue ArcRefresh "
-    "SetAllDataVal".split()
+    "Break TPWrite TPErase TPShow UIShow Set Reset SetDO SetGO SetAO PulseDO InvertDO ClkStart ClkStop "
+    "ClkReset VelSet ConfJ ConfL GripLoad IDelete ISignalDI ISignalDO ITimer IWatch ISleep IEnable "
+    "IDisable IError IPers Incr Decr Add Clear TriggIO TriggEquip TriggInt TriggRampAO TriggCheckIO Open "
+    "Close Write ErrWrite ErrLog BookErrNo MotionSup ActUnit DeactUnit EOffsOff PDispOff IOEnable "
+    "IODisable SocketCreate SocketSend SocketClose SocketListen SocketBind StartMove StorePath SetSysData "
+    "SoftDeact TuneServo TuneReset SpyStart SpyStop WriteStrBin WriteBin Rewind ClearIOBuff TextTabInstall "
+    "RMQEmptyQueue ArcRefresh SetAllDataVal".split()
 )
-"""Instructions that move nothing."""
+"""Further instructions that move nothing."""
 
 PAUSES = frozenset(
     "WaitTime Stop SystemStopAction UIMsgBox TPReadNum TPReadFK TPReadDnum SocketReceive SocketConnect "
@@ -93,29 +91,19 @@ WRITES_ONE = {"StrToVal": (1,), "GetNextSym": (0, 1), "TestAndSet": (0,)}
 
 UNKNOWN_VALUES = frozenset(
     "TestDI DOutput GOutput AOutput DInput GInput AInput ClkRead CTime CDate GetTime NumToStr ValToStr "
-    "StrToVal StrPart StrMatch StrFind StrLen StrMap StrMemb StrOrder StrDigCmp ByteToStr StrToByte DecToHex "
-    "HexToDec CRobT CJointT CPos CTool CWObj CSpeedOverride CalcRobT CalcJointT CalcRotAxFrameZ OpMode "
-    "RunMode RobOS TaskRunMec TaskRunRob MotionPlannerNo IsStopMoveAct IsSysId IsPers IsVar ReadNum ReadStr "
-    "ReadStrBin ReadBin ReadMotor UIMessageBox UINumEntry UINumTune UIAlphaEntry UIListView UIDnumEntry "
-    "TestAndSet GetNextSym GetTaskName GetMecUnitName EulerZYX BitAnd BitOr BitXOr BitNeg BitCheck BitLSh "
-    "BitRSh DefFrame DefDFrame DefAccFrame ORobT SocketGetStatus GetSignalOrigin MaxRobSpeed NumToDnum "
-    "DnumToNum Rand FileSize".split()
+    "StrToVal StrPart StrMatch StrFind StrLen StrMap StrMemb StrOrder StrDigCmp ByteToStr StrToByte "
+    "DecToHex HexToDec CRobT CJointT CPos CTool CWObj CSpeedOverride CalcRobT CalcJointT CalcRotAxFrameZ "
+    "OpMode RunMode RobOS TaskRunMec TaskRunRob MotionPlannerNo IsStopMoveAct IsSysId IsPers IsVar "
+    "ReadMotor TestAndSet GetNextSym GetTaskName GetMecUnitName EulerZYX BitAnd BitOr BitXOr BitNeg "
+    "BitCheck BitLSh BitRSh DefFrame DefDFrame DefAccFrame ORobT SocketGetStatus GetSignalOrigin "
+    "MaxRobSpeed NumToDnum DnumToNum Rand FileSize".split()
 )
-"""Functions whose value only the controller knows."""
+"""Further functions whose value only the controller knows."""
 
+_FURTHER = (*STILL, *UNKNOWN_VALUES, *VALUES, "Present")
 WORDS = {
     word.lower(): word
-    for word in (
-        *MOVES,
-        *OTHER_MOVES,
-        *WAITS,
-        *LIMITS,
-        *STILL,
-        *WRITES,
-        *UNKNOWN_VALUES,
-        *VALUES,
-        "Present",
-    )
+    for word in (*MOVES, *OTHER_MOVES, *WAITS, *PAUSES, *LIMITS, *WRITES, *_FURTHER)
 }
 """All of them as they are written, by their small letters."""
 

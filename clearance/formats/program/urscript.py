@@ -211,7 +211,7 @@ class _UrScript(Language):
     share: float = 1.0
     maker = "ur"
     moving = frozenset((*PARAMETERS, *OTHER_MOVES, "set_tcp"))
-    still = frozenset((*STILL, *_VALUES, "sleep"))
+    still = frozenset((*STILL, *BLOCKING, *_VALUES))
     timed = BLOCKING
     retiming = ("set_speed",)
     values = _VALUES

@@ -20,13 +20,12 @@ OTHER_MOVES = frozenset(
     "enable_external_ft_sensor set_pos jog start_jog move_until_contact optimovej optimovel".split()
 )
 STILL = frozenset(
-    "textmsg varmsg popup sync stopj stopl stop_conveyor_tracking end_force_mode end_freedrive_mode "
-    "end_teach_mode kill join enter_critical exit_critical zero_ftsensor powerdown protective_stop "
-    "reset_revolution_counter encoder_enable_pulse_decode encoder_enable_set_tick_count end_screw_driving "
-    "encoder_get_tick_count encoder_set_tick_count encoder_unwind_delta_tick_count conveyor_pulse_decode "
-    "get_conveyor_tick_count set_conveyor_tick_count position_deviation_warning "
-    "force to_str str_at str_cat str_empty str_find str_len str_sub to_num binary_list_to_integer "
-    "integer_to_binary_list random make_list size struct get_list_length normalize "
+    "textmsg varmsg popup stopj stopl stop_conveyor_tracking end_force_mode end_freedrive_mode "
+    "end_teach_mode kill exit_critical zero_ftsensor reset_revolution_counter encoder_enable_pulse_decode "
+    "encoder_enable_set_tick_count end_screw_driving encoder_get_tick_count encoder_set_tick_count "
+    "encoder_unwind_delta_tick_count conveyor_pulse_decode get_conveyor_tick_count set_conveyor_tick_count "
+    "position_deviation_warning force to_str str_at str_cat str_empty str_find str_len str_sub to_num "
+    "binary_list_to_integer integer_to_binary_list random make_list size struct get_list_length normalize "
     "interpolate_pose pose_dist pose_sub rotvec2rpy wrench_trans "
     # the arm and its load
     "get_actual_joint_positions get_actual_joint_positions_history get_actual_joint_speeds "
@@ -62,13 +61,10 @@ STILL = frozenset(
     "modbus_add_signal modbus_delete_signal modbus_get_signal_status modbus_request_update_signal_value "
     "modbus_send_custom_command modbus_set_digital_input_action modbus_set_output_register "
     "modbus_set_output_signal modbus_set_runstate_dependent_choice modbus_set_signal_update_frequency "
-    "rpc_factory rtde_set_watchdog socket_close socket_get_var socket_open socket_read_ascii_float "
-    "socket_read_binary_integer socket_read_byte_list socket_read_line socket_read_string "
-    "socket_send_byte socket_send_int socket_send_line socket_send_string socket_set_var "
-    "request_boolean_from_primary_client request_float_from_primary_client "
-    "request_integer_from_primary_client request_string_from_primary_client".split()
+    "rpc_factory rtde_set_watchdog socket_close socket_send_byte socket_send_int socket_send_line "
+    "socket_send_string socket_set_var".split()
 )
-"""Functions that move nothing, each by its name: houses and URCaps begin their own as the maker does."""
+"""Further functions that move nothing, each by its name: houses and URCaps begin their own as the maker does."""
 
 BLOCKING = frozenset(
     "sleep sync join enter_critical socket_open socket_get_var powerdown protective_stop halt "
