@@ -77,6 +77,15 @@ def rotation_vector(rotation: np.ndarray) -> np.ndarray:
     return np.array([x, y, z]) * (2.0 if sine < 1e-12 else angle / sine)
 
 
+def half_skew(matrices: np.ndarray) -> np.ndarray:
+    """(..., 3) half the skew part of matrices (..., 3, 3): of a rotation, the sine of its angle times its axis."""
+    pairs = [
+        matrices[..., (k + 2) % 3, (k + 1) % 3] - matrices[..., (k + 1) % 3, (k + 2) % 3]
+        for k in range(3)
+    ]
+    return 0.5 * np.stack(pairs, axis=-1)
+
+
 def _is_negative(found: np.ndarray) -> np.ndarray:
     """(n,) True where the first of w, x, y, z that is not 0 is below it."""
     negative = np.zeros(len(found), dtype=bool)

@@ -15,10 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadProgram
-from clearance.geometry.quaternions import rotations_of
+from clearance.geometry.quaternions import half_skew, rotations_of
 from clearance.programs.series import (
     ORDER,
-    half_skew,
     majorant_of_turns,
     matrix_product,
     moved,

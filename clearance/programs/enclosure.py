@@ -18,12 +18,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.quaternions import half_skew
 from clearance.programs.arm import Arm
 from clearance.programs.carriage import Carried
 from clearance.programs.series import (
     ORDER,
     greatest,
-    half_skew,
     majorant_of_turns,
     matrix_product,
     moved,

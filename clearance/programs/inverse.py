@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadProgram
+from clearance.geometry.quaternions import half_skew
 from clearance.programs.arm import Arm
-from clearance.programs.series import half_skew
 from clearance.world.robot import Joint, JointKind
 from clearance.world.tool import Tool
 

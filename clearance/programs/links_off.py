@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.motion.kinematics import NO_COLUMN, NO_PARENT, SLIDING, Links
+from clearance.geometry.quaternions import half_skew
+from clearance.kernels.motion.kinematics import SLIDING, Links
 from clearance.programs.arm import Arm
-from clearance.programs.series import half_skew
 from clearance.world.corner_zone import Deviation
 from clearance.world.kinematics import links_of_robot, poses_by_link
 from clearance.world.robot import JointKind, Robot
-from clearance.world.tool import rates_of
+from clearance.world.tool import movers, rates_of
 
 
 class Cells(NamedTuple):
@@ -80,17 +80,12 @@ class _Above(NamedTuple):
     @classmethod
     def of(cls, links: Links, link: int, columns: list[int]) -> _Above:
         """Those of a link, where an arm drives some columns."""
-        driven, others, others_below, above = [], 0, 0, link
-        while above != NO_PARENT:
-            if int(links.columns[above]) in columns:
-                driven.append((above, columns.index(int(links.columns[above]))))
-            elif links.columns[above] != NO_COLUMN:
-                others += 1
-                others_below += not driven
-            above = int(links.parents[above])
+        driven = movers(links, link, columns)
+        every = [one for one, _ in movers(links, link, range(int(links.columns.max()) + 1))]
+        others_below = every.index(driven[0][0]) if driven else len(every)
         own, at = np.array(driven, dtype=np.int64).reshape(-1, 2).T
-        slides = links.kinds[own] == SLIDING
-        return cls(link, tuple(driven), at, links.factors[own], slides, others, others_below)
+        others, slides = len(every) - len(driven), links.kinds[own] == SLIDING
+        return cls(link, driven, at, links.factors[own], slides, others, others_below)
 
     def sums(self, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(n,) [rad] what those that turn, and (n,) [m] what those that slide, move by with the arm's ways (n,

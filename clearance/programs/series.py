@@ -54,15 +54,6 @@ def turns_about(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return np.asarray(found)
 
 
-def half_skew(matrices: np.ndarray) -> np.ndarray:
-    """(..., 3) half the skew part of matrices (..., 3, 3): of a rotation, the sine of its angle times its axis."""
-    pairs = [
-        matrices[..., (k + 2) % 3, (k + 1) % 3] - matrices[..., (k + 1) % 3, (k + 2) % 3]
-        for k in range(3)
-    ]
-    return 0.5 * np.stack(pairs, axis=-1)
-
-
 def greatest(series: np.ndarray) -> np.ndarray:
     """(n, ...) an upper bound of the absolute value over [-1, 1]: the sum of its Chebyshev coefficients."""
     in_chebyshev = np.tensordot(_TO_CHEBYSHEV, series, axes=(0, 0))

@@ -18,10 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadProgram
-from clearance.geometry.quaternions import rotation_vector
+from clearance.geometry.quaternions import half_skew, rotation_vector
 from clearance.programs.series import (
     ORDER,
-    half_skew,
     majorant_of_turns,
     matrix_product,
     moved,

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
+from clearance.geometry.quaternions import half_skew
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING, Links
 from clearance.world.kinematics import links_of_robot, moving_positions, poses_by_link
 from clearance.world.placed_robot import PlacedRobot
@@ -152,15 +153,9 @@ def pose_errors(poses: np.ndarray, others: np.ndarray) -> np.ndarray:
     [rad].
     """
     turned = poses[:, :3, :3] @ np.swapaxes(others[:, :3, :3], 1, 2)
-    twice = np.stack(
-        [
-            turned[:, (k + 2) % 3, (k + 1) % 3] - turned[:, (k + 1) % 3, (k + 2) % 3]
-            for k in range(3)
-        ],
-        axis=1,
-    )
-    sines = 0.5 * np.linalg.norm(twice, axis=1)
+    skew = half_skew(turned)
+    sines = np.linalg.norm(skew, axis=1)
     cosines = 0.5 * (np.trace(turned, axis1=1, axis2=2) - 1.0)
     angles = np.arctan2(sines, cosines)
-    factors = np.divide(angles, 2.0 * sines, out=np.full(len(sines), 0.5), where=sines > 1e-12)
-    return np.hstack([poses[:, :3, 3] - others[:, :3, 3], factors[:, None] * twice])
+    factors = np.divide(angles, sines, out=np.ones(len(sines)), where=sines > 1e-12)
+    return np.hstack([poses[:, :3, 3] - others[:, :3, 3], factors[:, None] * skew])
