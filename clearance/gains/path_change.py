@@ -31,7 +31,7 @@ class PathChange:
     """Offsets of robots of a case; the variables of one follow those of the other.
 
     Attributes:
-        parts: of each robot; one that keeps its tool is alone.
+        parts: of each robot; one that keeps its tool is alone. The others are as of a `Shift`.
     """
 
     parts: tuple[JointOffsets, ...]

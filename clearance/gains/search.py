@@ -7,12 +7,13 @@ by least. What is measured decides: a step that makes it worse shrinks the regio
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from clearance.gains.interval_moments import refined
-from clearance.gains.programme import Box, Inequalities, least_missing
+from clearance.gains.path_change import PathChange
+from clearance.gains.programme import least_missing
+from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import (
     Requirement,
     Rows,
@@ -24,10 +25,6 @@ from clearance.gains.shortfalls import (
     with_moments_within,
 )
 from clearance.record.record import Record
-from clearance.simulate.answers.approaches import Approach
-from clearance.world.case import Case
-from clearance.world.pairs import Pair
-from clearance.world.timeline import Timeline
 
 MOST_STEPS = 40
 """Of one search; most need 4 to 10."""
@@ -78,57 +75,8 @@ WIDER, NARROWER = 2.0, 0.4
 """[-] What the trust region is multiplied by then."""
 
 
-class Change(Protocol):
-    """What may be changed, by m variables that are 0 for no change."""
-
-    @property
-    def price(self) -> float:
-        """What a metre of clearance that is missing weighs against the size at first; more than most cost."""
-
-    @property
-    def box(self) -> Box:
-        """What the variables may be."""
-
-    @property
-    def inequalities(self) -> Inequalities | None:
-        """What the variables keep beside the box."""
-
-    @property
-    def first_reach(self) -> np.ndarray:
-        """(m,) how far a first step may go."""
-
-    @property
-    def bends(self) -> bool:
-        """Whether a motion between two steps may be changed otherwise than they are."""
-
-    def case_of(self, x: np.ndarray) -> Case:
-        """The changed case."""
-
-    def moves(self, case: Case, pair: Pair) -> bool:
-        """False for a pair, of the plain case of a part of the run, that stays as near whatever is changed."""
-
-    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
-        """(k, m) what clearances grow by; None where nothing of it changes them.
-
-        Args:
-            timeline: of the run, for parts that change hands; None where they are not asked about.
-        """
-
-    def size(self, x: np.ndarray) -> float:
-        """How large a change is, in its unit."""
-
-    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
-        """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
-
-    def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
-        """What is kept beside clearances, as it is measured; None for nothing.
-
-        Args:
-            beyond: [m] that is to cover rounding.
-        """
-
-    def swing(self, reach: np.ndarray) -> float:
-        """[m] What no clearance changes more by, where no variable changes by more than (m,) `reach`."""
+Change = Shift | PathChange
+"""What may be changed, by m variables that are 0 for no change."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,7 +45,9 @@ class Shift:
         thing: what it is. place: the case with it moved by (3,) [m], or (4,) with its angle times `turn.ARM`.
         pose_in: (4, 4) where it stands in a case [m]. box: [m] how far it may be moved.
         radius: [m] from its origin to the farthest that moves with it, roughly.
-        pivot: None where it is not turned.
+        pivot: None where it is not turned. inequalities: kept beside the box.
+        price: at first, of a metre of clearance that is missing, beside the size of a change.
+        bends: whether a motion between two steps may be changed otherwise than they are.
     """
 
     case: Case
@@ -80,9 +82,11 @@ class Shift:
 
     @property
     def first_reach(self) -> np.ndarray:
+        """(m,) how far a first step may go."""
         return np.full(self.size_of_x, FIRST_REACH)
 
     def case_of(self, x: np.ndarray) -> Case:
+        """The changed case."""
         return self.place(self.case, x)
 
     def moved(self, case: Case, body: BodyIndex) -> bool:
@@ -90,10 +94,16 @@ class Shift:
         return self.thing in owners_of(case, body)
 
     def moves(self, case: Case, pair: Pair) -> bool:
+        """False for a pair, of the plain case of a part of the run, that stays as near whatever is changed."""
         one_moves = self.moved(case, pair.a) != self.moved(case, pair.b)
         return one_moves or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        """(k, m) what clearances grow by; None where nothing of it changes them.
+
+        Args:
+            timeline: of the run, for parts that change hands; None where they are not asked about.
+        """
         is_obstacle, _ = self.thing
         if timeline is not None and not is_obstacle and self.transfers.has(approach):
             return Grasps(timeline, self._of_frame, self.size_of_x).gradient(approach)
@@ -131,15 +141,19 @@ class Shift:
         return self.pivot.factors(approach, body, self.pose_in(case))
 
     def size(self, x: np.ndarray) -> float:
+        """How large a change is, in its unit."""
         return float(np.linalg.norm(x))
 
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
+        """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
         return least_norm(rows, x, box)
 
     def other_rows(self, x: np.ndarray, beyond: float) -> Rows | None:
+        """What is kept beside clearances; None for nothing. `beyond` [m] is to cover rounding."""
         return None
 
     def swing(self, reach: np.ndarray) -> float:
+        """[m] What no clearance changes more by, where no variable changes by more than (m,) `reach`."""
         turned = 0.0 if self.pivot is None else float(reach[3]) / ARM * self.radius
         return float(np.linalg.norm(reach[:3])) + turned
 
