@@ -4,6 +4,7 @@ import numpy as np
 
 import clearance as cl
 from clearance.world.robot import Joint, JointKind
+from tests.made_cases import at
 
 X, Y = np.eye(3)[:2]
 
@@ -21,16 +22,12 @@ def along_x(robot, times=None, start=-1.0, end=1.0, y=0.0, base=(0.0, 0.0, 0.0))
     """The block goes along x, 1 s."""
     times = np.linspace(0.0, 1.0, 41) if times is None else times
     positions = np.stack([np.linspace(start, end, len(times)), np.full(len(times), y)], axis=1)
-    placed = np.eye(4)
-    placed[:3, 3] = base
-    return cl.PlacedRobot(robot, cl.Trajectory(times, ("x", "y"), positions), placed)
+    return cl.PlacedRobot(robot, cl.Trajectory(times, ("x", "y"), positions), at(*base))
 
 
 def standing(name, shape, xyz):
     """An obstacle at a place."""
-    pose = np.eye(4)
-    pose[:3, 3] = xyz
-    return cl.Obstacle(cl.Body(name, shape), pose)
+    return cl.Obstacle(cl.Body(name, shape), at(*xyz))
 
 
 def slot(fail=0.04, off=0.03, shift=(0.0, 0.0, 0.0)):

@@ -11,6 +11,7 @@ from clearance.gains.answer import gain
 from clearance.gains.sentences import lines_of
 from clearance.gains.turn import ARM, Pivot, Turn
 from tests.gains.gantries import along_x, gantry, slot, standing
+from tests.made_cases import at
 
 BOTH = ("one", "other")
 
@@ -107,9 +108,7 @@ def test_a_turn_and_a_shift_share_what_is_missing():
 
 def test_the_gradient_of_a_turn_is_that_of_points():
     rng = np.random.default_rng(3)
-    pose = np.eye(4)
-    pose[:3, 3] = rng.normal(size=3)
-    pivot = Pivot(Turn("y", (0.3, -0.2, 0.5)), pose)
+    pivot = Pivot(Turn("y", (0.3, -0.2, 0.5)), at(*rng.normal(size=3)))
     x, step = np.array([0.1, 0.2, -0.1, 0.3]), np.array([0.0, 0.0, 0.0, 1e-6])
     point = np.append(rng.normal(size=3), 1.0)
     here, there = (pivot.moved(x + side * step) @ point for side in (-1, 1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -11,9 +12,12 @@ import pybullet_data
 import clearance as cl
 from clearance.programs.arm import Arm
 from clearance.programs.following import Follower
+from clearance.programs.motion import ProgramMotion, motion_of
+from clearance.programs.moves import Move, Program
 from clearance.programs.path_samples import PathSamples
 from clearance.programs.time_law import trapezoid
 from clearance.programs.tool_path import Stretch, arc, line
+from tests.made_cases import at
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 FILES = {
@@ -21,16 +25,48 @@ FILES = {
     "panda": Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf",
     "iiwa": Path(pybullet_data.getDataPath()) / "kuka_iiwa" / "model.urdf",
 }
+START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
+"""Joints of heron6 [rad], far from singularities."""
+
 TOOLS = {"iiwa": "lbr_iiwa_link_7", "heron6": "tool_tip", "panda": "panda_hand"}
 
 
 @lru_cache
 def arm(name: str) -> Arm:
     """An arm with a tool that is off its flange."""
-    robot = cl.load_robot(FILES[name])
-    tool = np.eye(4)
-    tool[:3, 3] = 0.02, -0.01, 0.1
-    return Arm(robot, TOOLS[name], tool)
+    return Arm(cl.load_robot(FILES[name]), TOOLS[name], at(0.02, -0.01, 0.1))
+
+
+def first_pose(name: str = "heron6", start: Sequence[float] = START) -> np.ndarray:
+    """(4, 4) `root_from_tool` [m] at some joints."""
+    return arm(name).poses(np.array([start]))[0]
+
+
+def motion(
+    moves: Sequence[Move],
+    name: str = "heron6",
+    start: Sequence[float] = START,
+    robot: cl.Robot | None = None,
+    **more,
+) -> ProgramMotion:
+    """The motion of moves from some joints.
+
+    Args:
+        robot: another one with the arm. more: of the program; of `start` the joints beside the arm.
+    """
+    one = arm(name)
+    joints = {joint.name: float(value) for joint, value in zip(one.joints, start, strict=True)}
+    joints |= more.pop("beside", {})
+    program = Program(one.link, one.link_from_tool, tuple(moves), joints, **more)
+    return motion_of(robot or one.robot, program)
+
+
+def shifted(pose: np.ndarray, way=(0.0, 0.0, 0.0), by=(0.0, 0.0, 0.0)) -> np.ndarray:
+    """(4, 4) a pose that is moved, and turned where it is."""
+    found = pose.copy()
+    found[:3, 3] += way
+    found[:3, :3] = turned(by) @ pose[:3, :3]
+    return found
 
 
 def posture(one: Arm, draw: np.random.Generator) -> np.ndarray:
@@ -46,9 +82,7 @@ def posture(one: Arm, draw: np.random.Generator) -> np.ndarray:
 def stretch(one: Arm, start: np.ndarray, draw: np.random.Generator) -> Stretch:
     """A random line or arc from where the joints have the tool."""
     pose = one.poses(start[None])[0]
-    end = pose.copy()
-    end[:3, 3] += draw.uniform(-0.15, 0.15, 3)
-    end[:3, :3] = turned(draw.uniform(-0.3, 0.3, 3)) @ pose[:3, :3]
+    end = shifted(pose, draw.uniform(-0.15, 0.15, 3), draw.uniform(-0.3, 0.3, 3))
     if draw.random() < 0.5:
         return line(pose, end)
     via = 0.5 * (pose + end)[:3, 3] + draw.uniform(-0.05, 0.05, 3)

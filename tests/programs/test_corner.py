@@ -8,11 +8,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from clearance.programs.motion import motion_of
-from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.programs.moves import JointMove, Move, PathMove
 from clearance.world.cubic import positions_along
 from clearance.world.trajectory import Trajectory
-from tests.programs.arms import arm, posture, turned
+from tests.programs.arms import arm, motion, posture, shifted
 from tests.programs.exact_arm import Pose, joints_for, links_at, tool_at, turn, vector_of
 
 RADIUS = 0.004
@@ -28,9 +27,8 @@ class Cornered:
         self.vias: list[np.ndarray | None] = []
         moves: list[Move] = []
         for i, letter in enumerate(kind):
-            pose = self.poses[-1].copy()
-            pose[:3, 3] += draw.uniform(-0.1, 0.1, 3) + np.array([-0.05, 0.0, 0.0])
-            pose[:3, :3] = turned(draw.uniform(-0.1, 0.1, 3)) @ pose[:3, :3]
+            way = draw.uniform(-0.1, 0.1, 3) + np.array([-0.05, 0.0, 0.0])
+            pose = shifted(self.poses[-1], way, draw.uniform(-0.1, 0.1, 3))
             middle = 0.5 * (pose + self.poses[-1])[:3, 3] + draw.uniform(-0.02, 0.02, 3)
             self.vias.append(middle if letter == "C" else None)
             zone = RADIUS if i == 0 else 0.0
@@ -39,10 +37,7 @@ class Cornered:
             else:
                 moves.append(PathMove(f"MOVE {i}", "moves", pose, via=self.vias[-1], zone=zone))
             self.poses.append(pose)
-        names = [joint.name for joint in self.arm.joints]
-        joints = {name: float(at) for name, at in zip(names, start, strict=True)}
-        program = Program(self.arm.link, self.arm.link_from_tool, tuple(moves), joints)
-        self.trajectory: Trajectory = motion_of(self.arm.robot, program).trajectory
+        self.trajectory: Trajectory = motion(moves, name, start).trajectory
         (self.zone,) = self.trajectory.corners
         self.nominal = self.joints_at(np.linspace(self.zone.start, self.zone.end, 65))
 

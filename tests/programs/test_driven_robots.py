@@ -25,6 +25,7 @@ from tests.programs.test_programs_in_cases import (
     case,
     far,
     tool_at,
+    written,
 )
 
 AXIS = np.array([2.0, 0.0, PLATE])
@@ -49,11 +50,6 @@ def driving(folder: Path, moves: list, on: str = "turntable/plate", **more) -> d
     """What a case file has whose program drives the turntable; it is written to the folder too."""
     path = beside_a_turntable(folder, moves, frames={"jig": {"on": on}}, **more)
     return yaml.safe_load(path.read_text())
-
-
-def saved(folder: Path, content: dict) -> Path:
-    (folder / "case.yaml").write_text(yaml.safe_dump(content))
-    return folder / "case.yaml"
 
 
 def lin(way=(0.0, 0.0, 0.0), **more) -> dict:
@@ -85,7 +81,7 @@ def test_a_tool_that_stays_on_a_turning_plate_keeps_its_clearance_to_it(tmp_path
         ball("stands", np.array([*beside, TIP[2]]), 0.03),
     ]
     content["allow"] = [["arm/*", "*"], ["turntable/*", "*"]]
-    run = cl.check(saved(tmp_path, content))
+    run = cl.check(written(tmp_path, content))
     assert np.abs(np.array(run.steps.to_pydict()["clearance"]) - 0.08).max() < 2e-5
     assert run.record.certificate.lower_bound.min() > 0.08 - 1.2e-4
     (passed,) = (one for one in run.pair_minima if (one.link, one.obstacle) == ("torch", "stands"))
@@ -100,7 +96,7 @@ def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
     """Its joint begins where the case has it; on a table that stands a line is that in the world."""
     to = {"frame": "jig", "xyz": on_plate((0.0, 0.1, 0.0))}
     content = driving(tmp_path, [{"lin": {"to": to, "hold": {"turntable/turn": 0.5}}}])
-    loaded = cl.load_case(saved(tmp_path, content))
+    loaded = cl.load_case(written(tmp_path, content))
     arm, table = loaded.robots
     with pytest.raises(
         cl.BadInput, match="'arm' moves turntable too; kind obstacle with far, which"
@@ -120,10 +116,10 @@ def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
 def test_bases_on_what_stands_are_as_in_the_world(tmp_path):
     """The obstacle `far` is at (5, 5, 5) m."""
     content = driving(tmp_path, [lin((0.0, 0.05, 0.0), hold={"turntable/turn": 0.6})])
-    world = cl.load_case(saved(tmp_path, content)).robots
+    world = cl.load_case(written(tmp_path, content)).robots
     for robot in content["robots"]:
         robot["base"] = {"on": "far", "xyz": [at - 5.0 for at in robot["base"]["xyz"]]}
-    for one, same in zip(cl.load_case(saved(tmp_path, content)).robots, world, strict=True):
+    for one, same in zip(cl.load_case(written(tmp_path, content)).robots, world, strict=True):
         assert np.abs(one.trajectory.positions - same.trajectory.positions).max() < 1e-9
 
 
@@ -131,7 +127,7 @@ def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path)
     """On the part, 0.1 m out and 0.3 m above the plate's frame."""
     xyz = np.array(on_plate((0.0, -0.05, 0.05))) - [0.1, 0.0, 0.3]
     move = {"lin": {"to": {"frame": "jig", "xyz": xyz.tolist()}, "free": ["turntable/turn"]}}
-    arm, table = cl.load_case(saved(tmp_path, driving(tmp_path, [move], "part"))).robots
+    arm, table = cl.load_case(written(tmp_path, driving(tmp_path, [move], "part"))).robots
     made = arm.trajectory
     turn = float(table.trajectory.positions[-1, 0])
     last = dict(zip(made.joint_names, map(float, made.positions[-1]), strict=True))
@@ -152,7 +148,7 @@ def test_a_robot_that_a_program_counts_on_is_given_no_other_motion(tmp_path, hol
         (tmp_path / "program.yaml").read_text()
     )
     program["moves"] += [{"lin": {"to": {"frame": "jig", "xyz": near(on)}}}]
-    path = saved(tmp_path, content)
+    path = written(tmp_path, content)
     with pytest.raises(cl.BadInput, match="program of robot 'arm' was followed with robot 'turn"):
         cl.load_case(path).with_trajectory(
             [0.0, 1.0], [[0.5], [0.7]], joint_names=["turn"], robot="turntable"
@@ -210,17 +206,17 @@ def test_a_work_object_that_a_mechanical_unit_moves_is_a_frame_on_it(tmp_path):
         {"circ": {"via": bulge, "to": place(to), "hold": {"turntable/turn": 0.7}, **more}},
     ]
     content = driving(tmp_path, moves)
-    ours = cl.load_case(saved(tmp_path, content)).robots
+    ours = cl.load_case(written(tmp_path, content)).robots
     (tmp_path / "weld.mod").write_text(rapid(turn, via, to))
     program = {"file": "weld.mod", "link": "tool_tip", "base": {"on": "base"}, "axes_as": "plain"}
     content["robots"][0]["trajectory"] = {"program": program}
     with pytest.raises(cl.ClearanceError, match="line 6: mechanical unit 'stn_1' moves the work"):
-        cl.load_case(saved(tmp_path, content))
+        cl.load_case(written(tmp_path, content))
     program["units"] = {"STN_1": {"on": "turntable/plate"}}
     with pytest.raises(cl.ClearanceError, match="line 6: external axis E1 moves, and no joint"):
-        cl.load_case(saved(tmp_path, content))
+        cl.load_case(written(tmp_path, content))
     program["axes"] = {"turntable/turn": {"axis": "E1"}}
-    assert_move_alike(cl.load_case(saved(tmp_path, content)).robots, ours)
+    assert_move_alike(cl.load_case(written(tmp_path, content)).robots, ours)
 
 
 @pytest.mark.slow
@@ -232,7 +228,7 @@ def test_a_base_of_krl_on_another_machine_is_a_frame_on_what_carries_it(tmp_path
     place = {"frame": "jig", "xyz": to, "quat_xyzw": quat}
     move = {"lin": {"to": place, "hold": {"turntable/turn": 0.6}, "speed": 0.1}}
     content = driving(tmp_path, [move])
-    ours = cl.load_case(saved(tmp_path, content)).robots
+    ours = cl.load_case(written(tmp_path, content)).robots
     axes = [f"A{i} {float(np.degrees(value))!r}" for i, value in enumerate(START.values(), 1)]
     x, y, z = (1e3 * np.array(to) - [100.0, 0.0, 20.0]).tolist()
     body = f"""BAS(#INITMOV,0)
@@ -251,9 +247,9 @@ LIN {{X {x!r}, Y {y!r}, Z {z!r}, {frame_angles(pose)}, E1 {float(np.degrees(0.6)
     program["axes"] = {"turntable/turn": {"axis": "E1"}}
     content["robots"][0]["trajectory"] = {"program": program}
     with pytest.raises(cl.ClearanceError, match="base 1 is on machine 2, which may move it"):
-        cl.load_case(saved(tmp_path, content))
+        cl.load_case(written(tmp_path, content))
     program["units"] = {"MACHINE_DEF[2]": {"on": "turntable/plate"}}
-    assert_move_alike(cl.load_case(saved(tmp_path, content)).robots, ours)
+    assert_move_alike(cl.load_case(written(tmp_path, content)).robots, ours)
 
 
 REFUSED = {
@@ -290,7 +286,7 @@ def test_what_a_program_may_not_move_is_refused(tmp_path, fault):
             table,
         ]
     with pytest.raises(cl.ClearanceError, match=REFUSED[fault]):
-        cl.load_case(saved(tmp_path, content))
+        cl.load_case(written(tmp_path, content))
 
 
 def test_names_with_a_slash_are_of_the_robot_that_has_them(tmp_path):
@@ -298,7 +294,7 @@ def test_names_with_a_slash_are_of_the_robot_that_has_them(tmp_path):
     (tmp_path / "table.urdf").write_text(TURNTABLE.read_text().replace('"turn"', '"axis/turn"'))
     content = driving(tmp_path, [lin(hold={"turntable/axis/turn": 0.6})])
     content["robots"][1] |= {"urdf": "table.urdf", "joints": {"axis/turn": 0.5}}
-    arm, table = cl.load_case(saved(tmp_path, content)).robots
+    arm, table = cl.load_case(written(tmp_path, content)).robots
     assert table.trajectory.joint_names == ("axis/turn",) and len(arm.trajectory.joint_names) == 6
     assert table.trajectory.positions[-1, 0] == pytest.approx(0.6)
 
@@ -307,4 +303,4 @@ def test_an_obstacle_that_carries_frames_or_bases_is_not_moved_by_a_gain(tmp_pat
     content = driving(tmp_path, [lin(hold={"turntable/turn": 0.6})])
     content["robots"][1]["base"] = {"on": "far", "xyz": [at - 5.0 for at in (2.0, 0.0, 0.0)]}
     with pytest.raises(cl.BadInput, match="kind obstacle changes its joints"):
-        cl.gain(saved(tmp_path, content), "obstacle", obstacle="far")
+        cl.gain(written(tmp_path, content), "obstacle", obstacle="far")

@@ -15,20 +15,21 @@ import yaml
 import clearance as cl
 from clearance.geometry.quaternions import quaternions_of
 from clearance.programs.carriage import Carriage, steps_of_joint, steps_of_poses
-from clearance.programs.motion import ProgramMotion, motion_of
-from clearance.programs.moves import JointMove, Move, Program, Wait
+from clearance.programs.motion import ProgramMotion
+from clearance.programs.moves import JointMove, Move, Wait
 from clearance.world.budget import Budget, ObstacleTolerance, PlacementTolerance
 from clearance.world.cubic import positions_along
 from clearance.world.kinematic_chain import ChainJoint
 from clearance.world.knots import knots_of
 from clearance.world.plausibility import notices_of
 from clearance.world.trajectory import Trajectory
-from tests.programs.arms import arm, turned
+from tests.made_cases import at
+from tests.programs.arms import START, arm, first_pose, shifted, turned
+from tests.programs.arms import motion as motion_of_arm
 from tests.programs.exact_arm import joints_for, links_at, turn, vector_of
 from tests.programs.test_moving_frames import (
     AXIS,
     BESIDE,
-    START,
     columns,
     line,
     plate_at,
@@ -44,6 +45,7 @@ from tests.programs.test_programs_in_cases import (
     beside_a_turntable,
     case,
     tool_at,
+    written,
 )
 from tests.programs.test_programs_in_cases import START as JOINTS
 from tests.receipt.receipts import saved
@@ -85,24 +87,8 @@ class Belt:
         return found
 
 
-def motion(
-    moves: list[Move], carriage: Carriage, name: str = "heron6", start: np.ndarray = START, **more
-) -> ProgramMotion:
-    one = arm(name)
-    joints = {joint.name: float(at) for joint, at in zip(one.joints, start, strict=True)}
-    program = Program(one.link, one.link_from_tool, tuple(moves), joints, **more)
-    return motion_of(one.robot, replace(program, carriages={carriage.name: carriage}))
-
-
-def first(name: str = "heron6", start: np.ndarray = START) -> np.ndarray:
-    return arm(name).poses(np.array([start]))[0]
-
-
-def shifted(pose: np.ndarray, way=(0.0, 0.0, 0.0), by=(0.0, 0.0, 0.0)) -> np.ndarray:
-    found = pose.copy()
-    found[:3, 3] += way
-    found[:3, :3] = turned(by) @ pose[:3, :3]
-    return found
+def motion(moves: list[Move], carriage: Carriage, *given, **more) -> ProgramMotion:
+    return motion_of_arm(moves, *given, carriages={carriage.name: carriage}, **more)
 
 
 def share_at(time: float, length: float, speed: float = 0.25) -> np.ndarray:
@@ -125,7 +111,7 @@ def test_between_samples_no_joint_is_farther_off_than_is_proven(name, seed):
     """A line or an arc, and a wait after it, on a belt that changes its speed at once at six knots."""
     draw, start = np.random.default_rng(seed), STARTS[name]
     belt = Belt.drawn(draw, [-0.3, 0.05, 0.21, 0.4, 0.62, 0.9, 1.3])
-    on_belt = np.linalg.inv(belt.at(0.0).astype(float)) @ first(name, start)
+    on_belt = np.linalg.inv(belt.at(0.0).astype(float)) @ first_pose(name, start)
     end = shifted(on_belt, (0.05, -0.04, 0.03), by=(0.1, 0.2, -0.1))
     via = 0.5 * (on_belt + end)[:3, 3] + [0.0, 0.0, 0.02] if seed % 2 else None
     moves = [line(end, "belt", via=via), Wait("WAIT", "moves", 0.2)]
@@ -159,7 +145,7 @@ def arc_length(start: np.ndarray, end: np.ndarray, via: np.ndarray | None) -> fl
 def test_no_path_through_a_corner_takes_a_link_farther_than_is_proven(name):
     draw, start = np.random.default_rng(4), STARTS[name]
     belt, one = Belt.drawn(draw, [-1.0, 0.3, 2.0]), arm(name)
-    on_belt = np.linalg.inv(belt.at(0.0).astype(float)) @ first(name, start)
+    on_belt = np.linalg.inv(belt.at(0.0).astype(float)) @ first_pose(name, start)
     corner, end = shifted(on_belt, (0.05, -0.02, 0.02)), shifted(on_belt, (0.05, 0.03, 0.06))
     end[:3, :3] = turned((0.1, 0.0, 0.1)) @ end[:3, :3]
     found = motion(
@@ -183,11 +169,11 @@ def test_no_path_through_a_corner_takes_a_link_farther_than_is_proven(name):
             wanted = belt.at(time) @ pose
             now = joints_for(one, (wanted[:3, :3], wanted[:3, 3]), now)
         nominal = links_at(one, positions_along(made, np.array([time]))[0])[0]
-        for link, (rotation, at) in links_at(one, now)[0].items():
+        for link, (rotation, place) in links_at(one, now)[0].items():
             if link not in zone.links:
                 continue
             off = zone.links[link]
-            assert np.linalg.norm((at - nominal[link][1]).astype(float)) <= off.way, link
+            assert np.linalg.norm((place - nominal[link][1]).astype(float)) <= off.way, link
             assert turn_between(rotation, nominal[link][0]) <= off.turn + 1e-12, link
     assert 1e-3 < zone.links[one.link].way < 0.05 and not made.unproven
 
@@ -203,7 +189,7 @@ def turntable(table: Trajectory) -> Carriage:
 
 @pytest.mark.parametrize("zone", [0.0, pytest.param(0.004, marks=pytest.mark.slow)])
 def test_a_turntable_with_its_own_table_is_followed_as_one_that_the_program_drives(zone):
-    on_plate = np.linalg.inv(plate_at(0.3).astype(float)) @ first()
+    on_plate = np.linalg.inv(plate_at(0.3).astype(float)) @ first_pose()
     ends = shifted(on_plate, (0.05, -0.04, 0.03)), shifted(on_plate, (0.0, -0.08, 0.03))
     driven = driven_motion(
         [line(ends[0], zone=zone, hold={"turn": 0.5}), line(ends[1], hold={"turn": 0.4})]
@@ -222,17 +208,17 @@ def test_a_turntable_with_its_own_table_is_followed_as_one_that_the_program_driv
 def test_what_stands_all_the_time_is_as_the_world():
     belt = Belt([-1.0, 50.0], np.array([[0.3, 0.2, 0.1]] * 2), np.zeros((1, 3)))
     ends = (
-        shifted(first(), (0.05, -0.04, 0.03)),
-        shifted(first(), (0.0, -0.08, 0.03), (0.1, 0.0, 0.2)),
+        shifted(first_pose(), (0.05, -0.04, 0.03)),
+        shifted(first_pose(), (0.0, -0.08, 0.03), (0.1, 0.0, 0.2)),
     )
     to_belt = np.linalg.inv(belt.at(0.0).astype(float))
     on_it = [line(to_belt @ ends[0], "belt", zone=0.004), line(to_belt @ ends[1], "belt")]
     on_it += [
         Wait("WAIT", "moves", 0.3),
-        JointMove("PTP", "moves", pose=to_belt @ first(), seen_from="belt"),
+        JointMove("PTP", "moves", pose=to_belt @ first_pose(), seen_from="belt"),
     ]
     world = [replace(one, pose=end, seen_from="") for one, end in zip(on_it, ends, strict=False)]
-    world += [on_it[2], replace(on_it[3], pose=first(), seen_from="")]
+    world += [on_it[2], replace(on_it[3], pose=first_pose(), seen_from="")]
     one, two = (motion(moves, belt.carriage) for moves in (on_it, world))
     a, b = one.trajectory, two.trajectory
     assert np.abs(a.times - b.times).max() < 1e-12
@@ -247,7 +233,7 @@ def test_a_joint_move_ends_where_its_target_is_when_it_arrives():
     belt = Belt(
         [0.0, 4.0], np.array([[0.0, 0.0, 0.0], [0.1, -0.4, 0.0]]), np.array([[0.0, 0.0, 0.4]])
     )
-    target = shifted(first(), (0.05, 0.1, 0.0), (0.1, 0.0, 0.2))
+    target = shifted(first_pose(), (0.05, 0.1, 0.0), (0.1, 0.0, 0.2))
     move = JointMove("PTP 1", "moves[0]", pose=target, seen_from="belt")
     found = motion([Wait("WAIT", "moves", 0.4), move, Wait("WAIT 3", "moves", 0.5)], belt.carriage)
     made = found.trajectory
@@ -273,8 +259,7 @@ def on_belt(folder: Path, moves: list, rows: str, **more) -> dict:
     path = case(folder, moves, frames={"jig": {"on": "belt", "xyz": TIP.tolist()}}, **more)
     (folder / "belt.csv").write_text(f"time,x,y,z,qx,qy,qz,qw\n{rows}")
     content = yaml.safe_load(path.read_text())
-    turn_back = np.eye(4)
-    turn_back[:3, :3] = tool_at(JOINTS)[:3, :3].T
+    turn_back = at(turned=tool_at(JOINTS)[:3, :3].T)
     content["scene"]["obstacles"] = [
         {"name": "belt", "box": {"size": [0.1] * 3}, "moves": "belt.csv"},
         {
@@ -298,11 +283,6 @@ def on_belt(folder: Path, moves: list, rows: str, **more) -> dict:
 MOVES = "0,0,0,0,0,0,0,1\n30,0,3.0,0,0,0,0,1\n"
 STANDS = "0,0,0,0,0,0,0,1\n10,0,0,0,0,0,0,1\n"
 """0.1 m/s to the left, and not at all."""
-
-
-def written(folder: Path, content: dict) -> Path:
-    (folder / "case.yaml").write_text(yaml.safe_dump(content))
-    return folder / "case.yaml"
 
 
 @pytest.mark.slow
@@ -510,7 +490,7 @@ def test_errors_of_what_is_followed_are_errors_of_the_joints():
     joint, off = ChainJoint(BESIDE, AXIS, True, 0, 1.0, 0.0), 1e-7
     carriage = Carriage("plate", tuple(steps_of_joint(joint, knots, 0, off)))
     on_plate = carriage.at(np.zeros(1)).poses[0]
-    on_plate = np.linalg.inv(on_plate) @ first()
+    on_plate = np.linalg.inv(on_plate) @ first_pose()
     made = motion([line(on_plate, "plate"), Wait("WAIT", "moves", 0.5)], carriage).trajectory
     worst = 0.0
     for time, own in zip(made.times[10:-10:9], made.positions[10:-10:9], strict=True):

@@ -11,24 +11,14 @@ import pytest
 import clearance as cl
 from clearance.programs.inverse import nearest_joints
 from clearance.programs.joint_way import joint_law, unknown_speeds
-from clearance.programs.motion import ProgramMotion, motion_of
+from clearance.programs.motion import ProgramMotion
 from clearance.programs.moves import JointMove, Move, PathMove, Program
 from clearance.programs.time_law import Limits
 from clearance.report.motion_file import motion_content
 from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
 from clearance.world.placed_robot import PlacedRobot
-from tests.programs.arms import arm, posture, turned
-
-START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
-
-
-def motion(
-    moves: list[Move], name: str = "heron6", start: tuple[float, ...] = START
-) -> ProgramMotion:
-    one = arm(name)
-    joints = {joint.name: float(at) for joint, at in zip(one.joints, start, strict=True)}
-    return motion_of(one.robot, Program(one.link, one.link_from_tool, tuple(moves), joints))
+from tests.programs.arms import START, arm, first_pose, motion, posture, shifted
 
 
 def tool(found: ProgramMotion, positions: np.ndarray, name: str = "heron6") -> np.ndarray:
@@ -37,17 +27,11 @@ def tool(found: ProgramMotion, positions: np.ndarray, name: str = "heron6") -> n
     return one.poses(np.atleast_2d(positions)[:, columns])
 
 
-def first_pose(name: str = "heron6", start: tuple[float, ...] = START) -> np.ndarray:
-    return arm(name).poses(np.array([start]))[0]
-
-
 def lines(pose: np.ndarray, ways: list, turn=(0.0, 0.0, 0.0), **more) -> list[Move]:
     """Lines one after another, all but the last with a zone."""
     found: list[Move] = []
     for i, way in enumerate(ways):
-        pose = pose.copy()
-        pose[:3, 3] += way
-        pose[:3, :3] = turned(turn) @ pose[:3, :3]
+        pose = shifted(pose, way, turn)
         zone = more.get("zone", 0.0) if i + 1 < len(ways) else 0.0
         found.append(
             PathMove(f"LIN {i + 1}", f"moves[{i}]", pose, zone=zone, hold=more.get("hold"))

@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.programs.motion import ProgramMotion, motion_of
-from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.programs.motion import ProgramMotion
+from clearance.programs.moves import JointMove, Move, PathMove
 from clearance.world.cubic import positions_along
 from clearance.world.robot import Joint, JointKind, Robot
-from tests.programs.arms import arm, turned
+from tests.made_cases import at
+from tests.programs.arms import START, arm, first_pose, shifted, turned
+from tests.programs.arms import motion as motion_of_arm
 from tests.programs.exact_arm import joints_for, links_at, tool_at, turn, vector_of
 from tests.programs.test_corner import circle
 
-START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
 AXIS = np.array([0.1, 0.2, 1.0]) / np.linalg.norm([0.1, 0.2, 1.0])
-BESIDE = np.eye(4)
-BESIDE[:3, :3], BESIDE[:3, 3] = turned((0.2, -0.1, 0.4)), (0.7, 0.1, 0.3)
+BESIDE = at(0.7, 0.1, 0.3, turned((0.2, -0.1, 0.4)))
 """Where the plate's joint is, seen from the robot's root."""
 
 
@@ -44,21 +44,11 @@ def plate_at(angle: float) -> np.ndarray:
 
 def on_plate(way=(0.0, 0.0, 0.0), angle: float = 0.3, by=(0.0, 0.0, 0.0)) -> np.ndarray:
     """(4, 4) where the tool begins, seen from the plate at an angle, and moved and turned from there."""
-    pose = np.linalg.inv(plate_at(angle).astype(float)) @ first()
-    pose[:3, 3] += way
-    pose[:3, :3] = turned(by) @ pose[:3, :3]
-    return pose
-
-
-def first() -> np.ndarray:
-    return arm("heron6").poses(np.array([START]))[0]
+    return shifted(np.linalg.inv(plate_at(angle).astype(float)) @ first_pose(), way, by)
 
 
 def motion(moves: list[Move], robot: Robot | None = None) -> ProgramMotion:
-    one = arm("heron6")
-    joints = {joint.name: at for joint, at in zip(one.joints, START, strict=True)} | {"turn": 0.3}
-    program = Program(one.link, one.link_from_tool, tuple(moves), joints)
-    return motion_of(robot or with_plate(), program)
+    return motion_of_arm(moves, robot=robot or with_plate(), beside={"turn": 0.3})
 
 
 def line(pose: np.ndarray, seen_from: str = "plate", **more) -> PathMove:
@@ -168,7 +158,10 @@ def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
     ("moves", "told"),
     [
         (
-            [line(on_plate((0.0, 0.05, 0.0)), zone=0.01), line(first(), "", hold={"turn": 0.4})],
+            [
+                line(on_plate((0.0, 0.05, 0.0)), zone=0.01),
+                line(first_pose(), "", hold={"turn": 0.4}),
+            ],
             "the next target is on what stands",
         ),
         (
@@ -182,7 +175,7 @@ def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
             [line(np.eye(4), "wrist_roll")],
             "2 joints are free .* a frame on what the arm does not move",
         ),
-        ([line(first(), "", free=("turn",))], "'turn' is not between the frame"),
+        ([line(first_pose(), "", free=("turn",))], "'turn' is not between the frame"),
         ([line(on_plate(), hold={"turn": 9.0})], "9 is beyond the limit of joint 'turn'"),
         ([line(on_plate((0.0, 3.0, 0.0)), hold={"turn": 0.4})], "seen from 'plate'"),
     ],
@@ -251,9 +244,9 @@ def test_a_plate_goes_on_turning_through_zones_beside_joint_moves():
 def links_of(joints: np.ndarray, angle: float) -> dict[str, np.ndarray]:
     """(4, 4) the poses of all links, in long double."""
     found = {"plate": plate_at(angle)}
-    for name, (rotation, at) in links_at(arm("heron6"), joints)[0].items():
+    for name, (rotation, place) in links_at(arm("heron6"), joints)[0].items():
         found[name] = np.eye(4, dtype=np.longdouble)
-        found[name][:3, :3], found[name][:3, 3] = rotation, at
+        found[name][:3, :3], found[name][:3, 3] = rotation, place
     return found
 
 

@@ -22,6 +22,7 @@ from clearance.simulate.measure.sections import section_plan
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
+from tests.made_cases import at
 from tests.programs.arms import FILES, arm, turned
 from tests.receipt.receipts import saved
 
@@ -54,6 +55,11 @@ def case(folder: Path, moves: list, obstacles: list = (), start: dict = START, *
         "scene": {"obstacles": list(obstacles)},
         "limits": {"fail": 0.0},
     }
+    return written(folder, content)
+
+
+def written(folder: Path, content: dict) -> Path:
+    """A case file of a content."""
     (folder / "case.yaml").write_text(yaml.safe_dump(content))
     return folder / "case.yaml"
 
@@ -142,15 +148,15 @@ def test_a_program_in_reverse_has_the_same_least_clearance(tmp_path):
 @pytest.mark.slow
 def test_a_program_that_moves_with_its_frame_and_the_scene_answers_the_same(tmp_path):
     draw = np.random.default_rng(1)
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turned(draw.uniform(-2.0, 2.0, 3)), draw.uniform(-3.0, 3.0, 3)
+    rotation = turned(draw.uniform(-2.0, 2.0, 3))
+    pose = at(*draw.uniform(-3.0, 3.0, 3), rotation)
     moves = [{"lin": {"to": one | {"frame": "jig"}, "zone": 0.004}} for one in turned_places()]
     del moves[-1]["lin"]["zone"]
     least = []
     for moved in (np.eye(4), pose):
         frames = {"jig": {"on": "world"} | as_yaml(moved @ at_base())}
         post = ball(tool_at(START)[:3, 3] + [0.0, 0.25, -0.1], 0.05)
-        post["pose"] = as_yaml(moved @ at(np.array(post["pose"]["xyz"])))
+        post["pose"] = as_yaml(moved @ at(*post["pose"]["xyz"]))
         path = case(tmp_path, moves, [post], frames=frames)
         content = yaml.safe_load(path.read_text())
         content["robot"]["base"] = as_yaml(moved @ at_base())
@@ -168,16 +174,9 @@ def as_yaml(pose: np.ndarray) -> dict:
     return {"xyz": pose[:3, 3].tolist(), "quat_xyzw": quat.tolist()}
 
 
-def at(place: np.ndarray) -> np.ndarray:
-    """(4, 4) a pose that is not turned."""
-    pose = np.eye(4)
-    pose[:3, 3] = place
-    return pose
-
-
 def at_base() -> np.ndarray:
     """(4, 4) where the robot stands."""
-    return at(np.array(BASE))
+    return at(*BASE)
 
 
 def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
@@ -194,11 +193,11 @@ def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
 def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
     start = tool_at(START)[:3, 3]
     corner, end = start + [0.0, 0.15, 0.0], start + [0.0, 0.15, -0.15]
-    at = start + [0.0, 0.21, 0.0]
+    beside = start + [0.0, 0.21, 0.0]
     least = []
     for zone in (0.0, 0.01):
         moves = [{"lin": {"to": place(corner), "zone": zone}}, {"lin": {"to": place(end)}}]
-        path = case(tmp_path, moves, [ball(at)])
+        path = case(tmp_path, moves, [ball(beside)])
         record = cl.check(path).record
         told = certified_text(certified_of(record, record.certificate))
         assert ("corner zones" in told) == (zone > 0.0)
@@ -210,8 +209,7 @@ def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
 
 def test_another_tool_is_what_the_next_line_is_of(tmp_path):
     tip = tool_at(START)
-    other = np.eye(4)
-    other[:3, 3] = 0.05, 0.0, 0.1
+    other = at(0.05, 0.0, 0.1)
     there, back = tip @ other, (tip @ other)[:3, :3] @ rotation_about_z(0.3)
     to = {**place(there[:3, 3]), "quat_xyzw": quaternions_of(back[None])[0].tolist()}
     moves = [
@@ -349,8 +347,8 @@ def test_what_cannot_be_done_is_refused_in_one_line(tmp_path, fault):
     _, middle, end = line_and_arc_of_joints()
     moves, told = FAULTS[fault]
     text = yaml.safe_dump(moves)
-    for name, at in (("middle", middle), ("end", end)):
-        text = text.replace(f"xyz: {name}", f"xyz: {[float(value) for value in at]}")
+    for name, point in (("middle", middle), ("end", end)):
+        text = text.replace(f"xyz: {name}", f"xyz: {[float(value) for value in point]}")
     with pytest.raises(cl.ClearanceError) as caught:
         cl.load_case(case(tmp_path, yaml.safe_load(text), [far()]))
     assert (
@@ -495,8 +493,7 @@ def beside_a_turntable(folder: Path, moves: list, rows: str = "", **more) -> Pat
     part = {"name": "part", "box": {"size": [0.1, 0.1, 0.1]}, "on": "turntable/plate"}
     content["robots"] = [arm_of, table]
     content["scene"]["obstacles"].append(part | {"pose": {"xyz": [0.1, 0.0, 0.3]}})
-    (folder / "case.yaml").write_text(yaml.safe_dump(content))
-    return folder / "case.yaml"
+    return written(folder, content)
 
 
 @pytest.mark.parametrize("base", [{}, {"on": "far", "xyz": [-3.0, -5.0, -5.0]}])

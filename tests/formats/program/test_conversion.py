@@ -23,18 +23,13 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import pose_from_rpy
 from clearance.world.robot import Joint, JointKind
+from tests.made_cases import at
 from tests.programs.arms import arm
 
 QUARTER = math.pi / 2
 AXES = AxisTarget((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), name="home")
 HOME = ControllerMove(Line(3), "ptp", AXES, np.eye(4), share=0.5)
 POSE = replace(HOME, to=PoseTarget(pose_from_rpy([0.5, 0.0, 0.3], [0.0, 0.0, 0.0])))
-
-
-def at(x: float, y: float, z: float) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
 
 
 def made(*moves, start=(), robot=None, **asked):
