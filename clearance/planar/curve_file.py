@@ -49,7 +49,9 @@ def read_curve(path: str | PathLike[str]) -> Curve:
         return read_dxf(path)
     if suffix not in (".yaml", ".yml"):
         raise BadSyntax(
-            f"no file of curves, by its suffix {suffix or '(none)'}", where=str(path), valid=".dxf, .yaml or .yml"
+            f"no file of curves, by its suffix {suffix or '(none)'}",
+            where=str(path),
+            valid=".dxf, .yaml or .yml",
         )
     with at(str(path)):
         return curve_of_document(yaml_file(Path(path), "a DXF or YAML file of curves"))
