@@ -6,7 +6,7 @@ Not for: measuring (`measuring`), and rows on disk (`store`).
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, get_args, get_type_hints
 
 import numpy as np
@@ -54,45 +54,50 @@ DOUBT = pa.struct([("kind", pa.string()), ("about", pa.string()), ("text", pa.st
 MOST_FINDINGS = 200
 """Of one case, the worst."""
 
-VERDICT = pa.schema(
-    [
-        ("status", pa.string()),
-        ("exit_code", pa.int8()),
-        ("text", pa.string()),
-        ("shade", pa.string()),
-        ("measured", pa.string()),
-        ("basis", pa.string()),
-        ("need", pa.string()),
-        ("clearance", pa.float64()),
-        ("penetration", pa.float64()),
-        ("lower_bound", pa.float64()),
-        ("proven", pa.float64()),
-        ("expected", pa.float64()),
-        ("time", pa.float64()),
-        ("step", pa.int64()),
-        ("body_a", pa.string()),
-        ("body_b", pa.string()),
-        ("rule", pa.string()),
-        ("fail", pa.float64()),
-        ("warn", pa.float64()),
-        ("n_steps", pa.int64()),
-        ("start", pa.float64()),
-        ("end", pa.float64()),
-        ("reasons", _TEXTS),
-        ("warnings", _TEXTS),
-        ("scope", _TEXTS),
-        ("reservations", _TEXTS),
-        ("waived", _TEXTS),
-        ("waivers", _TEXTS),
-        ("curve", pa.list_(pa.float32())),
-        ("n_findings", pa.int64()),
-        ("incomplete", pa.string()),
-        ("conditions", pa.string()),
-        ("doubts", pa.list_(DOUBT)),
-        ("findings", pa.list_(pa.struct(FINDING))),
-    ]
+_ROW: tuple[tuple[str, pa.DataType, Callable[[Run], Any]], ...] = (
+    ("status", pa.string(), lambda run: run.verdict.status),
+    ("exit_code", pa.int8(), lambda run: run.verdict.exit_code),
+    ("text", pa.string(), lambda run: run.verdict.headline()),
+    ("shade", pa.string(), lambda run: run.verdict.shade),
+    ("measured", pa.string(), lambda run: run.verdict.measured),
+    ("basis", pa.string(), lambda run: run.verdict.basis),
+    ("need", pa.string(), lambda run: run.record.need),
+    ("clearance", pa.float64(), lambda run: run.verdict.worst.clearance),
+    (
+        "penetration",
+        pa.float64(),
+        lambda run: getattr(run.verdict.worst.depth, "penetration", None),
+    ),
+    ("lower_bound", pa.float64(), lambda run: _certified(run.record)),
+    ("proven", pa.float64(), lambda run: _proven(run.record)),
+    ("expected", pa.float64(), lambda run: _expected(run.record)),
+    ("time", pa.float64(), lambda run: run.verdict.worst.time),
+    ("step", pa.int64(), lambda run: run.verdict.worst.step),
+    ("body_a", pa.string(), lambda run: run.verdict.worst.link),
+    ("body_b", pa.string(), lambda run: run.verdict.worst.obstacle),
+    ("rule", pa.string(), lambda run: run.verdict.worst.rule),
+    ("fail", pa.float64(), lambda run: run.record.rule(run.verdict.worst.rule).limits.fail),
+    ("warn", pa.float64(), lambda run: run.record.rule(run.verdict.worst.rule).limits.warn),
+    ("n_steps", pa.int64(), lambda run: len(run.record.motions[0].times)),
+    ("start", pa.float64(), lambda run: float(run.record.motions[0].times[0])),
+    ("end", pa.float64(), lambda run: float(run.record.motions[0].times[-1])),
+    ("reasons", _TEXTS, lambda run: list(run.verdict.reasons)),
+    ("warnings", _TEXTS, lambda run: list(run.verdict.warnings)),
+    ("scope", _TEXTS, lambda run: list(run.verdict.scope)),
+    ("reservations", _TEXTS, lambda run: list(run.verdict.reservations)),
+    ("waived", _TEXTS, lambda run: list(run.verdict.waived)),
+    ("waivers", _TEXTS, lambda run: _needed(run)),
+    ("curve", pa.list_(pa.float32()), lambda run: curve_of(run.record).tolist()),
+    ("n_findings", pa.int64(), lambda run: len(run.findings)),
+    ("incomplete", pa.string(), lambda run: _incomplete(run, len(run.findings))),
+    ("conditions", pa.string(), lambda run: conditions_text(conditions_of(run.record))),
+    ("doubts", pa.list_(DOUBT), lambda run: _doubts(run)),
+    ("findings", pa.list_(pa.struct(FINDING)), lambda run: _findings(run)),
 )
-"""Columns that follow from the case; the guide explains them."""
+"""Columns that follow from the case, and each of a run; the guide explains them."""
+
+VERDICT = pa.schema([(name, kind) for name, kind, _ in _ROW])
+"""Their names and types."""
 
 TABLE = pa.schema([("case", pa.string()), ("key", pa.string()), *VERDICT])
 """Columns of a case: its name, its key, and what follows from it."""
@@ -100,57 +105,19 @@ TABLE = pa.schema([("case", pa.string()), ("key", pa.string()), *VERDICT])
 
 def row_of(run: Run) -> dict[str, Any]:
     """The columns of `VERDICT` for a run."""
-    record, verdict = run.record, run.verdict
-    worst, times = verdict.worst, record.motions[0].times
+    return {name: of(run) for name, _, of in _ROW}
+
+
+def _certified(record: Record) -> float | None:
+    """[m] The least clearance that is proven of the motion, without tolerances."""
     certificate = record.certificate
-    limits, findings = record.rule(worst.rule).limits, run.findings
-    return {
-        "status": verdict.status,
-        "exit_code": verdict.exit_code,
-        "text": verdict.headline(),
-        "shade": verdict.shade,
-        "measured": verdict.measured,
-        "basis": verdict.basis,
-        "need": record.need,
-        "clearance": worst.clearance,
-        "penetration": None if worst.depth is None else worst.depth.penetration,
-        "lower_bound": None if certificate is None else float(certificate.lower_bound.min()),
-        "proven": _proven(record),
-        "expected": _expected(record),
-        "time": worst.time,
-        "step": worst.step,
-        "body_a": worst.link,
-        "body_b": worst.obstacle,
-        "rule": worst.rule,
-        "fail": limits.fail,
-        "warn": limits.warn,
-        "n_steps": len(times),
-        "start": float(times[0]),
-        "end": float(times[-1]),
-        "reasons": list(verdict.reasons),
-        "warnings": list(verdict.warnings),
-        "scope": list(verdict.scope),
-        "reservations": list(verdict.reservations),
-        "waived": list(verdict.waived),
-        "waivers": _needed(run),
-        "curve": curve_of(record).tolist(),
-        "n_findings": len(findings),
-        "incomplete": _incomplete(run, len(findings)),
-        "conditions": conditions_text(conditions_of(record)),
-        "doubts": [
-            {"kind": one.kind, "about": one.about, "text": one.text}
-            for one in doubts_of(record, run.judgement)
-        ],
-        "findings": [_finding_row(finding) for finding in findings[:MOST_FINDINGS]],
-    }
+    return None if certificate is None else float(certificate.lower_bound.min())
 
 
 def _proven(record: Record) -> float | None:
     """[m] The least clearance that is proven of the motion, with the tolerances that the case has."""
-    if record.certificate is None:
-        return None
-    if record.case.tolerance is None:
-        return float(record.certificate.lower_bound.min())
+    if record.certificate is None or record.case.tolerance is None:
+        return _certified(record)
     return min((one.least for one in record.budget or ()), default=None)
 
 
@@ -173,6 +140,17 @@ def _incomplete(run: Run, n_findings: int) -> str:
     n_left = max(0, n_findings - MOST_FINDINGS)
     unlisted = f"{n_left:,} of {n_findings:,} findings are not listed" if n_left else ""
     return why_incomplete(run.session) or unlisted
+
+
+def _doubts(run: Run) -> list[dict[str, Any]]:
+    return [
+        {"kind": one.kind, "about": one.about, "text": one.text}
+        for one in doubts_of(run.record, run.judgement)
+    ]
+
+
+def _findings(run: Run) -> list[dict[str, Any]]:
+    return [_finding_row(finding) for finding in run.findings[:MOST_FINDINGS]]
 
 
 def _finding_row(finding: Finding) -> dict[str, Any]:
