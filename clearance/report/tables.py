@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from clearance.budget.columns import with_proven_between
 from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget
@@ -102,71 +102,60 @@ def pair_batches(record: Record, measured: MeasuredRows = IN_MEMORY) -> Iterator
 
 BUDGET = "budget.csv"
 
-BUDGET_COLUMNS = {
-    "rule": "string",
-    "step": "int64",
-    "time": "float64",
-    "between": "bool",
-    "body_a": "string",
-    "body_b": "string",
-    "clearance": "float64",
-    "proven": "float64",
-    "expected": "float64",
-    "owner": "string",
-    "kind": "string",
-    "part": "string",
-    "moment": "string",
-    "tolerance": "float64",
-    "unit": "string",
-    "second_tolerance": "float64",
-    "second_unit": "string",
-    "takes": "float64",
-    "deviation": "float64",
-    "at_most": "float64",
-    "second_at_most": "float64",
-}
-"""Types in pyarrow. A frame has two tolerances, an offset [m] and an angle [rad]; all else has one."""
+
+class _Taken(NamedTuple):
+    """What one error takes of a moment of a rule; a frame has two tolerances, [m] and [rad], all else has one."""
+
+    rule: RuleBudget
+    at: BudgetMoment
+    source: ErrorSource
+
+    @property
+    def second(self) -> tuple[float | None, str | None]:
+        """The second tolerance with its unit, if it has one."""
+        return self.source.tolerances[1] if len(self.source.tolerances) > 1 else (None, None)
+
+    @property
+    def largest(self) -> tuple[float | None, ...]:
+        """As `ErrorSource.largest`, None where not asked for."""
+        return (*self.source.largest, None, None)
+
+
+_BUDGET_COLUMNS: tuple[tuple[str, str, Callable[[_Taken], Any]], ...] = (
+    ("rule", "string", lambda row: row.rule.rule),
+    ("step", "int64", lambda row: row.at.moment.step),
+    ("time", "float64", lambda row: row.at.moment.time),
+    ("between", "bool", lambda row: row.at.moment.between),
+    ("body_a", "string", lambda row: row.at.moment.link),
+    ("body_b", "string", lambda row: row.at.moment.obstacle),
+    ("clearance", "float64", lambda row: row.at.moment.clearance),
+    ("proven", "float64", lambda row: row.at.proven),
+    ("expected", "float64", lambda row: row.at.expected),
+    ("owner", "string", lambda row: row.source.owner),
+    ("kind", "string", lambda row: row.source.kind),
+    ("part", "string", lambda row: row.source.part),
+    ("moment", "string", lambda row: row.source.moment),
+    ("tolerance", "float64", lambda row: row.source.tolerances[0][0]),
+    ("unit", "string", lambda row: row.source.tolerances[0][1]),
+    ("second_tolerance", "float64", lambda row: row.second[0]),
+    ("second_unit", "string", lambda row: row.second[1]),
+    ("takes", "float64", lambda row: row.source.proven),
+    ("deviation", "float64", lambda row: row.source.expected),
+    ("at_most", "float64", lambda row: row.largest[0]),
+    ("second_at_most", "float64", lambda row: row.largest[1]),
+)
+"""Names, types in pyarrow, and what stands in each row."""
 
 
 def budget_table(least_left: Mapping[RuleBudget, Sequence[BudgetMoment]]) -> pa.Table:
     """The table of a run with tolerances; `least_left` as in `ReportModel`."""
-    rows = [row for one, moments in least_left.items() for at in moments for row in _rows(one, at)]
-    schema = [(name, pa.type_for_alias(kind)) for name, kind in BUDGET_COLUMNS.items()]
-    return pa.Table.from_pylist(rows, schema=pa.schema(schema))
-
-
-def _rows(one: RuleBudget, worst: BudgetMoment) -> Iterator[dict[str, Any]]:
-    moment = worst.moment
-    head = {
-        "rule": one.rule,
-        "step": moment.step,
-        "time": moment.time,
-        "between": moment.between,
-        "body_a": moment.link,
-        "body_b": moment.obstacle,
-        "clearance": moment.clearance,
-        "proven": worst.proven,
-        "expected": worst.expected,
+    rows = [
+        _Taken(one, at, source)
+        for one, moments in least_left.items()
+        for at in moments
+        for source in at.sources
+    ]
+    columns = {
+        name: pa.array(map(of, rows), pa.type_for_alias(kind)) for name, kind, of in _BUDGET_COLUMNS
     }
-    for source in worst.sources:
-        yield head | _of_source(source)
-
-
-def _of_source(source: ErrorSource) -> dict[str, Any]:
-    (first, unit), *others = source.tolerances
-    second, second_unit = others[0] if others else (None, None)
-    largest = (*source.largest, None, None)
-    return {
-        "owner": source.owner,
-        "kind": source.kind,
-        "part": source.part,
-        "moment": source.moment,
-        "tolerance": first,
-        "unit": unit,
-        "second_tolerance": second,
-        "second_unit": second_unit,
-        "takes": source.proven,
-        "deviation": source.expected,
-        "at_most": largest[0],
-        "second_at_most": largest[1],
-    }
+    return pa.table(columns)
