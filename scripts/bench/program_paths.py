@@ -241,45 +241,32 @@ class Motion:
         return Poses(turn, origin)
 
 
-def random_motions_on(
-    carriers: type[Plate] | type[Belt], file: ArmFile, n: int
+def random_motions(
+    file: ArmFile, n: int, carriers: type[Plate] | type[Belt] | None = None
 ) -> Iterator[Motion]:
-    """Random lines and arcs on plates or belts that move meanwhile, in turns, that the arm can follow."""
-    draw, found = np.random.default_rng(1), 0
+    """Random lines, arcs, and lines with a corner zone between, in turns, that the arm can follow; on plates or
+    belts that move meanwhile no zones.
+    """
+    draw, found = np.random.default_rng(0 if carriers is None else 1), 0
     robot, own = cl.load_robot(file.path), OwnArm.read(file.path, file.link, TOOL)
+    kinds = KINDS if carriers is None else KINDS[:2]
     while found < n:
         start = np.array(file.posture)[: len(own.joints)] + draw.uniform(-0.2, 0.2, len(own.joints))
-        turn, origin = own.poses(start[None].astype(LONG))
-        carrier = carriers.drawn(draw)
-        legs, (move,) = drawn(KINDS[found % 2], carrier.seen((turn[0], origin[0])), draw)
-        at = {joint.name: float(at) for joint, at in zip(own.joints, start, strict=True)}
-        try:
-            assert isinstance(move, PathMove)
-            made = carrier.followed(robot, file.link, move, at)
-        except cl.ClearanceError:
-            continue
-        found += 1
-        columns = [made.joint_names.index(joint.name) for joint in own.joints]
-        yield Motion(own, made.of_columns(columns), legs, carrier)
-
-
-def random_motions(file: ArmFile, n: int, seed: int = 0) -> Iterator[tuple[str, Motion]]:
-    """Random lines, arcs, and lines with a corner zone between, in turns, that the arm can follow."""
-    draw, found = np.random.default_rng(seed), 0
-    robot, own = cl.load_robot(file.path), OwnArm.read(file.path, file.link, TOOL)
-    while found < n:
-        kind = KINDS[found % len(KINDS)]
-        start = np.array(file.posture)[: len(own.joints)] + draw.uniform(-0.2, 0.2, len(own.joints))
-        turn, origin = own.poses(start[None].astype(LONG))
-        legs, moves = drawn(kind, (turn[0], origin[0]), draw)
+        (turn,), (origin,) = own.poses(start[None].astype(LONG))
+        carrier = None if carriers is None else carriers.drawn(draw)
+        begin = (turn, origin) if carrier is None else carrier.seen((turn, origin))
+        legs, moves = drawn(kinds[found % len(kinds)], begin, draw)
         joints = {joint.name: float(at) for joint, at in zip(own.joints, start, strict=True)}
         try:
-            made = motion_of(robot, Program(file.link, TOOL, moves, joints)).trajectory
+            if carrier is None:
+                made = motion_of(robot, Program(file.link, TOOL, moves, joints)).trajectory
+            else:
+                made = carrier.followed(robot, file.link, moves[0], joints)
         except cl.ClearanceError:
             continue
         found += 1
         columns = [made.joint_names.index(joint.name) for joint in own.joints]
-        yield kind, Motion(own, made.of_columns(columns), with_corner(legs, made))
+        yield Motion(own, made.of_columns(columns), with_corner(legs, made), carrier)
 
 
 Pose = tuple[np.ndarray, np.ndarray]

@@ -21,7 +21,7 @@ import yaml
 from harness import Row, least_time
 from program_arms import LONG, ArmFile, OwnArm, arm_files
 from program_corners import zones
-from program_paths import TOOL, Belt, Motion, Plate, random_motions, random_motions_on
+from program_paths import TOOL, Belt, Motion, Plate, random_motions
 
 import clearance as cl
 from clearance.world.cubic import positions_along
@@ -53,19 +53,19 @@ def main(words: list[str] | None = None) -> list[Row]:
 def enclosure(asked) -> Iterator[Row]:
     """Of each arm: samples between samples at which a joint is farther off than proven, and how tight that is."""
     for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, (motion for _, motion in random_motions(file, asked.motions)), asked)
+        yield enclosed(name, random_motions(file, asked.motions), asked)
 
 
 def turning(asked) -> Iterator[Row]:
     """The same for lines and arcs on a plate that turns meanwhile."""
     for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, random_motions_on(Plate, file, asked.motions), asked)
+        yield enclosed(name, random_motions(file, asked.motions, Plate), asked)
 
 
 def conveyor(asked) -> Iterator[Row]:
     """The same for lines and arcs on a belt that moves by a table of its own."""
     for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, random_motions_on(Belt, file, asked.motions), asked)
+        yield enclosed(name, random_motions(file, asked.motions, Belt), asked)
 
 
 def enclosed(name: str, motions: Iterator[Motion], asked) -> Row:
@@ -111,7 +111,7 @@ def peers(asked) -> Iterator[Row]:
     for name, file in arm_files(asked.arms).items():
         for library, pose_of in (("yourdfpy", yourdfpy_poses), ("pinocchio", pinocchio_poses)):
             ways, turns, steps = [0.0], [0.0], 0
-            for _, motion in random_motions(file, min(asked.motions, 6)):
+            for motion in random_motions(file, min(asked.motions, 6)):
                 found = pose_of(file, motion.trajectory)
                 if found is None:
                     break
