@@ -64,21 +64,19 @@ class Effects:
         self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()
     ) -> Iterator[Culprit]:
         """What in a body moves the robot, leaves the body, or may do so."""
-        for one in within(body):
-            leaves = isinstance(one, Leave) and one.what != STOP and not entered
+        for one, around in self._reached([body], entered):
+            leaves = isinstance(one, Leave) and one.what != STOP and not around
             if leaves or (isinstance(one, Unreadable) and not self.leaves_out(one)):
                 yield Culprit(f"{one.word} at {one.line}")  # type: ignore[union-attr]
             for call in _calls_of(one):
-                if call.name in self.skip or call.name in entered:
-                    continue
-                if call.name in self.routines:
-                    inner = self.routines[call.name].body
-                    yield from self.deciding(inner, (*entered, call.name))
-                elif culprit := self._culprit(call, one.line, entered):
+                if culprit := self._culprit(call, one.line, around):
                     yield culprit
 
     def _culprit(self, call: Call, line: Line, entered: tuple[str, ...]) -> Culprit | None:
-        """An instruction that may move the robot, by what it has run beside the program too; None if not."""
+        """An instruction that may move the robot, by what it has run beside the program too; None if not, and of
+        what a file has or is left out."""
+        if call.name in self.routines or call.name in self.skip:
+            return None
         text = f"{call.name} at {line}"
         if name := self.language.beside(call):
             found = None if name in entered else self.culprit_in(name, entered)
@@ -94,14 +92,12 @@ class Effects:
 
     def moving(self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()) -> Iterator[Call]:
         """The calls in a body that move the robot or change how it moves, or may do so."""
-        for call in self._calls_in(body, entered):
-            own = call.name in self.routines or call.name in self.skip
-            if not own and self._culprit(call, call.line, entered):
-                yield call
+        for one, around in self._reached([body], entered):
+            yield from (call for call in _calls_of(one) if self._culprit(call, call.line, around))
 
     def timing(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[tuple[str, str]]:
         """A remark, and where, on what in bodies takes a time, is left out whatever it takes, or sets speeds."""
-        for one in (one for body in bodies for one in self._run_in(body)):
+        for one, _ in self._reached(bodies):
             if isinstance(one, While):
                 yield WAITS, f"{one.word} ({one.line})"
             for call in _calls_of(one):
@@ -110,29 +106,32 @@ class Effects:
                 elif call.name in self.language.retiming:
                     yield UNSAID, f"{call.name} ({call.line})"
 
-    def _run_in(
-        self, body: tuple[Statement, ...], entered: tuple[str, ...] = ()
-    ) -> Iterator[Statement]:
-        """The statements that a body may run, in routines that it calls and that are not left out too."""
-        for one in within(body):
-            yield one
+    def _reached(
+        self,
+        bodies: Iterable[tuple[Statement, ...]],
+        entered: tuple[str, ...] = (),
+        *,
+        left_out: bool = False,
+    ) -> Iterator[tuple[Statement, tuple[str, ...]]]:
+        """The statements that bodies may run, with the names of the routines around them.
+
+        Args:
+            left_out: also those of routines that are left out.
+        """
+        for one in (one for body in bodies for one in within(body)):
+            yield one, entered
             for name in (call.name for call in _calls_of(one)):
-                if name in self.routines and name not in self.skip and name not in entered:
-                    yield from self._run_in(self.routines[name].body, (*entered, name))
+                may_run = name not in entered and (left_out or name not in self.skip)
+                if may_run and name in self.routines:
+                    inner, around = self.routines[name].body, (*entered, name)
+                    yield from self._reached([inner], around, left_out=left_out)
 
-    def _calls_in(self, body: tuple[Statement, ...], entered: tuple[str, ...]) -> Iterator[Call]:
-        return (call for one in self._run_in(body, entered) for call in _calls_of(one))
-
-    def beside_in(
-        self, bodies: Iterable[tuple[Statement, ...]], entered: tuple[str, ...] = ()
-    ) -> Iterator[tuple[str, str]]:
+    def beside_in(self, bodies: Iterable[tuple[Statement, ...]]) -> Iterator[tuple[str, str]]:
         """What in bodies has a routine run beside the program, and that one's name; in what is left out too."""
-        ones = (one for body in bodies for one in within(body))
-        for name, call in ((call.name, call) for one in ones for call in _calls_of(one)):
-            if other := self.language.beside(call):
-                yield name, other
-            elif name in self.routines and name not in entered:
-                yield from self.beside_in([self.routines[name].body], (*entered, name))
+        for one, _ in self._reached(bodies, left_out=True):
+            for call in _calls_of(one):
+                if other := self.language.beside(call):
+                    yield call.name, other
 
     def require_left_out(self) -> None:
         """Nothing, if what is left out moves nothing.
@@ -206,17 +205,15 @@ class Effects:
 
     def calls_of(self, name: str) -> Iterator[Call]:
         """The calls in a routine, and in those that it calls."""
-        return self._calls_in(self.routines[name].body if name in self.routines else (), (name,))
+        body = self.routines[name].body if name in self.routines else ()
+        return (call for one, _ in self._reached([body], (name,)) for call in _calls_of(one))
 
-    def read_by(self, parts: Iterable[Expression], entered: tuple[str, ...] = ()) -> Iterator[str]:
+    def read_by(self, parts: Iterable[Expression]) -> Iterator[str]:
         """The variables that expressions may read, in routines that they call too."""
-        for part in parts:
-            yield from names_in(part)
-            for name in (call.name for call in calls_in(part)):
-                if name in self.routines and name not in entered:
-                    inner = within(self.routines[name].body)
-                    own = (expression for one in inner for expression in expressions_of(one))
-                    yield from self.read_by(own, (*entered, name))
+        whole = Do(Line(0), Call("", tuple(parts), {}, Line(0)))
+        for one, _ in self._reached([(whole,)], left_out=True):
+            for part in expressions_of(one):
+                yield from names_in(part)
 
     def changed_concurrently(self, what: str, name: str) -> dict[str, Unknown]:
         """The variables that a routine which runs beside the program may change at any time."""
