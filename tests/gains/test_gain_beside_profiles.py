@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import pytest
 
 import clearance as cl
@@ -22,19 +24,26 @@ PROFILES = "profiles: [{name: lane, plane: xy, sketch: lane.yaml, mode: outside}
 STILL_CLEAR = SLOT.replace("0.04, warn: 0.04", "0.01, warn: 0.01")
 
 
-def found_for(tmp_path, low: float, high: float, text: str = SLOT) -> Gain:
-    """The gain of the bar in the slot, which has to move by 20 mm towards y = 0."""
-    (tmp_path / "lane.yaml").write_text(ZONE.format(low=low, high=high))
-    return cl.gain(write_cell(tmp_path, text + PROFILES), "base")
+@pytest.fixture(scope="module")
+def found_for(tmp_path_factory):
+    """The gain of the bar in the slot, which has to move by 20 mm towards y = 0; each is worked out once."""
+
+    @cache
+    def found(low: float, high: float, text: str = SLOT) -> Gain:
+        folder = tmp_path_factory.mktemp("cell")
+        (folder / "lane.yaml").write_text(ZONE.format(low=low, high=high))
+        return cl.gain(write_cell(folder, text + PROFILES), "base")
+
+    return found
 
 
 def told(gain: Gain, *labels: str) -> list[Line]:
     return [(label, line) for label, line in lines_of(gain) if label in labels]
 
 
-def test_a_profile_that_the_change_breaks_is_named(tmp_path):
+def test_a_profile_that_the_change_breaks_is_named(found_for):
     """The bar sweeps y from -20 to 80 mm before, and from -40 to 60 mm after."""
-    found = found_for(tmp_path, -0.03, 0.09)
+    found = found_for(-0.03, 0.09)
     not_kept, because, proven = told(found, "kept", "not kept", "because", "proven")
     assert not_kept == ("not kept", "the changed case is not passed: violated")
     assert because[0] == "because"
@@ -42,8 +51,8 @@ def test_a_profile_that_the_change_breaks_is_named(tmp_path):
     assert proven == ("proven", "every clearance holds at every moment")
 
 
-def test_a_change_whose_case_is_not_passed_is_not_kept(tmp_path):
-    found = found_for(tmp_path, -0.03, 0.09)
+def test_a_change_whose_case_is_not_passed_is_not_kept(found_for):
+    found = found_for(-0.03, 0.09)
     assert found.clearances_kept and not found.kept and "not kept" in repr(found)
     figures = figures_of(found)
     assert figures["kept"] is False and figures["clearances_kept"] is True
@@ -56,16 +65,16 @@ def test_a_change_whose_case_is_not_passed_is_not_kept(tmp_path):
     assert row.endswith("; the changed case is not passed: violated")
 
 
-def test_nothing_is_said_of_a_profile_that_is_kept(tmp_path):
-    found = found_for(tmp_path, -0.09, 0.09)
+def test_nothing_is_said_of_a_profile_that_is_kept(found_for):
+    found = found_for(-0.09, 0.09)
     assert found.kept and figures_of(found)["kept"] is True
     assert told(found, "not kept", "because", "proven") == [
         ("proven", "every rule holds at every moment")
     ]
 
 
-def test_a_profile_that_is_not_kept_is_named_where_nothing_had_to_be_changed(tmp_path):
-    found = found_for(tmp_path, -0.01, 0.09, STILL_CLEAR)
+def test_a_profile_that_is_not_kept_is_named_where_nothing_had_to_be_changed(found_for):
+    found = found_for(-0.01, 0.09, STILL_CLEAR)
     assert found.size == 0.0 and not found.kept
     not_kept, because, proven = told(found, "kept", "not kept", "because", "proven")
     assert not_kept == ("not kept", "the case is not passed: violated")
@@ -80,13 +89,13 @@ def test_a_profile_that_is_not_kept_is_named_where_nothing_had_to_be_changed(tmp
 @pytest.mark.parametrize(
     ("low", "text", "label"), [(-0.03, SLOT, "after"), (-0.01, STILL_CLEAR, "before")]
 )
-def test_a_clearance_that_is_kept_is_not_called_violated(tmp_path, low, text, label):
-    ((_, line),) = told(found_for(tmp_path, low, 0.09, text), label)
+def test_a_clearance_that_is_kept_is_not_called_violated(found_for, low, text, label):
+    ((_, line),) = told(found_for(low, 0.09, text), label)
     assert line.endswith(" mm: clear, but the case is violated")
 
 
-def test_a_clearance_below_its_limit_is_called_violated(tmp_path):
-    ((_, line),) = told(found_for(tmp_path, -0.01, 0.09), "before")
+def test_a_clearance_below_its_limit_is_called_violated(found_for):
+    ((_, line),) = told(found_for(-0.01, 0.09), "before")
     assert line.endswith("fail below 40 mm: violated")
 
 
