@@ -7,13 +7,13 @@ Not for: running them (`execution`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from typing import Any
 
-from clearance.errors import BadProgram
+from clearance.errors import BadProgram, nearest_name
 from clearance.formats.program.culprits import Culprit, way_past
 from clearance.formats.program.expressions import (
     Call,
@@ -309,17 +309,19 @@ class PersistentValues:
         return {text: None} if moves or changed & self.effects.used_by_moves else {}
 
 
-def arguments_of(routine: Routine, call: Call) -> dict[str, Expression]:
-    """The arguments of a call by name, with the values of those that are not given.
+def arguments_of(call: Call, names: Sequence[str]) -> dict[str, Expression]:
+    """The arguments of a call by name, of those that it may have.
 
     Raises:
-        BadProgram: more than the routine has.
+        BadProgram: more than these, or others.
     """
-    if len(call.args) > len(routine.parameters):
+    if len(call.args) > len(names):
         fault = f"{call.name} is given {counted(len(call.args), 'argument')}"
-        raise BadProgram(fault, valid=f"{len(routine.parameters)} at most")
-    in_order = zip(routine.parameters, call.args, strict=False)
-    return {**routine.defaults, **dict(in_order), **call.named}
+        raise BadProgram(fault, valid=f"{len(names)} at most")
+    for name in call.named:
+        if name not in names:
+            raise BadProgram(f"{call.name} has no {name!r}", valid=nearest_name(name, names))
+    return {**dict(zip(names, call.args, strict=False)), **call.named}
 
 
 def range_of(one: For, value_of: Callable[[Expression], Any]) -> tuple[float, float, float]:

@@ -268,24 +268,24 @@ class Execution(Variables):
         if len(self.frames) > MOST_CALLS:
             raise BadProgram(f"more than {MOST_CALLS} routines call one another", valid="end them")
         call = call or Call(routine.name, (), {}, routine.line)
-        given, persistent = arguments_of(routine, call), self.persistent
+        given = {**routine.defaults, **arguments_of(call, routine.parameters)}
         self.doubts |= self.effects.doubts_on_handlers(routine)
         frame = {name: self.evaluated(value) for name, value in given.items()}
-        origins = {name: persistent.origin_of([one]) for name, one in given.items()}
-        persistent.origins.append(origins)
+        origins = {name: self.persistent.origin_of([one]) for name, one in given.items()}
+        self.persistent.origins.append(origins)
         self.frames.append(frame)
         left = self.run_whole(routine.body)
         value = None
         if left is not None and left.what == RETURN and left.value is not None:
             value = self.evaluated(left.value)
         self.frames.pop()
-        persistent.origins.pop()
+        self.persistent.origins.pop()
         for name in routine.returned & given.keys():
             if (target := assigned(given[name])) is not None:
                 value_back = self.given_back(target.name, frame[name], call)
                 self._assign(Assign(call.line, given[name], Constant(value_back)))
                 place = self.place(target.name)
-                persistent.put(target.name, origins.get(name, ""), place, True)
+                self.persistent.put(target.name, origins.get(name, ""), place, True)
         return value, left if left is not None and left.what == STOP else None
 
     def _branch(self, one: If) -> Leave | None:

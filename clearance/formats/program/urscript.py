@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadProgram, DuplicateName, MissingKey, at, nearest_name
+from clearance.errors import BadProgram, DuplicateName, MissingKey, at
 from clearance.formats.program.controller_program import (
     AxisTarget,
     ControllerMove,
@@ -22,6 +22,7 @@ from clearance.formats.program.controller_program import (
     ProgramRequest,
     Target,
 )
+from clearance.formats.program.effects import arguments_of
 from clearance.formats.program.execution import Execution
 from clearance.formats.program.expressions import (
     Call,
@@ -110,22 +111,6 @@ def _target(value: Any, one: Expression, tool: np.ndarray | None, label: str) ->
     if isinstance(value, ToolPose):
         return PoseTarget(_placed(value), name=name)
     return AxisTarget(tuple(_six(value, "the target")), name=name)
-
-
-def _arguments(call: Call, run: Execution) -> dict[str, Expression]:
-    """The arguments of a move, by name.
-
-    Raises:
-        BadInput: one that it does not have.
-    """
-    names = PARAMETERS[call.name]
-    if len(call.args) > len(names):
-        fault = f"{call.name} is given {len(call.args)} arguments"
-        raise BadProgram(fault, valid=f"at most {len(names)}")
-    for name in call.named:
-        if name not in names:
-            raise BadProgram(f"{call.name} has no {name!r}", valid=nearest_name(name, names))
-    return {**dict(zip(names, call.args, strict=False)), **call.named}
 
 
 def _index(by: Any) -> int:
@@ -289,7 +274,7 @@ class _UrScript(Language):
                 return Unknown(f"{call.name}() at {call.line} ({text})")
         elif call.name == "get_inverse_kin":
             names = ("x", "qnear", "maxPositionError", "maxOrientationError", "tcp")
-            given = dict(zip(names, call.args, strict=False)) | dict(call.named)
+            given = arguments_of(call, names)
             pose, near, own = (
                 run.evaluated(given[name]) if name in given else None
                 for name in ("x", "qnear", "tcp")
@@ -302,7 +287,7 @@ class _UrScript(Language):
         return super().result_of(call, run)
 
     def _move(self, call: Call, run: Execution) -> None:
-        given = _arguments(call, run)
+        given = arguments_of(call, PARAMETERS[call.name])
         values = {name: run.evaluated(one) for name, one in given.items()}
         options = {
             name: number(value, name)

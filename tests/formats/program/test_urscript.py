@@ -148,6 +148,7 @@ FAULTS = {
     "movej([0,0,0])": "six numbers",
     "movej([0,0,0,0,0,0], v=0)": "line 1: v is 0; more than 0",
     "movej([0,0,0,0,0,0], speed=1)": "movej has no 'speed'",
+    "def f(v=1):\n  movej([0,0,0,0,0,0], v=v)\nend\nf(speed=1)": "f has no 'speed'",
     "movej([0,0,0,0,0,0": "line 1: the file ends; ',', or ']' is needed",
     "movej(p[0,0,0,0,0,0": "line 1: the file ends",
     "def f():\n" + Q: "line 1: def has no end; a whole file",
