@@ -14,6 +14,7 @@ from clearance.case.packed import is_zip
 from clearance.errors import NEAREST_NAMES, BadInput, MissingFile
 from clearance.formats.files.input_files import read_bytes
 from clearance.plain_yaml import parse_yaml
+from clearance.world.notice import naming
 
 CASES = "cases"
 """The key of a file that lists cases, by patterns seen from its folder."""
@@ -56,14 +57,11 @@ def refuse_folder(path: Path) -> None:
     cases = [one for one in sorted(found) if one.is_file() and _OF_CASE.search(one.read_bytes())]
     inside = [one for one in cases if one.parent == path] or cases
     named = [one for one in inside if one == path / "case.yaml"] or inside
-    listed_names = ", ".join(str(one) for one in named[:NEAREST_NAMES])
-    more = f" and {len(named) - NEAREST_NAMES} more" if len(named) > NEAREST_NAMES else ""
-    valid = (
-        f"a case in it: {listed_names}{more}"
-        if named
-        else "no case is in it; a case file is needed"
+    valid = naming("a case in it", [*map(str, named)], NEAREST_NAMES)
+    raise MissingFile(
+        f"{str(path)!r} is a folder",
+        valid="".join(valid) or "no case is in it; a case file is needed",
     )
-    raise MissingFile(f"{str(path)!r} is a folder", valid=valid)
 
 
 def mapping_in(path: Path) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.errors import DuplicateName
 from clearance.world.case import Case
-from clearance.world.notice import listed
+from clearance.world.notice import listed, naming
 from clearance.world.robot import Robot
 from clearance.world.timing import Timing, time_text
 
@@ -125,8 +125,4 @@ def note_on_joints_at_zero(robot: Robot, given: Iterable[str], field: str) -> li
     """
     known = set(given)
     at_zero = [joint.name for joint in robot.moving_joints if joint.name not in known]
-    if not at_zero:
-        return []
-    return [
-        f"joints given neither by the trajectory nor by {field} stay at 0: {listed(at_zero, 8)}"
-    ]
+    return naming(f"joints given neither by the trajectory nor by {field} stay at 0", at_zero, 8)

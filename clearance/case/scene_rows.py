@@ -17,7 +17,7 @@ from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, listed, naming
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_rest import misplaced
 from clearance.world.pose_table import WORLD_FRAMES
@@ -64,10 +64,7 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
             f"{n_links} allowed pairs of the scene's file are left out: of two links, of which srdf says more, or "
             "of two obstacles that stand"
         )
-    if unknown:
-        notes.append(
-            f"allowed pairs of bodies that are not there are left out: {listed([*unknown], 6)}"
-        )
+    notes += naming("allowed pairs of bodies that are not there are left out", unknown)
     robots = tuple(_padded(placed, content.link_padding) for placed in case.robots)
     if content.link_padding:
         notes.append(
@@ -195,9 +192,9 @@ def with_attached_parts(case: Case, content: SceneContent) -> tuple[Case, list[s
         there = [name for name in one.touch if any(matches(body, name) for body in known)]
         unknown |= dict.fromkeys(name for name in one.touch if name not in there)
         carries.append(Carry(one.part, one.link, Window(start), tuple(there)))
-    shown = ", ".join(f"{one.part} by {one.link}" for one in attached[:6])
-    more = f" and {len(attached) - 6} more" if len(attached) > 6 else ""
-    notes = [f"attached objects of the scene's file are carried all the time: {shown}{more}"]
-    if unknown:
-        notes.append(f"touch_links that are not there are left out: {listed([*unknown], 6)}")
+    parts = [f"{one.part} by {one.link}" for one in attached]
+    notes = [
+        *naming("attached objects of the scene's file are carried all the time", parts),
+        *naming("touch_links that are not there are left out", unknown),
+    ]
     return replace(case, carries=(*case.carries, *carries)), notes

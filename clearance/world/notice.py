@@ -111,3 +111,13 @@ def listed(items: Sequence[str], most: int = 3) -> str:
     """The first few items, and how many more there are: `'a', 'b', 'c' and 9 more`."""
     text = ", ".join(items[:most])
     return text if len(items) <= most else f"{text} and {len(items) - most} more"
+
+
+def naming(text: str, names: Collection[str], most: int = 6) -> list[str]:
+    """A line that ends with the first few names, `text: 'a', 'b' and 9 more`; none where there is no name."""
+    return [f"{text}: {listed([*names], most)}"] if names else []
+
+
+def warnings_naming(text: str, names: Collection[str]) -> list[Notice]:
+    """The same line as a warning on geometry."""
+    return [Notice(Severity.WARNING, "geometry", line) for line in naming(text, names)]

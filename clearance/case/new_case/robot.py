@@ -22,7 +22,7 @@ from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.text.notes import counted
-from clearance.world.notice import listed
+from clearance.world.notice import naming
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
@@ -159,18 +159,17 @@ class NewRobot:
         left = self._unset_joints(trajectory)
         at_rest = {joint.name: self._rest(joint) for joint in left}
         zero = [name for name, position in at_rest.items() if position == 0.0]
-        if zero:
-            yield f"joints that nothing moves rest at 0: {listed(zero, 8)}"
+        yield from naming("joints that nothing moves rest at 0", zero, 8)
         own = self.placed.robot.reference
         placed: list[str] = []
         other: list[str] = []
         for name, position in at_rest.items():
             if position != 0.0:
                 (placed if position == own.get(name) else other).append(f"{name} {position:g}")
-        if placed:
-            yield f"joints that nothing moves rest where the robot's file has them: {listed(placed, 8)}"
-        if other:
-            yield f"joints that cannot be at 0 rest at the limit next to it: {listed(other, 8)}"
+        yield from naming(
+            "joints that nothing moves rest where the robot's file has them", placed, 8
+        )
+        yield from naming("joints that cannot be at 0 rest at the limit next to it", other, 8)
 
     @property
     def _stands(self) -> str:

@@ -16,7 +16,7 @@ from clearance.formats.message.times import NANO
 from clearance.formats.motion.recording_gaps import Track, holes_of, tracks_of, unknown_ends
 from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.world.names import checked_name
-from clearance.world.notice import HOLD, listed
+from clearance.world.notice import HOLD, listed, naming
 from clearance.world.trajectory import SHORTEST, Trajectory
 from clearance.world.wrap import whole_turns
 
@@ -203,8 +203,7 @@ def _notes(
         for name in settable
         if joints[name].unknown
     ]
-    if unknown:
-        notes.append(f"positions that are NaN or infinite are left out: {listed(unknown, 8)}")
+    notes += naming("positions that are NaN or infinite are left out", unknown, 8)
     if any(state.has_velocities for state in states):
         notes.append("recorded velocities are not followed: they are as measured, noise and all")
     if len({tuple(joints[name].times) for name in settable}) > 1:
@@ -213,6 +212,4 @@ def _notes(
     if n_out:
         notes.append(f"{n_out} messages at the ends are left out, where not all joints are known")
     others = [name for name in joints if name not in settable]
-    if others:
-        notes.append(f"joints that cannot be set are left out: {listed(others, 8)}")
-    return notes
+    return [*notes, *naming("joints that cannot be set are left out", others, 8)]

@@ -17,7 +17,7 @@ from clearance.errors import BadShape, at
 from clearance.formats.message.documents import Fields, described
 from clearance.formats.message.values import header_of, require_fields, require_spelt
 from clearance.formats.motion.joint_messages import READ, JointMessage
-from clearance.world.notice import listed
+from clearance.world.notice import listed, naming
 from clearance.world.quintic import started
 from clearance.world.trajectory import Trajectory
 
@@ -132,7 +132,7 @@ def with_unread(
     """The trajectory with the fields beside its points that bear on the motion and are not read; a note on all."""
     unread = _all_unread(message, start)
     grave = tuple(path for path in unread if _GRAVE & {*path.split(".")})
-    notes = [f"fields beside the points, not read: {listed(unread, 8)}"] if unread else []
+    notes = naming("fields beside the points, not read", unread, 8)
     return replace(trajectory, unread=grave), notes
 
 

@@ -32,7 +32,7 @@ from clearance.formats.schema import case as schema
 from clearance.world.joint_positions import turns
 from clearance.world.motion_limits import NO_LIMIT, MotionLimit, PathTolerance
 from clearance.world.names import checked_name
-from clearance.world.notice import listed
+from clearance.world.notice import listed, naming
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 
@@ -139,12 +139,12 @@ def _notes_on_limits(
     wider = [name for name, one in known.items() if _is_wider(one, by_name[name])]
     if wider:
         yield f"wider than the robot file's, which stay: position of {listed(wider, 8)}"
-    others = [name for name in limits if name not in known]
-    if others:
-        yield f"joints that the robot cannot move are left out: {listed(others, 8)}"
+    yield from naming(_NOT_MOVED, [name for name in limits if name not in known], 8)
     unused = dict.fromkeys(key for one in known.values() for key in one.unused)
-    if unused:
-        yield f"not used: {listed([*unused], 8)}"
+    yield from naming("not used", unused, 8)
+
+
+_NOT_MOVED = "joints that the robot cannot move are left out"
 
 
 def _joints(names: Collection[str], robot: Robot) -> str:
@@ -199,8 +199,7 @@ def _notes_on_tolerances(
     text += ("; " if bounded and free else "") + (f"{loose} as far as they go" if free else "")
     yield f"{text}; no clearance is lessened by that"
     joints = [name for one in controllers for name in one.tolerances if name not in known]
-    if joints:
-        yield f"joints that the robot cannot move are left out: {listed(joints, 8)}"
+    yield from naming(_NOT_MOVED, joints, 8)
 
 
 _FACTORS = {"!degrees": math.pi / 180.0, "!radians": 1.0}

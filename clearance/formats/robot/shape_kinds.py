@@ -12,8 +12,9 @@ import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.formats.robot.request import Geometry
+from clearance.formats.text.notes import counted
 from clearance.world.extents import PLANE_SIZE
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, naming
 
 Kinds = Mapping[str, frozenset[str]]
 """By link, in order, which of "collision" and "visual" it has shapes of."""
@@ -48,21 +49,21 @@ def unseen(kinds: Kinds, geometry: Geometry) -> list[Notice]:
         return []
     other = _OTHER[geometry]
     names = [repr(name) for name, has in kinds.items() if geometry not in has and other in has]
-    if not names:
-        return []
-    have, are = ("1 link has", "is") if len(names) == 1 else (f"{len(names)} links have", "are")
     remedy = "; robot: {geometry: collision_or_visual} measures them" if other == "visual" else ""
-    text = f"{have} a {other} but no {geometry} shape and {are} not measured: {listed(names, 6)}{remedy}"
-    return [Notice(Severity.WARNING, "geometry", text)]
+    lines = naming(without_shape(len(names), other, geometry), names)
+    return [Notice(Severity.WARNING, "geometry", line + remedy) for line in lines]
+
+
+def without_shape(n_links: int, has: str, lacks: str) -> str:
+    """What is said of links that have shapes of one kind and not of the other."""
+    have, are = ("1 link has", "is") if n_links == 1 else (f"{n_links} links have", "are")
+    return f"{have} a {has} but no {lacks} shape and {are} not measured"
 
 
 def notes_on_bare(kinds: Kinds) -> list[str]:
     """A note on links without any shape, which are frames."""
     bare = [name for name, has in kinds.items() if not has]
-    if not bare:
-        return []
-    count = "1 link" if len(bare) == 1 else f"{len(bare)} links"
-    return [f"{count} without any shape: {listed(bare, 6)}"]
+    return naming(f"{counted(len(bare), 'link')} without any shape", bare)
 
 
 def plane_from_box() -> np.ndarray:
@@ -72,7 +73,7 @@ def plane_from_box() -> np.ndarray:
     return pose
 
 
-def note_on_planes(names: Sequence[str]) -> str:
+def note_on_planes(names: Sequence[str]) -> list[str]:
     """A note on the boxes that stand for planes."""
     size = f"{PLANE_SIZE[0]:g} m wide and {PLANE_SIZE[2]:g} m deep"
-    return f"planes are boxes {size} below them: {listed(names, 6)}"
+    return naming(f"planes are boxes {size} below them", [*map(repr, names)])

@@ -30,7 +30,7 @@ from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.names import checked_name
-from clearance.world.notice import listed
+from clearance.world.notice import listed, naming
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
@@ -175,11 +175,8 @@ def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) 
         )
         yield f"{shown}: {rows} and {'is' if n_of_one == 1 else 'are'} left out"
     if n_left_out:
-        names = sorted(unknown)
-        listed = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
-        yield (
-            f"{shown}: {n_left_out} rows name links that the robot does not have and are left out: {listed}"
-        )
+        text = f"{n_left_out} rows name links that the robot does not have and are left out"
+        yield f"{shown}: {text}: {listed(sorted(unknown), 6)}"
 
 
 def _notes_on_reasons(shown: str, rows: Sequence[_Row]) -> Iterator[str]:
@@ -259,10 +256,8 @@ def positions_in_states(known: NamedStates, names: Sequence[str], robot: Robot) 
             _take(positions, state, robot)
     states_text = [state.full_name for state in asked]
     unsettable = [name for state in asked for name in state.positions if name not in positions]
-    notes = [
-        f"{shown}: of state {listed(states_text)}, joints that cannot be set are left out: {listed(unsettable, 8)}"
-    ]
-    return StatePositions(positions, tuple(notes if unsettable else ()))
+    text = f"{shown}: of state {listed(states_text)}, joints that cannot be set are left out"
+    return StatePositions(positions, tuple(naming(text, unsettable, 8)))
 
 
 def bases_in_states(

@@ -22,7 +22,7 @@ from clearance.formats.robot.mjcf.shapes import (
 )
 from clearance.formats.robot.shape_kinds import note_on_planes
 from clearance.formats.scene.request import SceneContent, SceneRequest, pose_row
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, warnings_naming
 
 
 def read_mjcf_scene(asked: SceneRequest) -> SceneContent:
@@ -95,15 +95,11 @@ def _notes(model: MjcfModel, colliding: list[MjcfGeom]) -> list[str]:
         notes.append(
             f"{n_left_out} geoms that collide with nothing (contype, conaffinity) are left out"
         )
-    planes = [repr(geom.name) for geom in colliding if geom.kind == "plane"]
-    if planes:
-        notes.append(note_on_planes(planes))
-    return notes
+    planes = [geom.name for geom in colliding if geom.kind == "plane"]
+    return [*notes, *note_on_planes(planes)]
 
 
 def _notices(model: MjcfModel) -> tuple[Notice, ...]:
-    moving = list(dict.fromkeys(repr(model.bodies[joint.body].name) for joint in model.joints))
-    if not moving:
-        return ()
-    text = f"bodies on joints stand where the file has them, with all that is on them: {listed(moving, 6)}"
-    return (Notice(Severity.WARNING, "geometry", text),)
+    moving = dict.fromkeys(repr(model.bodies[joint.body].name) for joint in model.joints)
+    text = "bodies on joints stand where the file has them, with all that is on them"
+    return tuple(warnings_naming(text, moving))

@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.errors import BadInput, DuplicateName, MissingKey, nearest_name
 from clearance.formats.table.csv_table import EMPTY, TIME
-from clearance.world.notice import listed
+from clearance.world.notice import listed, naming
 
 POSITION, VELOCITY = "/position", "/velocity"
 """How ros2_control names its interfaces; a joint's position needs no ending."""
@@ -282,6 +282,6 @@ def notes_on_names(header: Sequence[str], columns: Sequence[Column]) -> list[str
     ]
     used = {one.header for one in columns}
     unread = [repr(name) for name in header if name not in used and name != EMPTY]
-    notes += [f"columns not read: {listed(unread, 8)}"] if unread else []
+    notes += naming("columns not read", unread, 8)
     notes += ["the empty column at the end is left out"] if EMPTY in header else []
     return notes

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from clearance.errors import BadInput, meant_name
 from clearance.formats.text.numbers import is_zero
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, naming
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -104,17 +104,15 @@ def unread(element: Element, known: Format) -> Iterator[Unread]:
 def notices_on(found: Sequence[Unread]) -> list[Notice]:
     """A warning on unread elements that may give a shape or a place."""
     named = [f"{one.name} in {one.where}" for one in found if one.is_place]
-    if not named:
-        return []
-    text = f"not read, though it may give a shape or a place: {listed(named, 4)}"
-    return [Notice(Severity.WARNING, "geometry", text)]
+    text = "not read, though it may give a shape or a place"
+    return [Notice(Severity.WARNING, "geometry", line) for line in naming(text, named, 4)]
 
 
 def notes_on(found: Sequence[Unread]) -> list[str]:
     """A note on unread names that the table does not have."""
     counted = Counter(one.name for one in found if not (one.is_passed or one.is_place))
     named = [name if n == 1 else f"{name} ({n})" for name, n in counted.items()]
-    return [f"not read: {listed(named, 8)}"] if named else []
+    return naming("not read", named, 8)
 
 
 def _attribute(element: Element, given: tuple[str, str], row: Row, known: Format) -> Unread:

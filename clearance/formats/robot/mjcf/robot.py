@@ -37,7 +37,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.collision_matrix import ADJACENT, PARENT, CollisionMatrix
 from clearance.world.names import checked_name, require_own_names
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, naming
 from clearance.world.robot import WORLD_LINK, Robot
 from clearance.world.self_pairs import neighbours
 
@@ -168,9 +168,7 @@ def _notes(
         )
         text = f"{what} with the robot, as its link {WORLD_LINK!r}"
         notes.append(f"{text}; self_clearance: true measures the other links against it")
-    planes = [repr(geom.name) for geom in _planes(model)]
-    if planes:
-        notes.append(note_on_planes(planes))
+    notes += note_on_planes([geom.name for geom in _planes(model)])
     counted = Counter(
         "collide"
         if geom.collides
@@ -180,21 +178,18 @@ def _notes(
         for geom in model.geoms
         if geom.kind != "plane"
     )
-    if counted:
-        text = ", ".join(f"{n} {what}" for what, n in sorted(counted.items()))
-        notes.append(f"geoms: {text}")
+    notes += naming("geoms", [f"{n} {what}" for what, n in sorted(counted.items())])
     moving = [repr(body.name) for body in model.bodies if body.is_mocap]
-    if moving:
-        notes.append(f"mocap bodies stay where the file has them: {listed(moving, 6)}")
-    free = [joint.name for joint in model.joints if joint.kind == "free"]
-    if free:
-        notes.append(
-            f"the values of free joints are places in the model's world: {listed(free, 6)}"
-        )
-    limited = [joint.name for joint in model.joints if joint.kind == "ball"]
-    if limited:
-        notes.append(f"limits of ball joints are not checked: {listed(limited, 6)}")
-    return [*notes, *notes_on_bare(kinds)]
+    free, limited = (
+        [joint.name for joint in model.joints if joint.kind == kind] for kind in ("free", "ball")
+    )
+    return [
+        *notes,
+        *naming("mocap bodies stay where the file has them", moving),
+        *naming("the values of free joints are places in the model's world", free),
+        *naming("limits of ball joints are not checked", limited),
+        *notes_on_bare(kinds),
+    ]
 
 
 EXCLUDE = "<exclude> in the model"
@@ -236,12 +231,10 @@ class MjcfFilters:
         """A line for each filter that leaves out more than neighbours, and for pairs of `<pair>`."""
         for reason in (EXCLUDE, PARENT, BITS):
             pairs = [f"{a} - {b}" for a, b, why in self.rows if why == reason]
-            if pairs:
-                yield f"self_clearance without srdf leaves out ({reason}): {listed(pairs, 6)}"
-        if self._asked_for:
-            bodies = self.model.bodies
-            pairs = [f"{bodies[a].name} - {bodies[b].name}" for a, b in sorted(self._asked_for)]
-            yield f"self_clearance without srdf measures, as <pair> says: {listed(pairs, 6)}"
+            yield from naming(f"self_clearance without srdf leaves out ({reason})", pairs)
+        bodies = self.model.bodies
+        pairs = [f"{bodies[a].name} - {bodies[b].name}" for a, b in sorted(self._asked_for)]
+        yield from naming("self_clearance without srdf measures, as <pair> says", pairs)
 
     @cached_property
     def _geoms(self) -> dict[int, list[MjcfGeom]]:

@@ -14,7 +14,7 @@ from clearance.geometry.pose import pose_from_rotation_vector
 from clearance.tolerance import REACH
 from clearance.world.mimics import masters_of
 from clearance.world.names import require_own_names
-from clearance.world.notice import listed
+from clearance.world.notice import naming
 from clearance.world.robot import Joint, JointKind, Mimic
 
 if TYPE_CHECKING:
@@ -119,8 +119,7 @@ def _on_no_limits(joints: list[Joint]) -> list[str]:
         for joint in joints
         if joint.kind in needed and joint.part_of is None and joint.upper == np.inf
     ]
-    note = f"joints without <limit>, taken as unlimited: {listed(names, 8)}"
-    return [note] if names else []
+    return naming("joints without <limit>, taken as unlimited", names, 8)
 
 
 def _on_no_axis(root: Element) -> list[str]:
@@ -131,7 +130,7 @@ def _on_no_axis(root: Element) -> list[str]:
         if joint.get("type") not in ("fixed", *_COMPOUND)
         and (joint.find("axis") is None or joint.find("axis").get("xyz") is None)
     ]
-    return [f"joints without <axis>, taken as x: {listed(names, 8)}"] if names else []
+    return naming("joints without <axis>, taken as x", names, 8)
 
 
 def _on_speeds(root: Element) -> list[str]:
@@ -142,9 +141,7 @@ def _on_speeds(root: Element) -> list[str]:
         for joint, text in given
         if text.strip() and _number(text) is None
     ]
-    return (
-        [f"velocities that are no numbers, taken as unlimited: {listed(names, 4)}"] if names else []
-    )
+    return naming("velocities that are no numbers, taken as unlimited", names, 4)
 
 
 def _number(text: str) -> float | None:

@@ -35,7 +35,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.extents import greatest, metres
 from clearance.world.names import require_own_names
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, naming, warnings_naming
 from clearance.world.robot import Joint, Robot
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
             *turned,
             *unseen(kinds, request.geometry),
             *(() if turned else beyond),
-            *_on_empty(empty),
+            *warnings_naming("shapes without a size, not measured", empty),
             *_on_coupled(others, ordered),
             *notices_on(others),
         ]
@@ -119,16 +119,12 @@ def _on_visuals(
         beyond = max((one for one in found if one is not None), default=0.0)
         if beyond > BEYOND:
             far.append((beyond, f"link {name!r} by {metres(beyond)} m"))
-    notes = [
-        f"visual shapes that are not read, nor compared with the collision shapes: {listed(unread, 6)}"
-    ]
-    names = listed([text for _, text in greatest(far)], 6)
-    text = (
-        f"visual shapes reach out of the collision shapes, and are not measured there: {names}; "
-        "add collision shapes, or give robot: {geometry: visual}"
-    )
-    notices = [Notice(Severity.WARNING, "geometry", text)]
-    return notices if far else [], notes if unread else []
+    text = "visual shapes reach out of the collision shapes, and are not measured there"
+    remedy = "add collision shapes, or give robot: {geometry: visual}"
+    lines = naming(text, [text for _, text in greatest(far)])
+    notices = [Notice(Severity.WARNING, "geometry", f"{line}; {remedy}") for line in lines]
+    text = "visual shapes that are not read, nor compared with the collision shapes"
+    return notices, naming(text, unread)
 
 
 def _reach_beyond(box: np.ndarray, visual: Element, pictures: ShapeReader) -> float | None:
@@ -152,14 +148,6 @@ def _out_of(box: np.ndarray, visual: np.ndarray) -> float:
     return max(0.0, float((box[0] - visual[0]).max()), float((visual[1] - box[1]).max()))
 
 
-def _on_empty(empty: list[str]) -> list[Notice]:
-    """A warning on shapes that are left out."""
-    if not empty:
-        return []
-    text = f"shapes without a size, not measured: {listed(empty, 6)}"
-    return [Notice(Severity.WARNING, "geometry", text)]
-
-
 def _on_coupled(others: Sequence[Unread], joints: Sequence[Joint]) -> list[Notice]:
     """A warning on joints that follow others by ros2_control alone."""
     free = {joint.name for joint in joints if joint.mimic is None}
@@ -169,11 +157,9 @@ def _on_coupled(others: Sequence[Unread], joints: Sequence[Joint]) -> list[Notic
         for joint in one.element.iter("joint")
         if joint.get("name") in free and joint.find("param[@name='mimic']") is not None
     ]
-    if not coupled:
-        return []
-    names = listed(coupled, 6)
-    text = f"joints that ros2_control couples to others are free here: {names}; <mimic> would couple them"
-    return [Notice(Severity.WARNING, "equality", text)]
+    lines = naming("joints that ros2_control couples to others are free here", coupled)
+    remedy = "; <mimic> would couple them"
+    return [Notice(Severity.WARNING, "equality", line + remedy) for line in lines]
 
 
 def _on_soft_limits(others: Sequence[Unread]) -> list[str]:
@@ -181,7 +167,7 @@ def _on_soft_limits(others: Sequence[Unread]) -> list[str]:
     soft = {"soft_lower_limit", "soft_upper_limit"}
     limited = [one for one in others if one.name == "<safety_controller>"]
     owners = [one.where for one in limited if not soft.isdisjoint(one.element.attrib)]
-    return [f"soft limits are not used: {listed(owners, 6)}"] if owners else []
+    return naming("soft limits are not used", owners)
 
 
 def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:

@@ -16,7 +16,7 @@ from clearance.formats.scene.sdf.document import NEWEST, sdf_element, text_of
 from clearance.formats.scene.sdf.scope import IncludedModel
 from clearance.formats.text.unread import Unread
 from clearance.formats.text.yaml_text import flow
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, naming
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -111,13 +111,11 @@ class IncludeReader:
             for uri in self._said
             if self._asked.includes[uri] != SKIP
         ]
-        lines = [f"included models left out, as the case says: {listed(skipped, 6)}"] * bool(
-            skipped
-        )
-        lines += [
-            f"models used in place of others, as the case says: {listed(replaced, 6)}"
-        ] * bool(replaced)
-        return [Notice(Severity.WARNING, "scene", text) for text in lines]
+        lines = [
+            *naming("included models left out, as the case says", skipped),
+            *naming("models used in place of others, as the case says", replaced),
+        ]
+        return [Notice(Severity.WARNING, "scene", line) for line in lines]
 
     def _uris(self) -> set[str]:
         includes = (one for root in self.documents for one in root.iter("include"))

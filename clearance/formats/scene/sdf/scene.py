@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from clearance.errors import BadScene, at
 from clearance.formats.files.found_files import FoundFiles
 from clearance.formats.plausibility import angle_notices, odd_angles
+from clearance.formats.robot.shape_kinds import without_shape
 from clearance.formats.scene.request import SceneContent, SceneRequest, pose_row
 from clearance.formats.scene.sdf.document import angles_of, n_rounded
 from clearance.formats.scene.sdf.geometry import has_no_size
@@ -22,7 +23,7 @@ from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.text.unread import notes_on as notes_on_unread
 from clearance.formats.text.unread import notices_on
 from clearance.world.extents import PLANE_SIZE
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, naming, warnings_naming
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -98,10 +99,7 @@ def _make_unique(obstacles: list[dict[str, Any]]) -> list[str]:
         if row["name"] != name:
             renamed.append(repr(row["name"]))
         seen.add(row["name"])
-    if not renamed:
-        return []
-    more = "" if len(renamed) <= 3 else f" and {len(renamed) - 3} more"
-    return [f"names that are there twice are numbered: {', '.join(renamed[:3])}{more}"]
+    return naming("names that are there twice are numbered", renamed, 3)
 
 
 def _odd(document: Element) -> Iterator[str]:
@@ -160,16 +158,11 @@ def unseen(documents: Sequence[Element]) -> list[Notice]:
         for link in links
         if link.find("visual") is not None and link.find("collision") is None
     ]
-    texts = []
-    if names:
-        have, are = ("1 link has", "is") if len(names) == 1 else (f"{len(names)} links have", "are")
-        texts += [
-            f"{have} a visual but no collision shape and {are} not measured: {listed(names, 6)}"
-        ]
     actors = [repr(one.get("name")) for document in documents for one in document.iter("actor")]
-    if actors:
-        texts += [f"actors move and are not measured: {listed(actors, 6)}"]
-    return [Notice(Severity.WARNING, "geometry", text) for text in texts]
+    return [
+        *warnings_naming(without_shape(len(names), "visual", "collision"), names),
+        *warnings_naming("actors move and are not measured", actors),
+    ]
 
 
 def empty(documents: Sequence[Element]) -> list[Notice]:
@@ -181,10 +174,7 @@ def empty(documents: Sequence[Element]) -> list[Notice]:
         for collision in link.iterfind("collision")
         if has_no_size(collision)
     ]
-    if not names:
-        return []
-    text = f"collisions without a size, not measured: {listed(names, 6)}"
-    return [Notice(Severity.WARNING, "geometry", text)]
+    return warnings_naming("collisions without a size, not measured", names)
 
 
 def _path(link: Element) -> str:
