@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from clearance.errors import DuplicateName
 from clearance.world.case import Case
 from clearance.world.notice import listed, naming
 from clearance.world.robot import Robot
@@ -101,20 +100,6 @@ def _before_and_after(
     elif late:
         when = f"from {time_text(last)} s"
         yield f"stands at its last sample {when}", f"stand at their last samples {when}"
-
-
-def check_not_given_twice(in_case: Iterable[str], in_trajectory: Iterable[str]) -> None:
-    """Refuses a fixed value for a joint that the trajectory moves.
-
-    Raises:
-        DuplicateName: with the joint.
-    """
-    columns = set(in_trajectory)
-    for name in in_case:
-        if name in columns:
-            raise DuplicateName(
-                f"joint {name!r} is also a column of the trajectory", valid="give it in one place"
-            )
 
 
 def note_on_joints_at_zero(robot: Robot, given: Iterable[str], field: str) -> list[str]:

@@ -68,7 +68,9 @@ def with_recorded(
         notices = [*_of_motion_left_out(placed, found), *_of_others(case, placed, found)]
         budget = _with_tracking(case.tolerance or Budget(), placed, found)
     robots = [*case.robots]
-    robots[i_robot] = _as_driven(placed, driven, found, str(path))
+    robots[i_robot] = replace(
+        placed, trajectory=driven, timing=AS_GIVEN, recording=found, trajectory_path=str(path)
+    )
     return replace(
         case,
         robots=tuple(robots),
@@ -109,16 +111,6 @@ def _robot_of(case: Case, robot: str | None) -> int:
             valid="a robot with a trajectory",
         )
     return i_robot
-
-
-def _as_driven(placed: PlacedRobot, driven: Trajectory, found: Recording, path: str) -> PlacedRobot:
-    return replace(
-        placed,
-        trajectory=driven,
-        timing=AS_GIVEN,
-        recording=found,
-        trajectory_path=path,
-    )
 
 
 def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Budget:

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.case.motion_notes import check_not_given_twice
-from clearance.errors import BadInput, BadTime, MissingKey, at
+from clearance.errors import BadInput, BadTime, DuplicateName, MissingKey, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.robot.srdf import (
     NamedStates,
@@ -46,7 +45,10 @@ def resting_positions(
     by_value, names = given.joints, states_of(given.joints)
     with at(field):
         require_moving_joints(robot, by_value)
-        check_not_given_twice(by_value, moved)
+        for name in by_value:
+            if name in moved:
+                fault = f"joint {name!r} is also a column of the trajectory"
+                raise DuplicateName(fault, valid="give it in one place")
     if not names:
         return StatePositions(dict(by_value), ())
     with at(f"{field}.state"):

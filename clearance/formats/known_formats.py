@@ -111,10 +111,6 @@ _MESH = (
 _CLOUD = "name it in a case file: scene: {{obstacles: [{{name: …, points: {{file: {name}, radius: …}}}}]}}"
 _PROGRAM = "name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"
 _MOTION = "name it in a case file: trajectory: {name}, beside robot and scene"
-_MESSAGE = (
-    "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "
-    ".yaml or .json"
-)
 _IS_MJCF = sniff.has_root("mujoco", "mujocoinclude")
 _MJCF = (
     "call it .xml and name it in a case file: robot: {{urdf: {name}}} for a robot, scene: {name} for what stands "
@@ -124,7 +120,6 @@ _MOTION_KEYS = (
     *("joint_names", "points", "joint_trajectory", "model_id", "trajectory_start"),
     *("multi_dof_joint_trajectory", "planned_trajectory"),
 )
-_POSE_KEYS = ("pose", "poses", "transform", "transforms", "child_frame_id")
 _SCENE_KEYS = (
     *("world", "robot_state", "allowed_collision_matrix", "collision_objects"),
     *("fixed_frame_transforms", "robot_model_name"),
@@ -139,33 +134,11 @@ def _cloud(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Form
     return Format(name, Kind.CLOUD, suffixes, f"cloud.{read}", what="a scan", hint=_CLOUD, **more)
 
 
-def _message(language: str, suffixes: tuple[str, ...]) -> Format:
-    """A JointTrajectory in YAML or JSON."""
-    read = f"motion.joint_points:read_{language.lower()}_trajectory"
-    write, name = (
-        f"motion.trajectory_writer:{language.lower()}_text",
-        f"JointTrajectory in {language}",
-    )
-    return Format(
-        *(
-            name,
-            Kind.TRAJECTORY,
-            suffixes,
-            read,
-            write,
-            sniff.has_keys(b"joint_names", b"points"),
-            _MOTION_KEYS,
-        ),
-        what="a ROS JointTrajectory",
-        hint=_MESSAGE,
-    )
-
-
-def _stamped(language: str, suffixes: tuple[str, ...]) -> Format:
-    """Stamped poses in YAML or JSON."""
-    read = f"motion.pose_messages:read_{language.lower()}_poses"
-    write, name = f"motion.pose_writer:{language.lower()}_text", f"stamped poses in {language}"
-    return Format(name, Kind.POSES, suffixes, read, write, _unseen, _POSE_KEYS)
+def _messages(name: str, kind: Kind, read: str, write: str, **more: Any) -> Iterator[Format]:
+    """Messages of ROS, in JSON and in YAML, which `{}` stands for."""
+    for language, suffixes in (("JSON", (".json",)), ("YAML", (".yaml", ".yml"))):
+        places = (f"motion.{place.format(language.lower())}" for place in (read, write))
+        yield Format(f"{name} in {language}", kind, suffixes, *places, **more)
 
 
 def _program(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Format:
@@ -210,12 +183,14 @@ FORMATS = (
            hint="name it in a case file: moves: {name}, beside an obstacle's shape"),
     Format("CSV", Kind.TRAJECTORY, (".csv", ANY), "motion.trajectory_csv:read_csv",
            "motion.trajectory_writer:csv_text", sniff.is_table, read_by=Kind.POSES, what="a table", hint=_MOTION),
-    _message("JSON", (".json",)),
-    _message("YAML", (".yaml", ".yml")),
+    *_messages("JointTrajectory", Kind.TRAJECTORY, "joint_points:read_{}_trajectory", "trajectory_writer:{}_text",
+               sniff=sniff.has_keys(b"joint_names", b"points"), keys=_MOTION_KEYS, what="a ROS JointTrajectory",
+               hint="name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "
+               ".yaml or .json"),
     Format("ROS bag", Kind.TRAJECTORY, BAGS, "motion.rosbag_file:read_bag", extra="ros", what="a ROS bag",
            hint=_MOTION),
-    _stamped("JSON", (".json",)),
-    _stamped("YAML", (".yaml", ".yml")),
+    *_messages("stamped poses", Kind.POSES, "pose_messages:read_{}_poses", "pose_writer:{}_text", sniff=_unseen,
+               keys=("pose", "poses", "transform", "transforms", "child_frame_id")),
     Format("MoveIt PlanningScene", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
            sniff=sniff.has_keys(b"collision_objects"), keys=_SCENE_KEYS, what="a MoveIt planning scene",
            hint="name it in a case file: scene: {name}, beside robot and trajectory"),

@@ -20,9 +20,6 @@ from clearance.formats.files.place import here
 from clearance.world.case import LOOKUP, Source
 from clearance.world.notice import Notice, Severity
 
-PathsByName = Mapping[str, Mapping[str, str]]
-"""By package or variable: what was asked for, and the file as it is shown."""
-
 
 class FoundFiles:
     """What is to be told of the files that one robot or scene names."""
@@ -71,25 +68,20 @@ class FoundFiles:
 
     def notices(self) -> list[Notice]:
         """Suspect input for each missing package: the files that were read instead."""
-        return _notices_on_stand_ins(self._stand_ins)
+        return [
+            Notice(
+                Severity.SUSPECT,
+                "package",
+                f"CHECK PACKAGE: package {package!r} was not found: {_first(files, 'is taken from ')}; "
+                "is it the same file? give the package's folder in package_dirs",
+            )
+            for package, files in self._stand_ins.items()
+        ]
 
 
-def notes_on_variables(by_variable: PathsByName) -> list[str]:
-    """A line for each variable of the environment that led to files."""
+def notes_on_variables(by_variable: Mapping[str, Mapping[str, str]]) -> list[str]:
+    """A line for each variable of the environment that led to files: what was asked for, and the file as shown."""
     return [f"${name} leads to {_first(files)}" for name, files in by_variable.items()]
-
-
-def _notices_on_stand_ins(stand_ins: PathsByName) -> list[Notice]:
-    """Suspect input for each package that is not there: the files that stand in for its own."""
-    return [
-        Notice(
-            Severity.SUSPECT,
-            "package",
-            f"CHECK PACKAGE: package {package!r} was not found: {_first(files, 'is taken from ')}; "
-            "is it the same file? give the package's folder in package_dirs",
-        )
-        for package, files in stand_ins.items()
-    ]
 
 
 def _first(files: Mapping[str, str], verb: str = "as ") -> str:

@@ -73,7 +73,7 @@ def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> Me
     else:
         places = [*_file_places(given, urdf_folder, package_dirs)]
     for place, variable in places:
-        if _is_file(place):
+        if os.path.isfile(place):
             return MeshPath(place, variable=variable)
     return _on_another_machine(given, _file_path(given), urdf_folder, package_dirs)
 
@@ -113,11 +113,11 @@ def _on_another_machine(
     for i, package in enumerate(parts[:-1]):
         for place, variable in _package_folders(package, folder, package_dirs):
             found = place.joinpath(*parts[i + 1 :])
-            if _is_file(found):
+            if os.path.isfile(found):
                 chosen = not {place, place.parent}.isdisjoint(package_dirs)
                 proven = chosen or _has_manifest(found, place)
                 return MeshPath(found, "" if proven else package, variable, elsewhere=True)
-            if _is_file(place / "package.xml"):
+            if os.path.isfile(place / "package.xml"):
                 remedy = _other_version(package, parts[i + 1 :])
     raise MissingFile(f"there is no mesh {given!r}", valid=remedy)
 
@@ -172,7 +172,7 @@ def package_folder(package: str, folder: Path, package_dirs: Sequence[Path]) -> 
     found = [
         (place, variable)
         for place, variable in _package_folders(package or " ", folder, package_dirs)
-        if _is_there(place) and place.is_dir()
+        if os.path.isdir(place)
     ]
     with_manifest = [one for one in found if (one[0] / "package.xml").is_file()]
     for place, variable in (*with_manifest, *found):
@@ -187,13 +187,13 @@ def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence
     package, *parts = _parts(rest)
     remedy = "give its package's folder in robot.package_dirs"
     for folder, variable in _package_folders(package, urdf_folder, package_dirs):
-        if _is_file(folder.joinpath(*parts)):
+        if os.path.isfile(folder.joinpath(*parts)):
             return MeshPath(folder.joinpath(*parts), variable=variable)
-        if _is_file(folder / "package.xml"):
+        if os.path.isfile(folder / "package.xml"):
             remedy = _other_version(package, parts)
     for n_dropped in range(len(parts)):
         for folder in (*package_dirs, urdf_folder):
-            if _is_file(folder.joinpath(*parts[n_dropped:])):
+            if os.path.isfile(folder.joinpath(*parts[n_dropped:])):
                 return MeshPath(folder.joinpath(*parts[n_dropped:]), package)
     raise MissingFile(
         f"there is no mesh {given!r}; looked for it {_places(urdf_folder, package_dirs)}",
@@ -208,19 +208,9 @@ def _other_version(package: str, parts: Sequence[str]) -> str:
 
 def _is_model(path: Path) -> bool:
     """True for a file, and for the folder of a model: `model://bin` is not /bin."""
-    return _is_file(path) or any(_is_file(path / name) for name in ("model.config", "model.sdf"))
-
-
-def _is_file(path: Path) -> bool:
-    return _is_there(path) and path.is_file()
-
-
-def _is_there(path: Path) -> bool:
-    """True for a file or folder; False also for a path that no file can have."""
-    try:
-        return path.exists()
-    except (OSError, ValueError):
-        return False
+    return os.path.isfile(path) or any(
+        os.path.isfile(path / name) for name in ("model.config", "model.sdf")
+    )
 
 
 def _parts(rest: str) -> tuple[str, ...]:

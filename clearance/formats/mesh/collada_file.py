@@ -54,7 +54,7 @@ def read_collada(asked: MeshRequest) -> Triangles:
     root = _geometry_only(asked.data)
     metres, up = _unit(root), _up(root)
     _refuse_other_units(root, metres, up)
-    return _in_metres_z_up(joined(placed_pieces(root)), metres, up, asked.up_axis)
+    return _in_metres_z_up(joined(_Scene(root).pieces()), metres, up, asked.up_axis)
 
 
 def _geometry_only(data: bytes) -> Element:
@@ -142,16 +142,6 @@ _DEEPEST = 100
 """Nodes below nodes; scenes of real robots have at most a dozen levels."""
 
 
-def placed_pieces(root: Element) -> Iterator[tuple[Hashable, Triangles]]:
-    """Each piece that the document's scene places, in its order, with what it is a copy of.
-
-    Raises:
-        BadSyntax: an element that is not supported or not there, or nodes that place each other without end.
-        BadDimension, NotFinite: a transform.
-    """
-    return _Scene(root).pieces()
-
-
 class _Scene:
     """Walks the nodes of the document's scene; each geometry is made once."""
 
@@ -162,6 +152,12 @@ class _Scene:
         self._visits = CopyCount(MOST_COPIED_NODES, "nodes")
 
     def pieces(self) -> Iterator[tuple[Hashable, Triangles]]:
+        """Each placed piece, in the scene's order, with what it is a copy of.
+
+        Raises:
+            BadSyntax: an element that is not supported or not there, or nodes that place each other without end.
+            BadDimension, NotFinite: a transform.
+        """
         for instance in self.root.iterfind("{*}scene/{*}instance_visual_scene"):
             scene = self.ids.one("visual_scene", instance.get("url"))
             for node in scene.iterfind("{*}node"):

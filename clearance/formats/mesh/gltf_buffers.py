@@ -10,7 +10,7 @@ from __future__ import annotations
 import base64
 import binascii
 from collections.abc import Sequence
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
@@ -59,18 +59,12 @@ class GltfObject:
         """The whole numbers of the list at `key`."""
         return [GltfObject({key: found}, self.place).index(key) for found in self.items(key)]
 
-    @overload
     def numbers(
-        self, key: str, default: Sequence[float], length: int | None = None
-    ) -> np.ndarray: ...
-    @overload
-    def numbers(self, key: str, default: None, length: int | None = None) -> np.ndarray | None: ...
-    def numbers(
-        self, key: str, default: Sequence[float] | None, length: int | None = None
-    ) -> np.ndarray | None:
+        self, key: str, default: Sequence[float] = (), length: int | None = None
+    ) -> np.ndarray:
         """The numbers of the list at `key`; `default` where there is none."""
         if key not in self.value:
-            return None if default is None else np.array(default)
+            return np.array(default)
         found = self.items(key)
         plain = all(isinstance(x, int | float) and not isinstance(x, bool) for x in found)
         if not plain or length not in (None, len(found)):

@@ -139,7 +139,7 @@ class _Scene:
         if "mesh" not in node.value:
             return
         i_mesh = node.index("mesh")
-        weights = node.numbers("weights", None)
+        weights = node.numbers("weights") if "weights" in node.value else None
         key = (i_mesh, None if weights is None else tuple(weights))
         if key not in self._made:
             with at(f"mesh {i_mesh}"):
@@ -152,10 +152,9 @@ class _Scene:
 
 def _matrix(node: GltfObject) -> np.ndarray:
     """(4, 4) a node's own transform."""
-    whole = node.numbers("matrix", None, 16)
-    if whole is None:
+    if "matrix" not in node.value:
         return _moved_turned_scaled(node)
-    matrix = whole.reshape(4, 4).T
+    matrix = node.numbers("matrix", length=16).reshape(4, 4).T
     if matrix[3].tolist() != [0, 0, 0, 1]:
         raise BadSyntax(f"the last row of its matrix is {matrix[3].tolist()}", valid="0 0 0 1")
     return matrix
@@ -182,7 +181,7 @@ def mesh_pieces(mesh: GltfObject, weights: np.ndarray | None, buffers: Buffers) 
     Args:
         weights: of the morph targets; None for the mesh's own.
     """
-    used = mesh.numbers("weights", ()) if weights is None else weights
+    used = mesh.numbers("weights") if weights is None else weights
     pieces = []
     for i in range(len(mesh.items("primitives"))):
         with at(f"primitive {i}"):

@@ -212,43 +212,29 @@ class BinaryRows:
 
     def rows(self, element: Element) -> PlyRows:
         """The next rows."""
-        lists = [item for item in element.properties if item.length_kind is not None]
         sizes = [(item.length_kind or item.kind).itemsize for item in element.properties]
         if element.n_rows * sum(sizes) > len(self.body) - self.place:
             raise BadSyntax(f"{element.n_rows} rows do not fit in the file: it is cut off")
         if element.n_rows and not element.properties:
             raise BadSyntax(f"{element.n_rows} rows without properties")
-        lengths = self._first_lengths(element) if element.n_rows and lists else {}
-        same = self._block(element, lengths) if lengths is not None else None
+        same = self._block(element)
         return same if same is not None else self._one_by_one(element)
 
-    def _first_lengths(self, element: Element) -> dict[str, int] | None:
-        """How long the lists of the first row are, if all rows fit in the file with lists as long."""
-        lengths, place = {}, self.place
-        for item in element.properties:
-            if item.length_kind is None:
-                place += item.kind.itemsize
-                continue
-            found = self._take(item.length_kind, 1, place)
-            lengths[item.name] = int(found[0])
-            place += item.length_kind.itemsize + max(0, lengths[item.name]) * item.kind.itemsize
-        fits = (
-            min(lengths.values()) >= 0
-            and (place - self.place) * element.n_rows <= len(self.body) - self.place
-        )
-        return lengths if fits else None
-
-    def _block(self, element: Element, lengths: dict[str, int]) -> PlyRows | None:
-        """All rows at once, if all lists are of the given lengths; else None."""
-        fields: list[tuple[str, np.dtype] | tuple[str, np.dtype, tuple[int]]] = []
+    def _block(self, element: Element) -> PlyRows | None:
+        """All rows at once, if the lists of all are as long as those of the first; else None."""
+        fields: list[tuple[str, np.dtype, tuple[int, ...]]] = []
+        place, least = self.place, 0
         for k, item in enumerate(element.properties):
-            if item.length_kind is None:
-                fields.append((f"v{k}", item.kind))
-            else:
-                fields += [
-                    (f"n{k}", item.length_kind),
-                    (f"v{k}", item.kind, (lengths.get(item.name, 0),)),
-                ]
+            count, shape = 1, tuple[int, ...]()
+            if item.length_kind is not None:
+                count = int(self._take(item.length_kind, min(1, element.n_rows), place).sum())
+                shape, least = (count,), min(least, count)
+                fields.append((f"n{k}", item.length_kind, ()))
+                place += item.length_kind.itemsize
+            fields.append((f"v{k}", item.kind, shape))
+            place += max(0, count) * item.kind.itemsize
+        if least < 0 or (place - self.place) * element.n_rows > len(self.body) - self.place:
+            return None
         kind = np.dtype(fields)
         table = self._take(kind, element.n_rows, self.place)
         columns, lists = {}, {}
@@ -257,7 +243,7 @@ class BinaryRows:
                 columns[item.name] = table[f"v{k}"]
                 continue
             counts = table[f"n{k}"].astype(np.int64)
-            if (counts != lengths.get(item.name, 0)).any():
+            if (counts != table[f"v{k}"].shape[1]).any():
                 return None
             lists[item.name] = (table[f"v{k}"].reshape(-1), counts)
         self.place += element.n_rows * kind.itemsize

@@ -4,7 +4,6 @@ robowflex's lists (`[1, 2, 3]`). Not for: which fields there are (`moveit.object
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,6 +21,7 @@ from clearance.errors import (
     nearest_name,
 )
 from clearance.formats.text.notes import note_on_rounded
+from clearance.formats.text.numbers import is_double
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.names import checked_name
@@ -129,7 +129,7 @@ def number(value: object, where: str) -> float:
     """A finite number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise BadInput(f"{value!r:.60} is given", where=where, valid="a number is needed")
-    if not (isinstance(value, int) and abs(value) < 2**62) and not math.isfinite(_float(value)):
+    if not is_double(value):
         raise NotFinite(f"{value!r:.60} is given", where=where, valid="a finite number is needed")
     return float(value)
 
@@ -181,10 +181,3 @@ def _whole(quaternion: object) -> object:
     if isinstance(quaternion, dict) and {*quaternion} <= {*"xyzw"}:
         return dict.fromkeys("xyzw", 0.0) | quaternion
     return quaternion
-
-
-def _float(value: float) -> float:
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf

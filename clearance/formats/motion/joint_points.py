@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,31 +42,21 @@ from clearance.world.quintic import with_accelerations
 from clearance.world.trajectory import Trajectory
 
 
-def read_yaml_trajectory(request: TrajectoryRequest) -> ReadTrajectory:
-    """The trajectory in a YAML file.
+def _read(documents_in: Callable[[bytes], list[Any]], request: TrajectoryRequest) -> ReadTrajectory:
+    """The trajectory in a file.
 
     Raises:
-        BadInput: with the line and the keys that lead to what is wrong.
+        BadInput: with the keys that lead to what is wrong and, in YAML, the line.
     """
-    return _read(request, yaml_documents)
-
-
-def read_json_trajectory(request: TrajectoryRequest) -> ReadTrajectory:
-    """The trajectory in a JSON file.
-
-    Raises:
-        BadInput: with the keys that lead to what is wrong.
-    """
-    return _read(request, json_documents)
-
-
-def _read(request: TrajectoryRequest, documents_in: Callable[[bytes], list[Any]]) -> ReadTrajectory:
     request.choice.refuse_others({"which"}, "a trajectory message")
     with request.opened() as file:
         data = file.read(MOST_JSON + 1)
     message = chosen(messages_in(documents_in(data), len(data)), request.choice.which)
     return trajectory_of_message(message, len(data), request.joints_needed)
 
+
+read_yaml_trajectory = partial(_read, yaml_documents)
+read_json_trajectory = partial(_read, json_documents)
 
 _VALUES = ("positions", "velocities", "accelerations", "effort")
 _KEYS = (*_VALUES, "time_from_start")

@@ -6,7 +6,8 @@ Not for: what a document is (`message.documents`), nor tables (`pose_table_file`
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,25 +51,12 @@ class _StampedPose(NamedTuple):
     quaternion: list[float]
 
 
-def read_yaml_poses(request: PoseRequest) -> ReadSamples:
-    """The poses in a YAML file.
+def _read(documents_in: Callable[[bytes], list[Any]], request: PoseRequest) -> ReadSamples:
+    """The poses in a file.
 
     Raises:
         BadInput: with the place in the file.
     """
-    return _read(request, yaml_documents)
-
-
-def read_json_poses(request: PoseRequest) -> ReadSamples:
-    """The poses in a JSON file.
-
-    Raises:
-        BadInput: with the place in the file.
-    """
-    return _read(request, json_documents)
-
-
-def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
     if request.length is not None:
         fault = "'units' is given, and messages are in metres"
         raise BadMotion(fault, valid="leave 'units' out of moves")
@@ -85,6 +73,10 @@ def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
     if not stamped:
         raise BadShape("there is no pose", valid=_NEEDED)
     return _samples_of(stamped)
+
+
+read_yaml_poses = partial(_read, yaml_documents)
+read_json_poses = partial(_read, json_documents)
 
 
 def _poses_in(given: Any) -> Iterator[_StampedPose]:

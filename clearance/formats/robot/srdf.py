@@ -95,7 +95,7 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
     with at(shown):
         root = srdf_root(path, files)
         rows = list(_rows(root))
-        unknown = _unknown_links(rows, robot)
+        unknown = frozenset(link for row in rows for link in row.links) - {*robot.link_names}
         known = [row for row in rows if unknown.isdisjoint(row.links)]
         if rows and not known:
             raise BadRobot(
@@ -160,10 +160,6 @@ def _rows(root: Element) -> Iterator[_Row]:
 
 def _pair(row: _Row) -> tuple[str, str]:
     return row.links[0], row.links[1]
-
-
-def _unknown_links(rows: list[_Row], robot: Robot) -> frozenset[str]:
-    return frozenset(link for row in rows for link in row.links) - frozenset(robot.link_names)
 
 
 def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) -> Iterator[str]:

@@ -5,7 +5,6 @@ Not for: reading mesh files (`scene.obstacles`).
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -15,16 +14,9 @@ from clearance.formats.known_formats import CAD
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, Triple, with_shapes
 from clearance.formats.schema.timed import PoseFile
+from clearance.formats.text.numbers import is_double
 from clearance.geometry import shapes
 from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION, TESSELLATION
-
-
-def _is_double(number: int | float) -> bool:
-    """True for a finite number that doubles can hold; whole numbers in a file may be longer."""
-    try:
-        return math.isfinite(number)
-    except OverflowError:
-        return False
 
 
 class ScaledFile(StrictModel):
@@ -38,7 +30,7 @@ class ScaledFile(StrictModel):
     def _number_or_three(cls, scale: Any) -> Any:
         factors = scale if isinstance(scale, list) else [scale]
         numbers = all(isinstance(f, int | float) and not isinstance(f, bool) for f in factors)
-        if not numbers or len(factors) not in (1, 3) or not all(_is_double(f) for f in factors):
+        if not numbers or len(factors) not in (1, 3) or not all(is_double(f) for f in factors):
             raise BadDimension(
                 f"{scale!r:.60} is given", valid="a finite number, or three, is needed"
             )

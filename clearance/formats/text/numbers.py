@@ -7,6 +7,7 @@ tables (`csv_table`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from typing import AnyStr
 
@@ -52,6 +53,14 @@ def finite_numbers(text: str, given: str, counts: Collection[int] = ()) -> tuple
     if not np.isfinite(values).all():
         raise NotFinite(given, valid="finite numbers are needed")
     return tuple(values.tolist())
+
+
+def is_double(number: int | float) -> bool:
+    """True for a finite number that doubles can hold; whole numbers in a file may be longer."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
 
 
 def is_zero(word: str) -> bool:

@@ -116,7 +116,7 @@ class MjcfShapes:
         below = (self.spec.meshdir or "").replace("\\", "/")
         for folder in (self.folder / below, *self.package_dirs):
             path = here(folder / given)
-            if _is_file(path):
+            if os.path.isfile(path):
                 self._note_outside(path)
                 return path
         raise MissingFile(
@@ -181,10 +181,3 @@ def _inline(mesh: MjcfMesh) -> Polyhedron:
     return Polyhedron(
         vertices, [flat[i:k].tolist() for i, k in zip(starts, starts[1:], strict=False)]
     )
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False

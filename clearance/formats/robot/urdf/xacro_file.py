@@ -59,7 +59,9 @@ def expanded(request: RobotRequest, files: InputFiles) -> ExpandedUrdf:
     files.read(request.path)
     done = _run(request, shown)
     for name in done.get("files", ()):
-        _require_no_entities(files.read(Path(name)), files.shown(Path(name)))
+        if b"<!ENTITY" in files.read(Path(name)):
+            fault, where = "an entity is declared, which stands for something", Path(name)
+            raise BadSyntax(fault, where=files.shown(where), valid="write it out")
     if "problem" in done:
         _refuse(done, shown, files)
     given = dict(request.xacro_args)
@@ -124,13 +126,6 @@ def _refuse(done: Mapping[str, Any], shown: str, files: InputFiles) -> None:
             valid="it is included; is it in another package or branch?",
         )
     raise BadSyntax(f"xacro: {done['problem']}", where=where, valid=done["valid"])
-
-
-def _require_no_entities(data: bytes, shown: str) -> None:
-    if b"<!ENTITY" in data:
-        raise BadSyntax(
-            "an entity is declared, which stands for something", where=shown, valid="write it out"
-        )
 
 
 def _require_asked(given: Mapping[str, str], asked: list[str], shown: str) -> None:
