@@ -4,7 +4,7 @@ from .errors import BadInput, ClearanceError
 from .findings.finding import Finding
 from .formats.cloud.formats import read_points
 from .formats.mesh.mesh_file import read_mesh
-from .formats.robot.formats import load_robot
+from .formats.robot.request import load_robot
 from .gains.answer import gain
 from .gains.result import Gain
 from .gains.turn import Turn

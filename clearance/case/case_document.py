@@ -9,8 +9,13 @@ from pathlib import Path
 from clearance.errors import BadPack, Contradiction, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, refuse_foreign
-from clearance.formats.scene.formats import read_scene, with_own_words
-from clearance.formats.scene.request import SceneContent, SceneRequest, includes_of
+from clearance.formats.scene.request import (
+    SceneContent,
+    SceneRequest,
+    includes_of,
+    read_scene,
+    with_own_words,
+)
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
 from clearance.plain_yaml import parse_yaml

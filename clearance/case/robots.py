@@ -14,9 +14,8 @@ from clearance.case.resting import bases_asked, positions_asked, resting_positio
 from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
-from clearance.formats.robot.request import RobotRequest, checked_args
+from clearance.formats.robot.request import RobotRequest, checked_args, read_robot
 from clearance.formats.robot.robot_element import XACRO
 from clearance.formats.robot.srdf import read_srdf, virtual_joints
 from clearance.formats.schema import case as schema

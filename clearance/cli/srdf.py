@@ -52,7 +52,7 @@ def audit(urdf: Path, srdf_file: Path, as_json: bool, **given: Any) -> int:
     excused as Adjacent that lies apart at home and can meet gives 1 too.
     """
     from clearance.cli.progress import shown_progress
-    from clearance.formats.robot.formats import load_robot
+    from clearance.formats.robot.request import load_robot
     from clearance.formats.robot.srdf import load_srdf
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary, narrowed
     from clearance.report.summary import json_text
@@ -88,7 +88,7 @@ def make(urdf: Path, out: Path | None, **given: Any) -> int:
     from clearance.cli.progress import shown_progress
     from clearance.errors import unwritable
     from clearance.files import refuse_inputs, require_file_place
-    from clearance.formats.robot.formats import load_robot
+    from clearance.formats.robot.request import load_robot
     from clearance.report.srdf import narrowed, proposal_headline, proposed_srdf
     from clearance.simulate.answers.audit.pair import propose
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import clearance as cl
-from clearance.formats.robot.formats import load_robot
+from clearance.formats.robot.request import load_robot
 from clearance.formats.robot.srdf import load_srdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure

@@ -11,7 +11,7 @@ import pytest
 from clearance.cli import run
 from clearance.errors import NothingToMeasure
 from clearance.formats.motion.trajectory_writer import written
-from clearance.formats.robot.formats import load_robot
+from clearance.formats.robot.request import load_robot
 from clearance.world.joint_positions import turns
 from clearance.world.trajectory import Trajectory
 

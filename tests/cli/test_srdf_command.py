@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import run
-from clearance.formats.robot.formats import load_robot
+from clearance.formats.robot.request import load_robot
 from clearance.formats.robot.srdf import load_srdf
 from tests.report.schemas import objections
 

@@ -17,7 +17,7 @@ import pytest
 
 import clearance as cl
 from clearance.crosscheck.triangles import is_inside, triangle_soup
-from clearance.formats.robot.formats import load_robot
+from clearance.formats.robot.request import load_robot
 from clearance.formats.robot.srdf import load_srdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure

@@ -8,8 +8,7 @@ import numpy as np
 
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.request import RobotRequest, read_robot
 from tests.formats.making import binary_stl
 
 TETRAHEDRON = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.3, 0.9]])

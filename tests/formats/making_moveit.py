@@ -2,9 +2,8 @@
 
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
-from clearance.formats.scene.request import SceneRequest
+from clearance.formats.scene.request import SceneRequest, read_scene
 from clearance.formats.schema.obstacle import Scene
 from tests.formats.making import CASE, CUBE, CUBE_TRIANGLES
 

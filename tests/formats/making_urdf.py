@@ -2,8 +2,7 @@
 
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.request import RobotRequest, read_robot
 from tests.formats.making import cube_stl
 
 

@@ -1,6 +1,6 @@
 """The scene of a new case: our YAML of what a scene file holds, or that file where our YAML would say less.
 
-Not for: reading it (`scene.formats`), nor the text of it (`scene.writer`).
+Not for: reading it (`scene.request`), nor the text of it (`scene.writer`).
 """
 
 from __future__ import annotations
@@ -14,9 +14,14 @@ from clearance.case.new_case.robot import NewCaseRequest
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.formats.files.input_files import path_from, resolved
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
-from clearance.formats.scene.request import SKIP, SceneContent, SceneRequest, includes_of
+from clearance.formats.scene.request import (
+    SKIP,
+    SceneContent,
+    SceneRequest,
+    includes_of,
+    read_scene,
+)
 from clearance.formats.scene.writer import written_scene
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated

@@ -1,14 +1,23 @@
-"""What is asked of a reader of robot files. Not for: reading them."""
+"""What is asked of a reader of robot files, and a file to a robot by the reader of its format.
+
+Not for: where the robot stands, or how it moves (`robots`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal
 
 from clearance.errors import BadRobot
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.mesh.triangles import UpAxis
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.robot_element import XACRO
+from clearance.world.robot import Robot
 
 Geometry = Literal["collision", "visual", "collision_or_visual"]
 
@@ -48,3 +57,47 @@ def checked_args(given: Mapping[str, str | bool | int | float]) -> tuple[tuple[s
 
 def _as_text(value: str | bool | int | float) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def read_robot(request: RobotRequest, meshes: MeshStore) -> Robot:
+    """The robot in a file; one of a format that is not known is read as URDF.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    path = request.path
+    given = (f"robot{XACRO}", b"") if request.xacro else (path.name, meshes.files.read(path))
+    known = format_of(Kind.ROBOT, *given)
+    assert known is not None  # as any file is URDF where nothing says otherwise
+    robot: Robot = function_at(known.read)(request, meshes)
+    return robot
+
+
+def load_robot(
+    path: str | Path,
+    *,
+    package_dirs: Sequence[str | Path] = (),
+    geometry: Geometry = "collision",
+    collada_up_axis: UpAxis = "ros",
+    xacro: bool = False,
+    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
+) -> Robot:
+    """The robot in a file of any format that is read, for cases that are made in memory.
+
+    Args:
+        path: of a URDF or MJCF file; or the name of what a package brings, as in a case file. Paths are relative
+            to the current folder.
+        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    request = RobotRequest(
+        resolved(str(path), Path()),
+        tuple(map(Path, package_dirs)),
+        geometry,
+        collada_up_axis,
+        xacro,
+        checked_args(xacro_args),
+    )
+    return read_robot(request, MeshStore(InputFiles(request.path.parent)))

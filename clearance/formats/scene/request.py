@@ -1,20 +1,26 @@
-"""What is asked of a reader of scene files, and what it gives: rows as a YAML scene has them. Not for: reading
-them.
+"""What is asked of a reader of scene files, and what it gives: rows as a YAML scene has them; and a file to a
+scene by the reader of its format.
+
+Not for: making solids of it (`obstacles`).
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import BadScene
 from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.known_formats import Kind, format_of, function_at
+from clearance.formats.schema.obstacle import Scene
+from clearance.formats.schema.strict_model import validated
 from clearance.geometry.quaternions import quaternions_of
-from clearance.world.notice import Notice
+from clearance.world.notice import Notice, Severity
 
 SKIP = "skip"
 """In place of an included model: nothing."""
@@ -90,3 +96,27 @@ def pose_row(pose: np.ndarray) -> dict[str, list[float]]:
     if not np.array_equal(pose[:3, :3], np.eye(3)):
         row["quat_xyzw"] = quaternions_of(pose[None, :3, :3])[0].tolist()
     return row
+
+
+def read_scene(asked: SceneRequest) -> SceneContent:
+    """The scene in a file; one of a format that is not known is read as YAML.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    known = format_of(Kind.SCENE, asked.path.name)
+    assert known is not None  # as any file is YAML where nothing says otherwise
+    if asked.includes and known.name != "SDF":
+        raise BadScene(
+            f"includes are given, and {asked.shown} is no SDF file", valid="no includes in the case"
+        )
+    content: SceneContent = function_at(known.read)(asked)
+    return with_own_words(content, validated(Scene, content.scene, asked.shown))
+
+
+def with_own_words(content: SceneContent, scene: Scene) -> SceneContent:
+    """The content with the frame and the warnings that stand in the scene itself."""
+    notices = tuple(Notice(Severity.WARNING, "scene", text) for text in scene.warnings)
+    return replace(
+        content, notices=(*content.notices, *notices), frame=scene.frame or content.frame
+    )

@@ -65,7 +65,7 @@ def robot_beside(data: bytes, folder: Path, name: str) -> object:
 
 
 def robot(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.robot.formats import load_robot
+    from clearance.formats.robot.request import load_robot
 
     (folder / "m.stl").write_bytes(binary_stl())
     (folder / name).write_bytes(data)
@@ -76,9 +76,8 @@ def scene(data: bytes, folder: Path, name: str) -> object:
     """A scene as a case would have it: its content, then the solids that it names."""
     from clearance.formats.files.input_files import InputFiles
     from clearance.formats.mesh_store import MeshStore
-    from clearance.formats.scene.formats import read_scene
     from clearance.formats.scene.obstacles import make_obstacles
-    from clearance.formats.scene.request import SceneRequest
+    from clearance.formats.scene.request import SceneRequest, read_scene
     from clearance.formats.schema.obstacle import Scene
     from clearance.formats.schema.strict_model import validated
 
@@ -125,7 +124,7 @@ def controller(data: bytes, folder: Path, name: str) -> object:
 @lru_cache
 def programmed():
     """The arm that programs move."""
-    from clearance.formats.robot.formats import load_robot
+    from clearance.formats.robot.request import load_robot
     from clearance.world.placed_robot import PlacedRobot
 
     root = Path(__file__).parents[3]

@@ -6,8 +6,7 @@ import pytest
 from clearance.errors import BadInput
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.request import RobotRequest, read_robot
 from clearance.world.notice import Severity
 from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl
 from tests.formats.making_case import changed, load_small

@@ -6,8 +6,7 @@ import pytest
 from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.request import RobotRequest, read_robot
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind
 from tests.formats.making_case import changed, load_small

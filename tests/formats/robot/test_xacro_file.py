@@ -11,8 +11,7 @@ from clearance import check, load_case
 from clearance.errors import BadInput, BadSyntax, MissingFile, UnknownKey
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot import request as robot_request
-from clearance.formats.robot.formats import load_robot
-from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.request import RobotRequest, load_robot
 from clearance.formats.robot.urdf import xacro_file
 from clearance.formats.robot.urdf.xacro_file import expanded
 from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package

@@ -6,9 +6,8 @@ import pytest
 from clearance.errors import BadInput
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
-from clearance.formats.scene.request import SceneRequest
+from clearance.formats.scene.request import SceneRequest, read_scene
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
 from tests.formats.making_mjcf import BALL, mjcf, write_mjcf

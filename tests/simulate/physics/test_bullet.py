@@ -12,8 +12,7 @@ import pytest
 from clearance.errors import BadInput, MissingFile
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.request import RobotRequest, read_robot
 from clearance.geometry.point_cloud import PointCloud
 from clearance.simulate.physics import bullet
 from clearance.simulate.physics.bullet import STEPS_PER_SECOND, simulated_motion
