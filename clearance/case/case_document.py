@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from clearance.errors import BadPack, Contradiction, at
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.request import (
     SceneContent,
@@ -70,7 +70,7 @@ def read_schema(
 
 def _scene_of(raw: dict[str, object], path: Path, files: InputFiles) -> ScenePlace:
     with at(f"{path.name}: scene"):
-        asked = scene_request(raw, path.parent, files)
+        asked = scene_request(raw, files)
         content = read_scene(asked)
     return ScenePlace(
         f"{path.name}: scene: {asked.shown}",
@@ -80,16 +80,12 @@ def _scene_of(raw: dict[str, object], path: Path, files: InputFiles) -> ScenePla
     )
 
 
-def scene_request(raw: Mapping[str, object], folder: Path, files: InputFiles) -> SceneRequest:
-    """What is asked of the reader of the scene that a case names; the case is not checked yet.
-
-    Args:
-        folder: of the case file.
-    """
-    package_dirs = tuple(resolved(text, folder) for text in _package_dirs(raw))
+def scene_request(raw: Mapping[str, object], files: InputFiles) -> SceneRequest:
+    """What is asked of the reader of the scene that a case names; the case is not checked yet."""
+    package_dirs = tuple(map(files.resolved, _package_dirs(raw)))
     includes = raw.get("includes")
-    said = includes_of(includes, folder) if isinstance(includes, dict) else {}
-    return SceneRequest(resolved(str(raw["scene"]), folder), files, package_dirs, said)
+    said = includes_of(includes, files.folder) if isinstance(includes, dict) else {}
+    return SceneRequest(files.resolved(str(raw["scene"])), files, package_dirs, said)
 
 
 def _package_dirs(raw: Mapping[str, object]) -> Iterator[str]:

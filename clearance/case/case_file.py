@@ -32,7 +32,7 @@ from clearance.case.robots_in_motion import robots_in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.plausibility import (
     angle_notices,
@@ -108,7 +108,7 @@ def waivers_of_cell(path: str | PathLike[str]) -> tuple[Waiver, ...]:
         return ()
     given, _ = read_schema(path, files, schema.Cell)
     with at(path.name):
-        return tuple(_waivers(given, path, files))
+        return tuple(_waivers(given, files))
 
 
 def with_trajectory_file(
@@ -142,7 +142,7 @@ def with_trajectory_file(
             cell.case.carries,
             frozenset(chain.from_iterable(driven)),
         )
-        moved = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files, around)
+        moved = in_motion(entry, cell.case.robots[i_robot], files, around)
     robots = tuple(
         moved.placed if i == i_robot
         else moved.driving(one) if one.robot.name in moved.driven else one
@@ -179,7 +179,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     meshes = MeshStore(files)
     given, scene_at = read_schema(path, files, model)
     entries = given.entries()
-    reader = RobotReader(path.parent, meshes)
+    reader = RobotReader(meshes)
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
@@ -193,7 +193,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
             contact_response=given.contact_response,
             notices=(*_notices(given), *scene_at.content.notices),
             accept=tuple(given.accept),
-            waivers=tuple(_waivers(given, path, files)),
+            waivers=tuple(_waivers(given, files)),
             sign_off=_sign_off(given.report),
             carries=carries_of(given.carry, [one.name for one in obstacles]),
             clock=Clock(given.clock.slack),
@@ -202,14 +202,14 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
             case, row_notes = with_scene_rows(case, scene_at.content)
         names = body_names(case)
         case = replace(case, allow=checked_allowances(case.allow, names))
-        profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
+        profiles = reserved_spaces(given.profiles, files, names.table_links)
         _require_mounts(case, entries, scene_at)
         for i, row in enumerate(given.carry):
             with at(f"carry[{i}].touch"):
                 require_patterns(row.touch, names)
         if given.tolerance is not None:
             with at("tolerance"):
-                budget = budget_of(given.tolerance, case, path.parent, files)
+                budget = budget_of(given.tolerance, case, files)
             case = replace(case, tolerance=budget)
     of_scene = (*scene_at.content.notes, *row_notes, *scene_notes)
     case = replace(case, profiles=profiles)
@@ -306,14 +306,14 @@ def _placed_joints(placed: PlacedRobot) -> list[str]:
     return [*moved, *placed.fixed_positions]
 
 
-def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiver]:
+def _waivers(given: schema.Case, files: InputFiles) -> Iterator[Waiver]:
     if not given.waivers:
         return
     from clearance.case.waiver_file import waivers_of
 
     for i, name in enumerate(given.waivers):
         with at(f"waivers[{i}]"):
-            yield from waivers_of(files, resolved(name, path.parent))
+            yield from waivers_of(files, files.resolved(name))
 
 
 def _sign_off(given: schema.Report | None) -> SignOff | None:

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.case.driven_robots import ProgramCell, ProgrammedMotion, Surroundings
 from clearance.case.places import IN_WORLD, NOT_PLACED, NotThere, Place, Places
 from clearance.errors import BadProgram, ClearanceError, UnknownPlace, at, nearest_name
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Format, Kind, format_of, function_at, suffixes_read
 from clearance.formats.plausibility import odd_in_program
 from clearance.formats.program.controller_program import ProgramRequest
@@ -40,15 +40,13 @@ def program_motion(
     asked: TrajectoryFile,
     start: Mapping[str, float],
     placed: PlacedRobot,
-    folder: Path,
     files: InputFiles,
     around: Surroundings,
 ) -> ProgrammedMotion:
     """The motion of a program that a case names or holds.
 
     Args:
-        start: joints at its beginning that the case gives [rad or m]. folder: against which paths are looked up.
-        around: all but the robot.
+        start: joints at its beginning that the case gives [rad or m]. around: all but the robot.
 
     Raises:
         BadInput: with the place in the file.
@@ -58,7 +56,7 @@ def program_motion(
         assert isinstance(asked.program, schema.Program)
         shown, read = "program", _of_schema(asked.program)
     else:
-        shown, read = _read(asked.program_file, cell, start, folder, files)
+        shown, read = _read(asked.program_file, cell, start, files)
     given = read.program
     odd = odd_in_program(asked.program_file, read.own)
     with at(shown), _suspecting(odd):
@@ -107,24 +105,20 @@ def _suspecting(odd: Sequence[str]) -> Iterator[None]:
 
 
 def _read(
-    asked: ProgramFile,
-    cell: ProgramCell,
-    start: Mapping[str, float],
-    folder: Path,
-    files: InputFiles,
+    asked: ProgramFile, cell: ProgramCell, start: Mapping[str, float], files: InputFiles
 ) -> tuple[str, ConvertedProgram]:
     """The program in a file, and how the file is called in messages.
 
     Raises:
         BadInput: as its reader says; a file that is called like no program.
     """
-    path = resolved(asked.file, folder)
+    path = files.resolved(asked.file)
     shown, data = files.shown(path), files.read(path)
     row = format_of(Kind.PROGRAM, shown, data)
     if row is None:
         valid = f"one of {', '.join(suffixes_read(Kind.PROGRAM))}"
         raise BadProgram(f"{shown!r} has no suffix of a robot program", valid=valid)
-    others = [*_along(path, row), *(resolved(one, folder) for one in asked.beside)]
+    others = [*_along(path, row), *map(files.resolved, asked.beside)]
     beside = {files.shown(one): files.read(one) for one in others}
     request = ProgramRequest(data, shown, asked, beside)
     read = function_at(row.read)(request)

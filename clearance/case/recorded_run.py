@@ -60,7 +60,7 @@ def with_recorded(
     said = {} if columns is None else {"columns": columns}
     given = validated(TrajectoryFile, {"file": path.name, **said}, "recorded")
     given = given.model_copy(update={"gaps": gaps})
-    read, notes = trajectory_of(given, "recorded", path.parent, placed.robot, files, recorded=True)
+    read, notes = trajectory_of(given, "recorded", placed.robot, files, recorded=True)
     with at(f"recorded: {shown}"):
         driven = _near_what_was_asked(read.shifted(offset), placed)
         resting = placed.fixed_positions

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from clearance.case.allow import require_link_patterns
 from clearance.errors import BadShape, DuplicateName, at
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema import case as schema
 from clearance.world.case import ReservedSpace
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def reserved_spaces(
-    given: Sequence[schema.Profile], folder: Path, files: InputFiles, links: Iterable[str]
+    given: Sequence[schema.Profile], files: InputFiles, links: Iterable[str]
 ) -> tuple[ReservedSpace, ...]:
     """The outlines of a case file.
 
@@ -33,7 +33,7 @@ def reserved_spaces(
                 raise DuplicateName(f"the name {entry.name!r} is taken", where="name")
             with at("links"):
                 require_link_patterns(entry.links, links)
-            sketch, drift = _sketch(resolved(entry.sketch, folder), files)
+            sketch, drift = _sketch(files.resolved(entry.sketch), files)
             made.append(
                 ReservedSpace(
                     entry.name,

@@ -7,12 +7,11 @@ Not for: the states themselves (`srdf`), nor the start in a message (`motion.joi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
 from clearance.errors import BadInput, BadTime, DuplicateName, MissingKey, at
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.srdf import (
     NamedStates,
     StatePositions,
@@ -31,12 +30,12 @@ from clearance.world.trajectory import Trajectory
 
 
 def resting_positions(
-    entry: schema.RobotEntry, robot: Robot, moved: Sequence[str], folder: Path, files: InputFiles
+    entry: schema.RobotEntry, robot: Robot, moved: Sequence[str], files: InputFiles
 ) -> StatePositions:
     """Positions by joint, those given by value first; and notes on what a state gave.
 
     Args:
-        moved: the joints of the trajectory. folder: against which the SRDF's path is looked up.
+        moved: the joints of the trajectory.
 
     Raises:
         BadInput: a joint that cannot be set, or is moved. MissingKey: a state that no file names.
@@ -52,7 +51,7 @@ def resting_positions(
     if not names:
         return StatePositions(dict(by_value), ())
     with at(f"{field}.state"):
-        shown, (found, notes) = positions_asked(entry, names, robot, folder, files)
+        shown, (found, notes) = positions_asked(entry, names, robot, files)
     of_states = {name: found[name] for name in found if name not in by_value and name not in moved}
     others = [name for name in found if name not in of_states]
     return StatePositions(
@@ -61,7 +60,7 @@ def resting_positions(
 
 
 def positions_asked(
-    entry: schema.RobotEntry, names: Sequence[str], robot: Robot, folder: Path, files: InputFiles
+    entry: schema.RobotEntry, names: Sequence[str], robot: Robot, files: InputFiles
 ) -> tuple[str, StatePositions]:
     """The positions that states give, and the file that they are from, as it is shown.
 
@@ -70,13 +69,11 @@ def positions_asked(
     """
     if entry.robot.srdf is None and not robot.states:
         raise MissingKey(f"state {names[0]!r} is in no file", valid=f"{entry.field}.srdf: the file")
-    known = _known(entry, robot, folder, files)
+    known = _known(entry, robot, files)
     return known.shown, positions_in_states(known, names, robot)
 
 
-def bases_asked(
-    entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles
-) -> dict[str, np.ndarray]:
+def bases_asked(entry: schema.RobotEntry, robot: Robot, files: InputFiles) -> dict[str, np.ndarray]:
     """(4, 4) [m] by virtual joint: where the states that the entry takes put the robot's base.
 
     Raises:
@@ -88,13 +85,13 @@ def bases_asked(
     if not names:
         return {}
     with at(entry.field):
-        return bases_in_states(_known(entry, robot, folder, files), names, robot)
+        return bases_in_states(_known(entry, robot, files), names, robot)
 
 
-def _known(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles) -> NamedStates:
+def _known(entry: schema.RobotEntry, robot: Robot, files: InputFiles) -> NamedStates:
     given = entry.robot
-    srdf = None if given.srdf is None else resolved(given.srdf, folder)
-    return states_known(srdf, robot, resolved(given.urdf, folder), files)
+    srdf = None if given.srdf is None else files.resolved(given.srdf)
+    return states_known(srdf, robot, files.resolved(given.urdf), files)
 
 
 def _note(
@@ -110,12 +107,9 @@ def _note(
 
 
 def with_start(
-    entry: schema.RobotEntry, trajectory: Trajectory, robot: Robot, folder: Path, files: InputFiles
+    entry: schema.RobotEntry, trajectory: Trajectory, robot: Robot, files: InputFiles
 ) -> tuple[Trajectory, tuple[str, ...]]:
     """The trajectory with a sample at 0 s added, if its entry gives a start; and a note.
-
-    Args:
-        folder: against which paths are looked up.
 
     Raises:
         BadTime: the trajectory begins at 0 s itself. BadInput: no such state, or joints that do not move.
@@ -130,7 +124,7 @@ def with_start(
                 f"the trajectory begins at {time_text(trajectory.times[0])} s itself",
                 valid="no start_state",
             )
-        positions = _positions(entry, asked, trajectory, robot, folder, files)
+        positions = _positions(entry, asked, trajectory, robot, files)
     first = f"the first sample at {time_text(trajectory.times[0])} s"
     note = f"joints start from rest in start_state at 0 s and go to {first} as between samples"
     return started(trajectory, np.array(positions)), (note,)
@@ -141,7 +135,6 @@ def _positions(
     asked: TrajectoryFile,
     trajectory: Trajectory,
     robot: Robot,
-    folder: Path,
     files: InputFiles,
 ) -> list[float]:
     given = asked.start_state
@@ -156,7 +149,7 @@ def _positions(
             )
     else:
         names = [given] if isinstance(given, str) else list(given or ())
-        found = positions_asked(entry, names, robot, folder, files)[1].positions
+        found = positions_asked(entry, names, robot, files)[1].positions
     missing = [name for name in trajectory.joint_names if name not in found]
     if missing:
         raise MissingKey(

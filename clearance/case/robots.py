@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from clearance.case.driven_robots import ProgrammedMotion, Surroundings
 from clearance.case.resting import bases_asked, positions_asked, resting_positions, with_start
 from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
 from clearance.formats.robot.request import RobotRequest, checked_args, read_robot
@@ -34,14 +34,14 @@ class RobotReader:
     """Reads the robots of one case; those of one file share its bodies.
 
     Args:
-        folder: against which paths are looked up. meshes: reads and keeps mesh files, and all others.
+        meshes: reads and keeps mesh files, and all others.
 
     Attributes:
         notes: a line each on how what was read so far was taken.
     """
 
-    def __init__(self, folder: Path, meshes: MeshStore) -> None:
-        self._folder, self._meshes, self._files = folder, meshes, meshes.files
+    def __init__(self, meshes: MeshStore) -> None:
+        self._meshes, self._files = meshes, meshes.files
         self._read: dict[RobotRequest, Robot] = {}
         self.notes: list[str] = []
 
@@ -51,7 +51,7 @@ class RobotReader:
         Raises:
             BadInput: with the field and the file.
         """
-        return in_motion(entry, self._standing(entry), self._folder, self._files, around)
+        return in_motion(entry, self._standing(entry), self._files, around)
 
     def _standing(self, entry: schema.RobotEntry) -> PlacedRobot:
         """The robot of an entry, without what it does.
@@ -62,7 +62,7 @@ class RobotReader:
         given, field = entry.robot, entry.field
         request = self._request(given, field)
         self._expand_srdf(given, field, request)
-        limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
+        limits = limited(entry, self._robot(request, given.name, field), self._files)
         robot = limits.robot
         self.notes += limits.notes
         with at(f"{field}.exclude_links"):
@@ -91,10 +91,10 @@ class RobotReader:
         if given.srdf is None or "base" in given.model_fields_set:
             return []
         with at(f"{field}.srdf"):
-            return virtual_joints(resolved(given.srdf, self._folder), self._files)
+            return virtual_joints(self._files.resolved(given.srdf), self._files)
 
     def _request(self, given: schema.Robot, field: str) -> RobotRequest:
-        package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
+        package_dirs = tuple(map(self._files.resolved, given.package_dirs))
         with at(f"{field}.package_dirs"):
             _refuse_missing_folders(given.package_dirs, package_dirs)
         if given.xacro_args and not given.xacro:
@@ -106,7 +106,7 @@ class RobotReader:
         with at(f"{field}.xacro_args"):
             args = checked_args(given.xacro_args)
         return RobotRequest(
-            resolved(given.urdf, self._folder),
+            self._files.resolved(given.urdf),
             package_dirs,
             given.geometry,
             given.collada_up_axis,
@@ -118,7 +118,7 @@ class RobotReader:
         """Makes an SRDF of xacro's what it stands for, where xacro is allowed."""
         if given.srdf is None or not given.xacro or not given.srdf.endswith(XACRO):
             return
-        path = resolved(given.srdf, self._folder)
+        path = self._files.resolved(given.srdf)
         if not self._files.is_in_memory(path):
             from clearance.formats.robot.urdf.xacro_file import expand_xacro
 
@@ -148,7 +148,7 @@ class RobotReader:
             return SelfClearance()
         with at(f"{field}.srdf"):
             own = replace(robot, name=own_name)
-            matrix = read_srdf(resolved(given.srdf, self._folder), own, self._files)
+            matrix = read_srdf(self._files.resolved(given.srdf), own, self._files)
         return SelfClearance(matrix, given.trust_never, given.geometry)
 
 
@@ -168,16 +168,12 @@ class InMotion(NamedTuple):
 
 
 def in_motion(
-    entry: schema.RobotEntry,
-    placed: PlacedRobot,
-    folder: Path,
-    files: InputFiles,
-    around: Surroundings,
+    entry: schema.RobotEntry, placed: PlacedRobot, files: InputFiles, around: Surroundings
 ) -> InMotion:
     """The robot of an entry with its trajectory, the others of its joints at rest.
 
     Args:
-        placed: as it stands. folder: against which paths are looked up. around: all else, for a program.
+        placed: as it stands. around: all else, for a program.
 
     Raises:
         BadInput: with the field and the file.
@@ -189,29 +185,25 @@ def in_motion(
     if asked is not None:
         field = entry.trajectory_field
         if asked.program is not None:
-            trajectory, notes, driven = _programmed(entry, placed, folder, files, around)
+            trajectory, notes, driven = _programmed(entry, placed, files, around)
             file = asked.program_file
-            path = "" if file is None else str(resolved(file.file, folder))
+            path = "" if file is None else str(files.resolved(file.file))
         else:
-            trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
-            trajectory, on_start = with_start(entry, trajectory, placed.robot, folder, files)
+            trajectory, notes = trajectory_of(asked, field, placed.robot, files)
+            trajectory, on_start = with_start(entry, trajectory, placed.robot, files)
             notes = (*notes, *on_start)
-            path = str(resolved(asked.file, folder))
+            path = str(files.resolved(asked.file))
         moves = {"trajectory": trajectory, "timing": asked.timing, "trajectory_path": path}
     moved = trajectory.joint_names if trajectory else ()
-    resting = resting_positions(entry, placed.robot, moved, folder, files)
+    resting = resting_positions(entry, placed.robot, moved, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)
     moves["fixed_positions"] = resting.positions
-    moves["bases"] = {**placed.bases, **bases_asked(entry, placed.robot, folder, files)}
+    moves["bases"] = {**placed.bases, **bases_asked(entry, placed.robot, files)}
     return InMotion(replace(placed, **moves), (*notes, *resting.notes, *on_limits), driven)
 
 
 def _programmed(
-    entry: schema.RobotEntry,
-    placed: PlacedRobot,
-    folder: Path,
-    files: InputFiles,
-    around: Surroundings,
+    entry: schema.RobotEntry, placed: PlacedRobot, files: InputFiles, around: Surroundings
 ) -> ProgrammedMotion:
     """The motion of the entry's program, from the start that the entry gives."""
     from clearance.case.program import program_motion
@@ -222,9 +214,9 @@ def _programmed(
     if not isinstance(start, Mapping):
         names = [start] if isinstance(start, str) else start
         with at(f"{field}.start_state"):
-            start = positions_asked(entry, names, placed.robot, folder, files)[1].positions
+            start = positions_asked(entry, names, placed.robot, files)[1].positions
     with at(f"{field}.program"):
-        return program_motion(asked, start, placed, folder, files, around)
+        return program_motion(asked, start, placed, files, around)
 
 
 def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:

@@ -43,7 +43,6 @@ Table = TypeVar("Table")
 def trajectory_of(
     given: TrajectoryFile,
     field: str,
-    folder: Path,
     robot: Robot,
     files: InputFiles,
     *,
@@ -52,8 +51,7 @@ def trajectory_of(
     """The trajectory that a case file names for a robot.
 
     Args:
-        field: where it is named. folder: against which the path is looked up. recorded: True for what a robot did,
-            which a table does not show by itself.
+        field: where it is named. recorded: True for what a robot did, which a table does not show by itself.
 
     Raises:
         BadInput: with the field and the file.
@@ -68,7 +66,7 @@ def trajectory_of(
         found = read_trajectory(request, shown)
         return as_recorded(found, given.gaps) if recorded or given.gaps else found
 
-    path = resolved(given.file, folder)
+    path = files.resolved(given.file)
     with at(f"{field}.file"):
         found = (
             _of_bag(path, files, given, kinds | follow, wrapping)

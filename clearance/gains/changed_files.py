@@ -248,7 +248,7 @@ class _Files:
 
         raw = parse_yaml(self.read.read(self.file), self.file.name)
         assert isinstance(raw, dict)
-        return scene_request(raw, self.file.parent, self.read)
+        return scene_request(raw, self.read)
 
     def _with_scene(self, node: Node) -> None:
         """Names the scene's new file, and says what the old one said of robots and of what may touch."""

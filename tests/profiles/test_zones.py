@@ -180,7 +180,7 @@ def test_a_zone_that_slides_when_its_width_is_edited_stands_in_the_headline(
     """Both ends give way by half of the change, where one may be a wall."""
     (tmp_path / "zone.yaml").write_text(ZONE.replace("WIDTH", width) + fixed)
     entry = Profile(name="zone", sketch="zone.yaml")
-    profiles = reserved_spaces([entry], tmp_path, InputFiles(tmp_path), ["l1"])
+    profiles = reserved_spaces([entry], InputFiles(tmp_path), ["l1"])
     case = replace(turning(ARM, [0.0, 0.5, 1.0]), obstacles=(POST,), profiles=profiles)
     found = cl.check(case)
     told = [one.text for one in found.record.notices if one.kind == "sketch"]

@@ -234,7 +234,7 @@ def _placed(
     motion = None
     if given.trajectory is not None:
         motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
-    reader = RobotReader(Path(), meshes)
+    reader = RobotReader(meshes)
     entry = schema.RobotEntry("robot", robot, motion, "trajectory")
     placed, on_motion, _ = reader.moving(entry, Surroundings())
     matrix = placed.self_clearance and placed.self_clearance.matrix

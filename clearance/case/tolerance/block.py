@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 from clearance.case.tolerance.targets import (
     Target,
@@ -23,7 +22,7 @@ from clearance.case.tolerance.targets import (
     robots_of,
 )
 from clearance.errors import BadTolerance, MissingKey, UnknownJoint, at, nearest_name
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.limit_files import parse_controllers, widest
 from clearance.formats.schema.strict_model import StrictModel, validated
 from clearance.formats.schema.tolerance import (
@@ -45,11 +44,11 @@ from clearance.world.motion_limits import PathTolerance
 from clearance.world.notice import listed
 
 
-def budget_of(given: Tolerance, case: Case, folder: Path, files: InputFiles) -> Budget:
+def budget_of(given: Tolerance, case: Case, files: InputFiles) -> Budget:
     """The budget that a block is for a case.
 
     Args:
-        folder: against which the files that it names are looked up. files: reads them.
+        files: reads the files that it names, from their folder.
 
     Raises:
         BadInput: with the field; a row of nothing that the case has, with the nearest name.
@@ -58,7 +57,7 @@ def budget_of(given: Tolerance, case: Case, folder: Path, files: InputFiles) -> 
     found: _Errors = {}
     for block in (*(one.tolerance for one in presets.values()), given):
         found |= _errors_in(block, case)
-    tracking, on_tracking = _tracking_of(given.tracking, case, folder, files)
+    tracking, on_tracking = _tracking_of(given.tracking, case, files)
     found |= {("tracking", *key): error for key, error in tracking.items()}
     return Budget(
         robots={one.robot.name: _of_robot(found, one.robot.name) for one in case.robots},
@@ -153,7 +152,7 @@ _Tracking = tuple[dict[_Key, float], tuple[str, ...]]
 """Errors [rad or m] by robot and joint, and lines on where they are from."""
 
 
-def _tracking_of(given: Tracking | None, case: Case, folder: Path, files: InputFiles) -> _Tracking:
+def _tracking_of(given: Tracking | None, case: Case, files: InputFiles) -> _Tracking:
     """What a block says of tracking.
 
     Raises:
@@ -172,7 +171,7 @@ def _tracking_of(given: Tracking | None, case: Case, folder: Path, files: InputF
             return _joined(numbers, bounds, case, "path tolerances of the robots' controllers")
         if given.file is None:
             return numbers, ()
-        path = resolved(given.file, folder)
+        path = files.resolved(given.file)
         with at("file"), at(files.shown(path)):
             bounds = _of_file(files.read(path), case)
             source = f"path tolerances of controllers in {files.shown(path)}"

@@ -92,7 +92,7 @@ def _block(path: Path, files: InputFiles) -> tuple[Tolerance, str]:
 def _read(case: Case, block: Tolerance, place: str, files: InputFiles, what: str) -> Case:
     """The case with the budget of a block, whose files are read through `files`."""
     with at(place):
-        budget = budget_of(block, case, files.folder, files)
+        budget = budget_of(block, case, files)
     made = _replaced(case, budget, what)
     return replace(made, sources=files.sources_beside(made.sources))
 

@@ -33,7 +33,7 @@ class InputFiles:
     """Reads files and keeps their checksums.
 
     Args:
-        folder: the case's folder, against which paths are shown.
+        folder: the case's folder, against which paths are looked up and shown.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -58,6 +58,14 @@ class InputFiles:
         """The same and others, each path once."""
         found = {source.path: source for source in (*others, *self.sources)}
         return tuple(found[path] for path in sorted(found))
+
+    def resolved(self, given: str) -> Path:
+        """The path that a text in a file of the folder means.
+
+        Raises:
+            Unavailable, MissingFile: as `resolved`.
+        """
+        return resolved(given, self.folder)
 
     def read(self, path: Path) -> bytes:
         """The content of a file; a second call gives the same bytes without reading again.

@@ -12,7 +12,6 @@ import math
 import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from clearance.errors import (
@@ -25,7 +24,7 @@ from clearance.errors import (
     meant_name,
     nearest_name,
 )
-from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.message.documents import Fields, described, yaml_documents
 from clearance.formats.message.values import number, require_fields
 from clearance.formats.schema import case as schema
@@ -48,9 +47,7 @@ class LimitedRobot(NamedTuple):
     notes: tuple[str, ...]
 
 
-def limited(
-    entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles
-) -> LimitedRobot:
+def limited(entry: schema.RobotEntry, robot: Robot, files: InputFiles) -> LimitedRobot:
     """The robot of an entry with what its limit files say.
 
     Raises:
@@ -61,7 +58,7 @@ def limited(
     tolerances: dict[str, PathTolerance] = {}
     names = {joint.name for joint in robot.joints if joint.kind is not JointKind.FIXED}
     if given.joint_limits is not None:
-        path = resolved(given.joint_limits, folder)
+        path = files.resolved(given.joint_limits)
         shown = files.shown(path)
         with at(f"{entry.field}.joint_limits"), at(shown):
             limits = parse_joint_limits(files.read(path))
@@ -71,7 +68,7 @@ def limited(
         motion = {name: one.motion for name, one in known.items() if one.motion != NO_LIMIT}
         notes += [f"{shown}: {note}" for note in _notes_on_limits(limits, known, robot)]
     if given.controllers is not None:
-        path = resolved(given.controllers, folder)
+        path = files.resolved(given.controllers)
         shown = files.shown(path)
         with at(f"{entry.field}.controllers"), at(shown):
             controllers = parse_controllers(files.read(path))

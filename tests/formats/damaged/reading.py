@@ -61,7 +61,7 @@ def robot_beside(data: bytes, folder: Path, name: str) -> object:
         (folder / other).write_bytes(content)
     robot = schema.Robot.model_validate(ROBOT)
     entry = schema.RobotEntry("robot", robot, None, "trajectory")
-    return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry, {})
+    return RobotReader(MeshStore(InputFiles(folder))).moving(entry, {})
 
 
 def robot(data: bytes, folder: Path, name: str) -> object:
@@ -104,7 +104,7 @@ def program(data: bytes, folder: Path, name: str) -> object:
 
     (folder / name).write_bytes(data)
     asked = TrajectoryFile.model_validate({"program": name})
-    return program_motion(asked, {}, programmed(), folder, InputFiles(folder), Surroundings())
+    return program_motion(asked, {}, programmed(), InputFiles(folder), Surroundings())
 
 
 def controller(data: bytes, folder: Path, name: str) -> object:
