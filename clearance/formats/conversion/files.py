@@ -24,7 +24,6 @@ from clearance.formats.text.file_start import LONGEST, POSE_COLUMNS
 from clearance.formats.text.notes import counted
 from clearance.formats.timed_files import load_samples, load_trajectory
 from clearance.world.timing import time_text
-from clearance.world.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -79,7 +78,9 @@ def _refuse_idle(asked: Conversion, kind: Kind) -> None:
 def _trajectory(asked: Conversion) -> ConvertedFiles:
     trajectory, notes = load_trajectory(asked.source, asked.choice, asked.files)
     with at(asked.source.name):
-        _refuse_untold(trajectory, asked.target.name)
+        for line in untold(trajectory, asked.target.name):
+            valid = "mend it, or name the file itself in a case, as trajectory"
+            raise BadInput(line, valid=valid)
         content, changes = trajectory_writer.written(trajectory, asked.target.name)
     n_joints = counted(len(trajectory.joint_names), "joint")
     samples = trajectory_writer.samples_in(trajectory, asked.target.name)
@@ -89,16 +90,6 @@ def _trajectory(asked: Conversion) -> ConvertedFiles:
     notes = (*notes, *_of_target(asked, changes))
     stamp = _stamp_lost(asked, trajectory.began)
     return ConvertedFiles({asked.target.name: content}, amount, notes, stamp)
-
-
-def _refuse_untold(trajectory: Trajectory, shown: str) -> None:
-    """Nothing, if samples say all that bears on a verdict.
-
-    Raises:
-        BadInput: a hole of a recording, a start that is not known, or what is not read.
-    """
-    for line in untold(trajectory, shown):
-        raise BadInput(line, valid="mend it, or name the file itself in a case, as trajectory")
 
 
 def _poses(asked: Conversion) -> ConvertedFiles:

@@ -28,6 +28,7 @@ from clearance.formats.mesh.triangles import (
     scaled,
     without_copies,
 )
+from clearance.formats.text.notes import counted
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.tolerance import TESSELLATION
 
@@ -130,7 +131,7 @@ def _on_triangles(triangles: Triangles, single: Triangles, shape: Polyhedron) ->
     yield from triangles.notes
     n_copies = len(triangles.corners) - len(single.corners)
     if n_copies:
-        copies = _counted(n_copies, "exact copy of a face is", "exact copies of faces are")
+        copies = counted(n_copies, "exact copy of a face is", "exact copies of faces are")
         yield f"{copies} left out"
     n_flat = n_without_area(single)
     if n_flat:
@@ -139,11 +140,11 @@ def _on_triangles(triangles: Triangles, single: Triangles, shape: Polyhedron) ->
 
 def _on_flat(n_flat: int, shape: Polyhedron) -> str:
     n_faces = int(np.count_nonzero(~shape.normals.any(axis=1)))
-    what = f"{_counted(n_flat, 'triangle', 'triangles')} {'has' if n_flat == 1 else 'have'} no area"
+    what = f"{counted(n_flat, 'triangle')} {'has' if n_flat == 1 else 'have'} no area"
     if not n_faces:
         covered = "is covered by its" if n_flat == 1 else "are covered by their"
         return f"{what} and {covered} neighbours"
-    faces = "1 is kept as a face" if n_faces == 1 else f"{n_faces} are kept as faces"
+    faces = counted(n_faces, "is kept as a face", "are kept as faces")
     return f"{what}; {faces}, because nothing else covers {'it' if n_faces == 1 else 'them'}"
 
 
@@ -164,7 +165,3 @@ def _on_parts(given: Polyhedron, shape: Polyhedron) -> Iterator[str]:
         yield OPEN
     elif n_open:
         yield f"{n_open} of its {n_parts} parts {'is' if n_open == 1 else 'are'} {_OF_OPEN}"
-
-
-def _counted(n: int, one: str, many: str) -> str:
-    return f"{n} {one if n == 1 else many}"

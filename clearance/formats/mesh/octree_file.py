@@ -183,50 +183,30 @@ def _require_bounded(occupied: list[Cell], inner: list[Cell]) -> None:
         raise BadShape(f"more than {MOST_CELLS:,} occupied cells", valid="a coarser or smaller map")
 
 
-_SQUARES = ((1, 2), (2, 0), (0, 1))
-"""The axes of a square across each axis, so that the first, the second and that axis are right-handed."""
+_FACES = np.array(
+    [
+        [[0, 0, 1], [0, 1, 1], [0, 1, 0], [0, 0, 0]],
+        [[1, 0, 0], [1, 1, 0], [1, 1, 1], [1, 0, 1]],
+        [[1, 0, 0], [1, 0, 1], [0, 0, 1], [0, 0, 0]],
+        [[0, 1, 0], [0, 1, 1], [1, 1, 1], [1, 1, 0]],
+        [[0, 1, 0], [1, 1, 0], [1, 0, 0], [0, 0, 0]],
+        [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+    ],
+    dtype=np.int32,
+)
+"""(6, 4, 3) the corners of a cube's squares across x, y and z, outward."""
 
 
 def _outside(tree: Octree) -> Triangles:
     """The squares of all cells but those that two cells of one size share, outward."""
-    rows = []
-    for axis, (u, v) in enumerate(_SQUARES):
-        for side in (0, 1):
-            at = tree.corners.copy()
-            at[:, axis] += side * tree.sizes
-            n = len(at)
-            rows.append(
-                np.column_stack(
-                    [
-                        np.full(n, axis),
-                        at[:, axis],
-                        at[:, u],
-                        at[:, v],
-                        tree.sizes,
-                        np.full(n, side),
-                    ]
-                )
-            )
-    squares = np.concatenate(rows)
-    _, kind, count = np.unique(squares[:, :5], axis=0, return_inverse=True, return_counts=True)
-    outer = squares[count[kind.reshape(-1)] == 1]
-    return _triangles(outer, tree.resolution)
-
-
-def _triangles(squares: np.ndarray, resolution: float) -> Triangles:
-    """Two triangles for each row of axis, place along it, least corner, size, and side."""
-    corners = np.empty((len(squares), 4, 3), dtype=np.int64)
-    for axis, (u, v) in enumerate(_SQUARES):
-        own = squares[:, 0] == axis
-        _, at, least_u, least_v, size, side = squares[own].T
-        made = np.empty((len(at), 4, 3), dtype=np.int64)
-        made[:, :, axis] = at[:, None]
-        made[:, :, u] = least_u[:, None] + size[:, None] * [0, 1, 1, 0]
-        made[:, :, v] = least_v[:, None] + size[:, None] * [0, 0, 1, 1]
-        inward = side == 0
-        made[inward] = made[inward][:, ::-1]
-        corners[own] = made
-    places, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    corners, sizes = tree.corners.astype(np.int32), tree.sizes.astype(np.int32)
+    squares = corners[:, None] + sizes[:, None, None] * _FACES[:, None]  # (6, n, 4, 3)
+    axes = np.repeat([0, 0, 1, 1, 2, 2], len(sizes))
+    least = squares.min(axis=2).reshape(-1, 3)
+    alike = np.column_stack([axes, least, np.tile(sizes, len(_FACES))])
+    _, kind, count = np.unique(alike, axis=0, return_inverse=True, return_counts=True)
+    outer = squares.reshape(-1, 4, 3)[count[kind.reshape(-1)] == 1]
+    places, index = np.unique(outer.reshape(-1, 3), axis=0, return_inverse=True)
     quads = index.reshape(-1, 4)
     triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
-    return Triangles(places * resolution, triangles)
+    return Triangles(places * tree.resolution, triangles)

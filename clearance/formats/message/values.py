@@ -20,7 +20,7 @@ from clearance.errors import (
     meant_name,
     nearest_name,
 )
-from clearance.formats.text.notes import note_on_rounded
+from clearance.formats.text.notes import counted, note_on_rounded
 from clearance.formats.text.numbers import is_double
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import of_unit_length
@@ -143,8 +143,8 @@ class Poses:
 
     def notes(self) -> list[str]:
         """What was made of quaternions that are no rotation as they are written."""
-        were = "quaternion of zeros is" if self.n_unset == 1 else "quaternions of zeros are"
-        unset = [f"{self.n_unset} {were} taken for no rotation, as in MoveIt"]
+        were = counted(self.n_unset, "quaternion of zeros is", "quaternions of zeros are")
+        unset = [f"{were} taken for no rotation, as in MoveIt"]
         return note_on_rounded(self.n_rounded) + unset * (self.n_unset > 0)
 
     def read(

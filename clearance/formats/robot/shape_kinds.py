@@ -36,7 +36,7 @@ def refuse_other_geometry(kinds: Kinds, geometry: Geometry) -> None:
     other = _OTHER[geometry]
     n_other = sum(other in has for has in kinds.values())
     if n_other:
-        have = "1 link has" if n_other == 1 else f"{n_other} links have"
+        have = counted(n_other, "link has", "links have")
         raise NothingToMeasure(
             f"no link has a {geometry} shape, {have} a {other} shape",
             valid=f"give robot: {{geometry: {other}}}",

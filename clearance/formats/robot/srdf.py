@@ -24,6 +24,7 @@ from clearance.errors import (
 )
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.robot_element import robot_element
+from clearance.formats.text.notes import counted
 from clearance.formats.text.numbers import finite_numbers
 from clearance.formats.text.unread import Format, Row, unread
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
@@ -164,12 +165,9 @@ def _pair(row: _Row) -> tuple[str, str]:
 
 def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) -> Iterator[str]:
     if n_of_one:
-        rows = (
-            "1 row pairs a link with itself"
-            if n_of_one == 1
-            else f"{n_of_one} rows pair links with themselves"
-        )
-        yield f"{shown}: {rows} and {'is' if n_of_one == 1 else 'are'} left out"
+        several = "rows pair links with themselves and are"
+        rows = counted(n_of_one, "row pairs a link with itself and is", several)
+        yield f"{shown}: {rows} left out"
     if n_left_out:
         text = f"{n_left_out} rows name links that the robot does not have and are left out"
         yield f"{shown}: {text}: {listed(sorted(unknown), 6)}"
@@ -179,9 +177,10 @@ def _notes_on_reasons(shown: str, rows: Sequence[_Row]) -> Iterator[str]:
     """A note on the reasons of pairs that MoveIt does not have."""
     unknown = [repr(row.given) for row in rows if not row.is_known]
     if unknown:
-        n = "1 reason is" if len(unknown) == 1 else f"{len(unknown)} reasons are"
-        count = "counts" if len(unknown) == 1 else "count"
-        yield f"{shown}: {n} none of MoveIt's and {count} as User: {listed([*dict.fromkeys(unknown)], 6)}"
+        one = "reason is none of MoveIt's and counts as User"
+        several = "reasons are none of MoveIt's and count as User"
+        lines = naming(counted(len(unknown), one, several), dict.fromkeys(unknown))
+        yield from (f"{shown}: {line}" for line in lines)
 
 
 class GroupState(NamedTuple):

@@ -99,7 +99,7 @@ class NamedPose(StrictModel):
 if TYPE_CHECKING:
     _Shaped = NamedPose
 else:  # the keys come from a table, which a type checker cannot follow
-    _Shaped = with_shapes(NamedPose, StrictModel)
+    _Shaped = with_shapes(NamedPose)
 
 
 class Obstacle(_Shaped):

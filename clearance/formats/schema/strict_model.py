@@ -225,20 +225,18 @@ Fields = dict[str, Any]
 ShapedModel = TypeVar("ShapedModel", bound=BaseModel)
 
 
-def with_shapes(base: type[ShapedModel], strict: type[BaseModel]) -> type[ShapedModel]:
-    """`base` with a key for each shape of the table; none of them must be given.
-
-    Args:
-        strict: what the models of the shapes themselves are made from.
-    """
-    models = {name: _model(name, shape, strict) for name, shape in SHAPES.items()}
+def with_shapes(base: type[ShapedModel]) -> type[ShapedModel]:
+    """`base` with a key for each shape of the table; none of them must be given."""
+    models = {name: _model(name, shape) for name, shape in SHAPES.items()}
     return create_model(f"{base.__name__}Shape", __base__=base, **_optional(models))
 
 
-def _model(name: str, shape: Shape, strict: type[BaseModel]) -> type[BaseModel]:
+def _model(name: str, shape: Shape) -> type[StrictModel]:
     needed: Fields = {key: (_TYPES[measure], ...) for key, measure in shape.dimensions.items()}
     may_be = _optional({key: _TYPES[measure] for key, measure in shape.optional.items()})
-    return create_model(name.capitalize(), __base__=strict, __doc__=shape.about, **needed, **may_be)
+    return create_model(
+        name.capitalize(), __base__=StrictModel, __doc__=shape.about, **needed, **may_be
+    )
 
 
 def _optional(types: Mapping[str, Any]) -> Fields:

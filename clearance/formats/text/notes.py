@@ -13,8 +13,8 @@ def note_on_rounded(n_rounded: int) -> list[str]:
     """A line that says so where quaternions are rounded."""
     if not n_rounded:
         return []
-    were = "quaternion is" if n_rounded == 1 else "quaternions are"
-    return [f"{n_rounded} {were} rounded to three digits or so and made of length 1"]
+    were = counted(n_rounded, "quaternion is", "quaternions are")
+    return [f"{were} rounded to three digits or so and made of length 1"]
 
 
 def grouped(notes: Iterable[tuple[str, str]]) -> list[str]:
@@ -44,6 +44,6 @@ def short(file: str) -> str:
     return file if len(parts) <= 2 or ":" in file else "/".join(parts[-2:])
 
 
-def counted(n: int, what: str) -> str:
-    """`1 link`, `2 links`."""
-    return f"{n} {what}" if n == 1 else f"{n} {what}s"
+def counted(n: int, what: str, several: str = "") -> str:
+    """`1 link`, `2 links`; or one and several as they are given."""
+    return f"{n} {what if n == 1 else several or what + 's'}"

@@ -33,6 +33,7 @@ from clearance.formats.robot.shape_kinds import (
     unseen,
 )
 from clearance.formats.robot.tree import links_from_root
+from clearance.formats.text.notes import counted
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.collision_matrix import ADJACENT, PARENT, CollisionMatrix
@@ -160,16 +161,12 @@ def _notes(
     """What was taken for what."""
     notes = []
     if measured.get(WORLD_LINK):
-        n = len(measured[WORLD_LINK])
-        what = (
-            "1 geom of the world itself stands"
-            if n == 1
-            else f"{n} geoms of the world itself stand"
-        )
+        of = "of the world itself stand"
+        what = counted(len(measured[WORLD_LINK]), f"geom {of}s", f"geoms {of}")
         text = f"{what} with the robot, as its link {WORLD_LINK!r}"
         notes.append(f"{text}; self_clearance: true measures the other links against it")
     notes += note_on_planes([geom.name for geom in _planes(model)])
-    counted = Counter(
+    kinds_of_geoms = Counter(
         "collide"
         if geom.collides
         else "are only seen"
@@ -178,7 +175,7 @@ def _notes(
         for geom in model.geoms
         if geom.kind != "plane"
     )
-    notes += naming("geoms", [f"{n} {what}" for what, n in sorted(counted.items())])
+    notes += naming("geoms", [f"{n} {what}" for what, n in sorted(kinds_of_geoms.items())])
     moving = [repr(body.name) for body in model.bodies if body.is_mocap]
     free, limited = (
         [joint.name for joint in model.joints if joint.kind == kind] for kind in ("free", "ball")

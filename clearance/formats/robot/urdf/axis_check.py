@@ -17,6 +17,7 @@ import numpy as np
 from clearance.errors import ClearanceError
 from clearance.formats.mesh.triangles import UpAxis
 from clearance.formats.robot.urdf.shapes import ShapeReader
+from clearance.formats.text.notes import counted
 from clearance.world.body import Body
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Joint
@@ -98,9 +99,8 @@ class _Turn(NamedTuple):
 
 
 def _notice(odd: list[str], what: str, so: str, otherwise: str, reader: ShapeReader) -> Notice:
-    count = "1 link" if len(odd) == 1 else f"{len(odd)} links"
     text = (
-        f"CHECK AXES: the {what} of {count} lie {so} with robot: {{collada_up_axis: "
+        f"CHECK AXES: the {what} of {counted(len(odd), 'link')} lie {so} with robot: {{collada_up_axis: "
         f"{reader.request.collada_up_axis}}} and {otherwise} with {reader.other_axis}: {listed(odd, 6)}"
     )
     return Notice(Severity.SUSPECT, "axis", text)

@@ -60,18 +60,19 @@ class _Lines:
         self.n_read += 1
         return line
 
-    def numbers(self, n: int, wanted: str) -> list[float]:
-        """The numbers of a line."""
+    def _words(self, n: int, wanted: str) -> list[str]:
         words = self.take(wanted).split()
         if len(words) != n:
             raise BadSyntax(f"{' '.join(words)!r:.60} is given", valid=f"{wanted}: {n} numbers")
-        return floats(words).tolist()
+        return words
+
+    def numbers(self, n: int, wanted: str) -> list[float]:
+        """The numbers of a line."""
+        return floats(self._words(n, wanted)).tolist()
 
     def whole(self, n: int, wanted: str) -> list[int]:
         """The whole numbers of a line, none below 0."""
-        words = self.take(wanted).split()
-        if len(words) != n:
-            raise BadSyntax(f"{' '.join(words)!r:.60} is given", valid=f"{wanted}: {n} numbers")
+        words = self._words(n, wanted)
         values = integers(words).tolist()
         if min(values) < 0 or max(values) > len(self._lines) * 10:
             raise BadSyntax(
