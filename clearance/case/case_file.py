@@ -278,14 +278,13 @@ def _notices(given: schema.Case) -> list[Notice]:
 
 def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:
     """Nothing, if what robots and obstacles are on is there."""
-    for entry, placed in zip(entries, case.robots, strict=True):
-        if placed.mount is not None:
-            with at(f"{entry.field}.base.on"):
-                require_known(case, placed.mount.on)
-    for i, obstacle in enumerate(case.obstacles):
-        if obstacle.mount is not None:
-            with at(f"{scene_at.field}obstacles[{i}].on"):
-                require_known(case, obstacle.mount.on)
+    fields = [f"{entry.field}.base.on" for entry in entries]
+    fields += [f"{scene_at.field}obstacles[{i}].on" for i in range(len(case.obstacles))]
+    mounts = [*(one.mount for one in case.robots), *(one.mount for one in case.obstacles)]
+    for field, mount in zip(fields, mounts, strict=True):
+        if mount is not None:
+            with at(field):
+                require_known(case, mount.on)
 
 
 def _robot_notes(entry: schema.RobotEntry, placed: PlacedRobot, several: bool) -> list[str]:

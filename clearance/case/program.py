@@ -32,7 +32,6 @@ from clearance.programs.moves import JointMove, Move, PathMove, Program, ToolCha
 from clearance.programs.time_law import Limits
 from clearance.world.notice import listed
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Robot
 from clearance.world.timing import Timing
 
 
@@ -71,13 +70,15 @@ def program_motion(
             skips_overlaps=read.skips_overlaps,
         )
         found = motion_of(cell.robot, program)
+    unknown = unknown_speeds(cell.robot, program)
+    lacking = [f"the greatest speed of {listed(unknown)}, which no file says"] * bool(unknown)
     made = replace(
         found.trajectory,
         rides=tuple(carriages),
         frames=tuple(sorted(frames.used | (cell.mounts(driven) if driven else set()))),
         has_way_in=read.starts_anywhere,
         is_rough=read.is_rough,
-        left_out=(*read.left_out, *_speeds_lacking(cell.robot, program)),
+        left_out=(*read.left_out, *lacking),
         contradicted=tuple(f"{shown}: {one}" for one in read.contradicted),
         assumed=tuple(f"{shown}: {one}" for one in (*read.assumed, *found.doubtful)),
         odd=tuple(f"{shown}: {one}" for one in odd),
@@ -86,12 +87,6 @@ def program_motion(
     notes = tuple(f"{shown}: {note}" for note in (*read.notes, *moved, *found.notes))
     trajectory, others = cell.parted(made, driven, given)
     return ProgrammedMotion(trajectory, notes, others)
-
-
-def _speeds_lacking(robot: Robot, program: Program) -> Iterator[str]:
-    """What the times of a program lack where joints have no greatest speed."""
-    if unknown := unknown_speeds(robot, program):
-        yield f"the greatest speed of {listed(unknown)}, which no file says"
 
 
 @contextmanager

@@ -137,8 +137,8 @@ def _cloud(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Form
 def _messages(name: str, kind: Kind, read: str, write: str, **more: Any) -> Iterator[Format]:
     """Messages of ROS, in JSON and in YAML, which `{}` stands for."""
     for language, suffixes in (("JSON", (".json",)), ("YAML", (".yaml", ".yml"))):
-        places = (f"motion.{place.format(language.lower())}" for place in (read, write))
-        yield Format(f"{name} in {language}", kind, suffixes, *places, **more)
+        reads, writes = (f"motion.{one.format(language.lower())}" for one in (read, write))
+        yield Format(f"{name} in {language}", kind, suffixes, reads, writes, **more)
 
 
 def _program(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Format:
@@ -150,7 +150,8 @@ def _program(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Fo
 FORMATS = (
     _mesh("STL", (".stl",), "stl_file:read_stl"),
     _mesh("OBJ", (".obj",), "obj_file:read_obj"),
-    _mesh("COLLADA", (".dae",), "collada_file:read_collada", sniff=sniff.is_collada),
+    _mesh("COLLADA", (".dae",), "collada_file:read_collada",
+          sniff=lambda start: start.root == "COLLADA" or start.suffix == ".dae"),
     _mesh("PLY", (".ply",), "ply_file:read_ply"),
     _mesh("OFF", (".off",), "off_file:read_off"),
     _mesh("GLB", (".glb",), "gltf_file:read_glb"),
@@ -182,7 +183,8 @@ FORMATS = (
            "motion.pose_writer:csv_text", sniff.is_pose_table, read_by=Kind.TRAJECTORY, what="a table of poses",
            hint="name it in a case file: moves: {name}, beside an obstacle's shape"),
     Format("CSV", Kind.TRAJECTORY, (".csv", ANY), "motion.trajectory_csv:read_csv",
-           "motion.trajectory_writer:csv_text", sniff.is_table, read_by=Kind.POSES, what="a table", hint=_MOTION),
+           "motion.trajectory_writer:csv_text", lambda start: start.suffix == ".csv" and not start.is_xml,
+           read_by=Kind.POSES, what="a table", hint=_MOTION),
     *_messages("JointTrajectory", Kind.TRAJECTORY, "joint_points:read_{}_trajectory", "trajectory_writer:{}_text",
                sniff=sniff.has_keys(b"joint_names", b"points"), keys=_MOTION_KEYS, what="a ROS JointTrajectory",
                hint="name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "

@@ -4,11 +4,11 @@ import pytest
 
 from clearance.errors import BadInput
 from clearance.formats.motion.trajectory_file import parse_trajectory
-from clearance.formats.robot.urdf.elements import parse_document
 from clearance.formats.schema.obstacle import Obstacle
 from clearance.formats.schema.strict_model import validated
 from clearance.world.names import checked_name
 from clearance.world.rules import matches
+from tests.formats.making_urdf import parse_document
 
 BAD = {
     "a\nb": "control character",

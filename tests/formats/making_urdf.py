@@ -3,6 +3,7 @@
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.request import RobotRequest, read_robot
+from clearance.formats.robot.urdf.elements import checked_document, reduced_document
 from tests.formats.making import cube_stl
 
 
@@ -13,6 +14,11 @@ def load_robot(folder, urdf, package_dirs=(), geometry="collision"):
         (folder / "upper.stl").write_bytes(cube_stl())
     request = RobotRequest(path, tuple(package_dirs), geometry)
     return read_robot(request, MeshStore(InputFiles(folder)))
+
+
+def parse_document(data: bytes):
+    """The checked root element of a document."""
+    return checked_document(reduced_document(data)[0])
 
 
 def link(shapes: str, name: str = "a") -> str:

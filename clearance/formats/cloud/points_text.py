@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -52,9 +52,11 @@ def read_points_text(data: bytes) -> Points:
     (places,) = columns_of(table, header, [chosen], finite=False)
     columns = [column for _, column in of_axes]
     in_own_units(places, columns)
-    if not has_header and len(header) > 3:
+    notes = note_on_units(columns)
+    if not has_header and len(header) > 3:  # some tables begin with a number of the point
         _refuse_counter(places[:, 0])
-    notes = [*([] if has_header else _on_more_columns(len(header))), *note_on_units(columns)]
+        guess = "the first three are taken for x, y and z"
+        notes = [f"no header names its {len(header)} columns: {guess}", *notes]
     return Points(places, tuple(notes), columns[0].unit is not None)
 
 
@@ -65,12 +67,6 @@ def _refuse_counter(first: np.ndarray) -> None:
             "no header names its columns, and its first column counts the rows",
             valid="a header that names x, y and z, as 'number x y z'",
         )
-
-
-def _on_more_columns(n_columns: int) -> Iterator[str]:
-    """A note where it is a guess which columns are x, y and z: some tables begin with a number of the point."""
-    if n_columns > 3:
-        yield f"no header names its {n_columns} columns: the first three are taken for x, y and z"
 
 
 _REMARKS = b"#", b"//"

@@ -230,10 +230,6 @@ def _translation(values: np.ndarray) -> np.ndarray:
     return matrix
 
 
-def _scaling(values: np.ndarray) -> np.ndarray:
-    return np.diag([*values, 1.0])
-
-
 def _rotation(values: np.ndarray) -> np.ndarray:
     """(4, 4) rotation; multiples of 90 degrees are exact. Source: Rodrigues' formula."""
     axis, degrees = values[:3], values[3]
@@ -256,6 +252,6 @@ def _rotation(values: np.ndarray) -> np.ndarray:
 _TRANSFORMS = {
     "matrix": (16, _whole),
     "translate": (3, _translation),
-    "scale": (3, _scaling),
+    "scale": (3, lambda values: np.diag([*values, 1.0])),
     "rotate": (4, _rotation),
 }

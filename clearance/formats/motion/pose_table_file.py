@@ -16,7 +16,6 @@ from clearance.formats.motion.pose_file import (
     samples_of,
 )
 from clearance.formats.table.column_units import (
-    Column,
     columns_in,
     in_own_units,
     note_on_units,
@@ -55,7 +54,10 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     require_time(names, ", ".join(POSE_COLUMNS[1:]))
     _require_columns(names)
     by_name = {column.name: column for column in columns}
-    _refuse_units(by_name)
+    for name in _QUATERNION:
+        if by_name[name].unit is not None:
+            fault = f"column {by_name[name].header!r} names a unit"
+            raise BadMotion(fault, valid="a quaternion has none")
     parts = [[by_name[name] for name in part] for part in ([TIME], _POSITION, _QUATERNION)]
     wanted = [[column.header for column in part] for part in parts]
     times, positions, quaternions = columns_of(table, header, wanted)
@@ -66,14 +68,6 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     refuse_off_length_one(quaternions, table)
     notes = (*notes_on_writing(table), *notes_on_names(header, columns), *note_on_units(columns))
     return samples_of(PoseSamples(times[:, 0], positions, quaternions), notes)
-
-
-def _refuse_units(by_name: dict[str, Column]) -> None:
-    for name in _QUATERNION:
-        if by_name[name].unit is not None:
-            raise BadMotion(
-                f"column {by_name[name].header!r} names a unit", valid="a quaternion has none"
-            )
 
 
 def _require_columns(names: list[str]) -> None:

@@ -83,20 +83,10 @@ def has_keys(*keys: bytes) -> Callable[[FileStart], bool]:
     return lambda start: start.keys.issuperset(keys)
 
 
-def is_collada(start: FileStart) -> bool:
-    """True for COLLADA's root element or suffix."""
-    return start.root == "COLLADA" or start.suffix == ".dae"
-
-
 def is_moveit_scene(start: FileStart) -> bool:
     """True for the text that MoveIt's RViz plugin writes."""
     is_text = start.suffix == ".scene" or re.match(rb"[^\n:{]*\n\* \S", start.text)
     return not start.is_xml and bool(is_text)
-
-
-def is_table(start: FileStart) -> bool:
-    """True for a file that is called a table."""
-    return start.suffix == ".csv" and not start.is_xml
 
 
 def is_pose_table(start: FileStart) -> bool:

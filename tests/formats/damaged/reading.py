@@ -155,8 +155,8 @@ def poses(data: bytes, folder: Path, name: str) -> object:
 def xacro(path: Path) -> object:
     """What is evaluated in the process that is started for it, and then read as URDF."""
     from clearance.errors import BadSyntax
-    from clearance.formats.robot.urdf.elements import parse_document
     from clearance.formats.robot.urdf.xacro_process import evaluated
+    from tests.formats.making_urdf import parse_document
 
     with contextlib.redirect_stderr(io.StringIO()):  # its process hands it on as notes
         made = evaluated(path, {})

@@ -7,8 +7,9 @@ import pytest
 import yourdfpy
 
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.robot.urdf.elements import numbers, parse_document, pose_of
+from clearance.formats.robot.urdf.elements import numbers, pose_of
 from clearance.formats.robot.urdf.joints import joints_of
+from tests.formats.making_urdf import parse_document
 
 pytestmark = pytest.mark.peer
 

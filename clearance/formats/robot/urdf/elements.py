@@ -110,15 +110,6 @@ VERSIONS = ("1", "1.0", *QUATERNION_VERSIONS)
 """Source: urdfdom, README, "URDF Versioning": 1.1 adds quaternions and capsules, 1.2 limits that are not read."""
 
 
-def parse_document(data: bytes) -> Element:
-    """The checked root element of a URDF document, reduced to links' shapes and joints.
-
-    Raises:
-        BadInput: as `reduced_document` and `checked_document`.
-    """
-    return checked_document(reduced_document(data)[0])
-
-
 def reduced_document(data: bytes) -> tuple[Element, list[Unread]]:
     """The root element of a URDF document, reduced to links' shapes and joints; and what else there was.
 

@@ -51,9 +51,9 @@ _FIELDS = (
 _STATE = ("joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff")
 
 
-def is_planning_scene(raw: object) -> bool:
+def is_planning_scene(raw: dict[str, Any]) -> bool:
     """True for plain data that has what no scene of ours has."""
-    return isinstance(raw, dict) and not _KEYS.isdisjoint(raw) and "obstacles" not in raw
+    return not _KEYS.isdisjoint(raw) and "obstacles" not in raw
 
 
 def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
@@ -79,7 +79,8 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
     rows = [*obstacles, *attached]
     notes = [*frames.notes(), *_lost(raw, state), *poses.notes()]
-    if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
+    tree = message(message(world, "octomap"), "octomap")
+    if items(tree, "data") and all(row["name"] != OCTOMAP for row in rows):
         notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
         {"obstacles": rows},
@@ -228,10 +229,6 @@ def _padding(raw: Message) -> dict[str, float]:
                 raise BadDimension(f"padding is {padding} m", valid="0 or more")
             found[text(row, "link_name")] = padding
     return {link: padding for link, padding in found.items() if padding}
-
-
-def _octomap_data(world: Message) -> list[object]:
-    return items(message(message(world, "octomap"), "octomap"), "data")
 
 
 def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
