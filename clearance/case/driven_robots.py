@@ -145,7 +145,17 @@ class ProgramCell:
 
     def places(self, driven: Sequence[str]) -> Places:
         """Where all is that a frame may be on."""
-        return _places(self.own.robot, driven, self.around)
+        own = self.own.robot
+        links = {link: link for link in own.link_names}
+        links |= {f"{own.name}/{link}": link for link in own.link_names}
+        others = []
+        for one in self.around.robots:
+            if one.robot.name in driven:
+                names = (f"{one.robot.name}/{link}" for link in one.robot.link_names)
+                links |= {name: name for name in names}
+            else:
+                others.append(one)
+        return Places(others, self.around.obstacles, self.around.carries, links)
 
     def mounts(self, driven: Sequence[str]) -> set[str]:
         """What the own robot and driven ones are on, where that is not the world."""
@@ -182,27 +192,13 @@ def require_as_read(placed: PlacedRobot, around: Surroundings) -> None:
         BadInput: a program that was read later moves it.
     """
     made = placed.given_trajectory
-    places = _places(placed.robot, made.drives, around)
+    places = ProgramCell(placed, around).places(made.drives)
     known = {"", *places.moved.values(), *made.rides}
     for name in made.frames:
         found = places.of(name)
         if isinstance(found, str) or found.on not in known:
             fault = f"the program of another robot moves {name!r}, which frames are on"
             raise BadProgram(fault, valid="that robot before this one, and no corner zone there")
-
-
-def _places(own: Robot, driven: Sequence[str], around: Surroundings) -> Places:
-    """What `ProgramCell.places` says."""
-    links = {link: link for link in own.link_names}
-    links |= {f"{own.name}/{link}": link for link in own.link_names}
-    others = []
-    for one in around.robots:
-        if one.robot.name in driven:
-            names = (f"{one.robot.name}/{link}" for link in one.robot.link_names)
-            links |= {name: name for name in names}
-        else:
-            others.append(one)
-    return Places(others, around.obstacles, around.carries, links)
 
 
 def _of(made: Trajectory, robot: str, driven: Sequence[str]) -> Trajectory:

@@ -211,15 +211,12 @@ def _text(
         link=robot.first_body,
         resting=resting,
         states=states,
-        scene=scene.name,
-        includes=scene.includes,
+        scene=scene,
         trajectory=_trajectory_keys(given, motion.trajectory, folder),
         motion=motion.source,
         motion_notes=motion.notes,
         motion_keys=_open_keys(robot, motion.trajectory),
-        carry=scene.carry,
-        allow=scene.allow,
-        remarks=robot.remarks(motion.trajectory) | {"scene": scene.remark},
+        remarks=robot.remarks(motion.trajectory),
         limits=given.limits,
     )
 

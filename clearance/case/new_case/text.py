@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from clearance.case.new_case.scene import NewScene
 from clearance.errors import shown
 from clearance.formats.text.yaml_text import flow
 from clearance.world.notice import KINDS
@@ -25,12 +26,10 @@ class CaseText:
         name: of the case. made_from: the files, as they are shown.
         robot: its keys and values, in order. link: its first with a shape, for examples.
         resting: what stands under `joints`. states: of which one could stand there.
-        scene: a file, or nothing. trajectory: its keys, the file at least; `motion` says where it comes from,
-            `motion_notes` how it was read. motion_keys: keys that the trajectory needs but that only the reader
-            knows, as YAML, and why.
-        carry: parts that links carry, as a case has them. allow: pairs that are not measured.
+        trajectory: its keys, the file at least; `motion` says where it comes from, `motion_notes` how it was read.
+            motion_keys: keys that the trajectory needs but that only the reader knows, as YAML, and why.
         touching: pairs that touch at every step, to be allowed where that is meant.
-        remarks: why a key is as it is, by key. includes: models that the scene includes, as they are taken.
+        remarks: why a key is as it is, by key.
         limits: `fail` and `warn` [m]; None where not given.
     """
 
@@ -40,16 +39,13 @@ class CaseText:
     link: str
     resting: Mapping[str, Any]
     states: Sequence[str]
-    scene: str | None
+    scene: NewScene
     trajectory: Mapping[str, Any]
     motion: str
     motion_notes: Sequence[str] = ()
     motion_keys: Sequence[tuple[str, str]] = ()
-    carry: Sequence[Mapping[str, Any]] = ()
-    allow: Sequence[tuple[str, str]] = ()
     touching: Sequence[tuple[str, str]] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
-    includes: Mapping[str, str] = field(default_factory=dict)
     limits: Mapping[str, float | None] = field(default_factory=dict)
 
 
@@ -70,9 +66,9 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield f"trajectory: {flow(path)}  # {shown(case.motion)}"
     for key, why in case.motion_keys:
         yield f"# trajectory: {flow(case.trajectory)[:-1]}, {key}}}  # {shown(why)}"
-    if case.carry:
+    if case.scene.carry:
         yield "carry:  # from the scene's file, in which links hold them"
-        yield from (f"- {flow(one)}" for one in case.carry)
+        yield from (f"- {flow(one)}" for one in case.scene.carry)
     yield from _allow(case)
     yield "limits:"
     assumed = "  # assumed: only contact fails, any gap passes; 0.005 asks for 5 mm"
@@ -116,26 +112,27 @@ def _resting(case: CaseText) -> Iterator[str]:
 
 
 def _scene(case: CaseText) -> Iterator[str]:
-    if case.scene is not None:
-        yield f"scene: {flow(case.scene)}" + _remark(case, "scene")
-        if case.includes:
-            yield f"includes: {flow(case.includes)}"
+    scene, remark = case.scene, f"  # {shown(case.scene.remark)}"
+    if scene.name is not None:
+        yield f"scene: {flow(scene.name)}{remark}"
+        if scene.includes:
+            yield f"includes: {flow(scene.includes)}"
         return
     yield "scene:"
-    yield f"  obstacles: []{_remark(case, 'scene')}; in place of []:"
+    yield f"  obstacles: []{remark}; in place of []:"
     yield "  # - {name: table, box: {size: [1.0, 1.0, 0.02]}, pose: {xyz: [0.5, 0.0, -0.01]}}"
     yield "  # - {name: fixture, mesh: {file: fixture.stl, scale: 0.001}, pose: {xyz: [0.6, 0.0, 0.0]}}"
 
 
 def _allow(case: CaseText) -> Iterator[str]:
-    if case.allow:
+    if case.scene.allow:
         yield "allow:  # pairs that are not measured; from the scene's file"
-        yield from (f"- {flow(list(pair))}" for pair in case.allow)
+        yield from (f"- {flow(list(pair))}" for pair in case.scene.allow)
     elif not case.touching:
         yield f"# allow: [[{flow(case.link)}, table]]  # pairs that are not measured; wildcards in quotes"
     if case.touching:
         yield f"# {TOUCHING.capitalize()}; where that is meant, uncomment:"
-        yield from [] if case.allow else ["# allow:"]
+        yield from [] if case.scene.allow else ["# allow:"]
         yield from (f"# - {flow(list(pair))}" for pair in case.touching)
 
 

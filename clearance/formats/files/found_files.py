@@ -22,9 +22,14 @@ from clearance.world.notice import Notice, Severity
 
 
 class FoundFiles:
-    """What is to be told of the files that one robot or scene names."""
+    """Finds the files that one robot or scene names, and keeps what is to be told of them.
 
-    def __init__(self) -> None:
+    Args:
+        files: of the case. package_dirs: where packages are looked up first.
+    """
+
+    def __init__(self, files: InputFiles, package_dirs: Sequence[Path]) -> None:
+        self._files, self._dirs = files, package_dirs
         self._by_variable: dict[str, dict[str, str]] = {}
         self._stand_ins: dict[str, dict[str, str]] = {}
         self._elsewhere: dict[str, str] = {}
@@ -42,20 +47,15 @@ class FoundFiles:
         if found.package:
             self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
 
-    def mesh(
-        self, given: str, folder: Path, package_dirs: Sequence[Path], files: InputFiles
-    ) -> Path:
-        """The mesh file that a name means, kept with where it was found.
-
-        Args:
-            folder: of the file that names it.
+    def mesh(self, given: str, folder: Path) -> Path:
+        """The mesh file that a name in a file of a folder means, kept with where it was found.
 
         Raises:
             BadInput: as `mesh_path`.
         """
-        found = mesh_path(given, folder, package_dirs)
-        note_lookup(files, MESH, given, folder, package_dirs, found.path)
-        self.add(given, found, files.shown(found.path))
+        found = mesh_path(given, folder, self._dirs)
+        note_lookup(self._files, MESH, given, folder, self._dirs, found.path)
+        self.add(given, found, self._files.shown(found.path))
         return found.path
 
     def notes(self) -> list[str]:

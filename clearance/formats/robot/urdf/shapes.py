@@ -40,7 +40,7 @@ class ShapeReader:
         self.largest = largest
         self._notes: list[tuple[str, str]] = []
         self._scales: dict[str, Scale] = {}
-        self._found = FoundFiles()
+        self._found = FoundFiles(meshes.files, request.package_dirs)
 
     @property
     def other_axis(self) -> UpAxis:
@@ -77,10 +77,9 @@ class ShapeReader:
 
     def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
         """Where a mesh element's file lies, and its scale."""
-        asked, files = self.request, self.meshes.files
-        path = self._found.mesh(mesh.get("filename"), asked.path.parent, asked.package_dirs, files)
+        path = self._found.mesh(mesh.get("filename"), self.request.path.parent)
         scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())
-        self._scales[short(files.shown(path))] = scale
+        self._scales[short(self.meshes.files.shown(path))] = scale
         return path, scale
 
     def notes(self) -> list[str]:

@@ -162,7 +162,7 @@ class SceneMeshes:
         self._asked = asked
         self._n_inline = 0
         self._n_left = MOST_VALUES
-        self.found = FoundFiles()
+        self.found = FoundFiles(asked.files, asked.package_dirs)
 
     def take(self, n: int) -> None:
         """Counts what is read: a file may name one part of itself again and again.
@@ -222,6 +222,6 @@ class SceneMeshes:
         if 0.0 in scale:
             raise BadDimension(f"scale {scale}", valid="a scale is not zero")
         folder = self._asked.path.parent
-        path = self.found.mesh(uri, folder, self._asked.package_dirs, self._asked.files)
+        path = self.found.mesh(uri, folder)
         axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}
         return {"mesh": {"file": os.path.relpath(path, folder), "scale": scale} | axis}

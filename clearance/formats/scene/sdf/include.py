@@ -38,7 +38,7 @@ class IncludeReader:
         self._n_elements = 0
         self.missing_suns = 0
         self._said: dict[str, None] = {}
-        self.found = FoundFiles()
+        self.found = FoundFiles(asked.files, asked.package_dirs)
 
     @property
     def documents(self) -> list[Element]:

@@ -81,7 +81,7 @@ def _row(shape: SdfShape, asked: SceneRequest, known: FoundFiles) -> dict[str, A
     if "mesh" in row:
         with at(shape.name):
             uri = row["mesh"]["file"]
-            path = known.mesh(uri, shape.folder, asked.package_dirs, asked.files)
+            path = known.mesh(uri, shape.folder)
             row["mesh"] = row["mesh"] | {"file": os.path.relpath(path, asked.path.parent)}
     return row
 
