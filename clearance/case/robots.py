@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.case.driven_robots import ProgrammedMotion, Surroundings
@@ -95,8 +94,10 @@ class RobotReader:
 
     def _request(self, given: schema.Robot, field: str) -> RobotRequest:
         package_dirs = tuple(map(self._files.resolved, given.package_dirs))
-        with at(f"{field}.package_dirs"):
-            _refuse_missing_folders(given.package_dirs, package_dirs)
+        for i, path in enumerate(package_dirs):
+            if not path.is_dir():
+                where = f"{field}.package_dirs: [{i}]"
+                raise MissingFile(f"there is no folder {given.package_dirs[i]!r}", where=where)
         if given.xacro_args and not given.xacro:
             raise Contradiction(
                 "arguments of xacro, which is not used",
@@ -249,9 +250,3 @@ def _padding(given: Mapping[str, float], links: Sequence[str]) -> dict[str, floa
             raise UnknownLink(f"no link matches {pattern!r}", valid=nearest_name(pattern, links))
         found |= {link: max(padding, found.get(link, 0.0)) for link in meant}
     return found | {link: given[link] for link in links if link in given}
-
-
-def _refuse_missing_folders(given: Sequence[str], package_dirs: Sequence[Path]) -> None:
-    for i, (text, path) in enumerate(zip(given, package_dirs, strict=True)):
-        if not path.is_dir():
-            raise MissingFile(f"there is no folder {text!r}", where=f"[{i}]")

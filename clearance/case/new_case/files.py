@@ -7,7 +7,7 @@ is handed over. Not for: writing the files, nor the text of the case (`text`).
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -122,8 +122,7 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
         (*robot.taken, f"trajectory {motion.source}", *scene.taken),
         (
             *robot.assumed(trajectory, scene.name is None),
-            *_assumed_of_motion(given),
-            *_no_limit(given),
+            *_assumed(given),
         ),
         tuple(dict.fromkeys(note for note in robot.notes if note not in motion.notes)),
         (*motion.notes, *scene.notes),
@@ -174,21 +173,15 @@ def _described(trajectory: Trajectory) -> str:
     return f"{n_samples} of {n_joints}, {time_text(start)} to {time_text(end)} s"
 
 
-def _assumed_of_motion(given: NewCaseRequest) -> list[str]:
-    if given.trajectory is not None:
-        return []
-    return [
-        f"from state to state all joints move straight, {PERIOD:g} s each; a planner would do otherwise"
-    ]
-
-
-def _no_limit(given: NewCaseRequest) -> list[str]:
-    """What it means that nobody asks for a clearance."""
-    if given.limits.get("fail") is not None:
-        return []
-    return [
-        "fail limit 0 mm: only contact fails, any gap passes; --fail-mm 5, or limits: in case.yaml, asks for 5 mm"
-    ]
+def _assumed(given: NewCaseRequest) -> Iterator[str]:
+    """What it means that nobody gives a motion, or asks for a clearance."""
+    if given.trajectory is None:
+        yield f"from state to state all joints move straight, {PERIOD:g} s each; a planner would do otherwise"
+    if given.limits.get("fail") is None:
+        yield (
+            "fail limit 0 mm: only contact fails, any gap passes; --fail-mm 5, or limits: in case.yaml, asks for "
+            "5 mm"
+        )
 
 
 def _text(

@@ -101,10 +101,10 @@ def cloud_from_bytes(
         points, factors = scaled_points(places, scale)
         rounded *= float(np.abs(factors).max())
         shape = PointCloud(points, radius + (rounded if rounded > COUNTED else 0.0))
-        notes += [
-            *_on_copies(len(places), shape),
-            *on_rounding(rounded, "is added to the radius of its balls"),
-        ]
+        n_copies = len(places) - shape.n_points
+        if n_copies:
+            notes.append(f"{n_copies:,} of its points are there more than once and count once")
+        notes += on_rounding(rounded, "is added to the radius of its balls")
         return LoadedCloud(shape, (*found.notes, *notes))
 
 
@@ -121,10 +121,3 @@ def _returned(places: np.ndarray) -> tuple[np.ndarray, list[str]]:
         return places, []
     what = "1 point is" if n_left_out == 1 else f"{n_left_out:,} points are"
     return places[finite], [f"{what} not finite (no return) and left out, of {len(places):,}"]
-
-
-def _on_copies(n_given: int, shape: PointCloud) -> list[str]:
-    n_copies = n_given - shape.n_points
-    if not n_copies:
-        return []
-    return [f"{n_copies:,} of its points are there more than once and count once"]

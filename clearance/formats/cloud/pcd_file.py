@@ -110,16 +110,13 @@ def _header(data: bytes) -> tuple[dict[str, list[str]], bytes]:
 
 
 def _n_points(header: dict[str, list[str]]) -> int:
-    width, height = (_count(header[key], key) for key in ("WIDTH", "HEIGHT"))
-    n_points = _count(header["POINTS"], "POINTS") if "POINTS" in header else width * height
+    width, height = (_counts(header[key], key, 1)[0] for key in ("WIDTH", "HEIGHT"))
+    n_points = width * height
+    if "POINTS" in header:
+        (n_points,) = _counts(header["POINTS"], "POINTS", 1)
     if n_points != width * height:
         raise BadShape(f"POINTS is {n_points}", valid=f"WIDTH times HEIGHT, {width * height}")
     return n_points
-
-
-def _count(words: Sequence[str], key: str) -> int:
-    counts = _counts(words, key, 1)
-    return counts[0]
 
 
 def _counts(words: Sequence[str], key: str, n: int) -> list[int]:

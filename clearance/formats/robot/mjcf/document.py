@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
@@ -217,7 +216,11 @@ def _reduce(document: MjcfDocument) -> None:
         field_.attrib.pop("file", None)
         field_.set("nrow", "2")
         field_.set("ncol", "2")
-    for element in list(_loops(root)):
+    for element in list(
+        root.iterfind("equality/*")
+    ):  # what ties bodies, beside joints that follow joints
+        if element.tag == "joint":
+            continue
         document.left_out[element.tag] = document.left_out.get(element.tag, 0) + 1
         element.getparent().remove(element)
     for key in root.iterfind(
@@ -239,12 +242,6 @@ def _keep_filter(option: Element) -> None:
             if meant_name(name, ["filterparent"]):
                 raise BadRobot(f"<flag> has {name}=", valid="did you mean filterparent=?")
             del child.attrib[name]
-
-
-def _loops(root: Element) -> Iterator[Element]:
-    """What ties bodies, beside joints that follow joints."""
-    for section in root.iterfind("equality"):
-        yield from (element for element in section if element.tag != "joint")
 
 
 def _name(asset: Element) -> None:

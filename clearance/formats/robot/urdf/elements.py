@@ -246,8 +246,9 @@ def _check(element: Element, where: str) -> None:
         _check_geometry(element, where)
     if element.tag in ("collision", "visual") and element.find("geometry") is None:
         raise MissingKey(f"<{element.tag}> has no <geometry>", where=where)
-    if element.tag == "joint":
-        _check_ends(element, where)
+    for end in ("parent", "child") if element.tag == "joint" else ():
+        if len(found := element.findall(end)) != 1:
+            raise MissingKey(f"<joint> has {len(found)} <{end}>", where=where, valid="one")
     if element.tag == "origin" and element.get("quat_xyzw") is not None:
         _check_quaternion(element, where)
     counted: dict[str, int] = {}
@@ -288,11 +289,3 @@ def _check_geometry(element: Element, where: str) -> None:
     if len(shapes) != 1 or shapes[0] not in _SHAPES:
         given = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
         raise BadRobot(f"{given} is given", where=where, valid=f"one of {', '.join(_SHAPES)}")
-
-
-def _check_ends(element: Element, where: str) -> None:
-    for end in ("parent", "child"):
-        if len(element.findall(end)) != 1:
-            raise MissingKey(
-                f"<joint> has {len(element.findall(end))} <{end}>", where=where, valid="one"
-            )
