@@ -27,8 +27,7 @@ from clearance.case.driven_robots import Surroundings
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.packed import refuse_zip, require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
-from clearance.case.robots import RobotReader, in_motion
-from clearance.case.robots_in_motion import robots_in_motion
+from clearance.case.robots import RobotReader, in_motion, robots_in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at

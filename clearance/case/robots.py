@@ -1,16 +1,20 @@
-"""The robots of a case file, read and placed: URDF, SRDF, trajectory, joints, padding, base. Not for: obstacles
-(`scene.obstacles`), and names that only the whole case can know (`case_file`).
+"""The robots of a case file, read and placed: URDF, SRDF, trajectory, joints, padding, base; and all as they move:
+those with programs are read when what their frames are on is read.
+
+Not for: obstacles (`scene.obstacles`), what a program may move (`driven_robots`), names that only the whole
+case can know (`case_file`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from clearance.case.driven_robots import ProgrammedMotion, Surroundings
+from clearance.case.allow import carries_of
+from clearance.case.driven_robots import ProgrammedMotion, Surroundings, require_as_read
 from clearance.case.resting import bases_asked, positions_asked, resting_positions, with_start
-from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
+from clearance.errors import Contradiction, MissingFile, UnknownLink, UnknownPlace, at, nearest_name
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
@@ -21,6 +25,7 @@ from clearance.formats.schema import case as schema
 from clearance.formats.schema.case import states_of
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.timed_files import trajectory_of
+from clearance.world.body import Obstacle
 from clearance.world.mount import Mount
 from clearance.world.names import checked_links
 from clearance.world.placed_robot import PlacedRobot, SelfClearance
@@ -250,3 +255,67 @@ def _padding(given: Mapping[str, float], links: Sequence[str]) -> dict[str, floa
             raise UnknownLink(f"no link matches {pattern!r}", valid=nearest_name(pattern, links))
         found |= {link: max(padding, found.get(link, 0.0)) for link in meant}
     return found | {link: given[link] for link in links if link in given}
+
+
+def robots_in_motion(
+    reader: RobotReader,
+    entries: Sequence[schema.RobotEntry],
+    given: schema.Case,
+    obstacles: Sequence[Obstacle],
+) -> list[InMotion]:
+    """The robots as they move: those without programs first, and each program after what its frames are on.
+
+    Raises:
+        BadInput: with the field and the file; programs whose frames are on each other's robots.
+    """
+    has_program = [
+        one.trajectory is not None and one.trajectory.program is not None for one in entries
+    ]
+    found = {
+        i: reader.moving(one, Surroundings()) for i, one in enumerate(entries) if not has_program[i]
+    }
+    carries, driven = carries_of(given.carry, [one.name for one in obstacles]), set[str]()
+
+    def around(i_robot: int) -> Surroundings:
+        """All but one robot, of what is read."""
+        others = tuple(one.placed for i, one in found.items() if i != i_robot)
+        return Surroundings(others, tuple(obstacles), carries, frozenset(driven))
+
+    waiting = [i for i, has in enumerate(has_program) if has]
+    while waiting:
+        i, made = _next_read(reader, entries, waiting, around)
+        waiting.remove(i)
+        for j, one in found.items():
+            if one.placed.robot.name in made.driven:
+                found[j] = one._replace(placed=made.driving(one.placed))
+        found[i] = made
+        driven |= made.driven.keys()
+    for i, entry in enumerate(entries):
+        if not has_program[i]:
+            continue
+        with at(f"{entry.trajectory_field}.program"):
+            require_as_read(found[i].placed, around(i))
+    return [found[i] for i in range(len(entries))]
+
+
+def _next_read(
+    reader: RobotReader,
+    entries: Sequence[schema.RobotEntry],
+    waiting: Sequence[int],
+    around: Callable[[int], Surroundings],
+) -> tuple[int, InMotion]:
+    """The first robot with a program whose frames are on what is read, and how it moves.
+
+    Raises:
+        UnknownPlace: there is none.
+    """
+    unknown: UnknownPlace | None = None
+    for i in waiting:
+        n_notes = len(reader.notes)
+        try:
+            return i, reader.moving(entries[i], around(i))
+        except UnknownPlace as fault:
+            unknown = unknown or fault
+            del reader.notes[n_notes:]
+    assert unknown is not None
+    raise unknown

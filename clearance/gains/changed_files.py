@@ -22,7 +22,7 @@ from clearance.formats.motion.pose_file import PoseRequest, read_samples
 from clearance.formats.motion.pose_writer import written_poses
 from clearance.formats.motion.trajectory_writer import written
 from clearance.formats.scene.request import SceneRequest
-from clearance.formats.scene.writer import rows_of, written_scene
+from clearance.formats.scene.scene_yaml import rows_of, written_scene
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.obstacle import Obstacle as ObstacleRow
 from clearance.gains.result import Gain

@@ -1,6 +1,6 @@
 """The scene of a new case: our YAML of what a scene file holds, or that file where our YAML would say less.
 
-Not for: reading it (`scene.request`), nor the text of it (`scene.writer`).
+Not for: reading it (`scene.request`), nor the text of it (`scene.scene_yaml`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from clearance.formats.scene.request import (
     includes_of,
     read_scene,
 )
-from clearance.formats.scene.writer import written_scene
+from clearance.formats.scene.scene_yaml import written_scene
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.notes import counted

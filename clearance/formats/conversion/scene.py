@@ -19,7 +19,7 @@ from clearance.formats.known_formats import Kind, suffixes_written
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneContent, SceneRequest, read_scene
-from clearance.formats.scene.writer import rows_of, written_scene
+from clearance.formats.scene.scene_yaml import rows_of, written_scene
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.notes import counted
