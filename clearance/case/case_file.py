@@ -124,7 +124,7 @@ def with_trajectory_file(
     """
     i_robot = index_of_robot(cell.case.robots, robot)
     require_no_program_on(cell.case, i_robot)
-    entry, files = cell.entries[i_robot], cell.files.of_more()
+    entry, files = cell.entries[i_robot], InputFiles(cell.files.folder)
     with at(cell.path.name):
         if entry.trajectory is not None:
             raise Contradiction(

@@ -111,12 +111,6 @@ class InputFiles:
         self._note(path, digest, n_bytes)
         return lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)
 
-    def of_more(self) -> InputFiles:
-        """The same folder, for further files: none is read yet."""
-        made = InputFiles(self.folder)
-        made.__dict__["_brought"] = self._brought
-        return made
-
     def add_sources(self, others: InputFiles) -> None:
         """Takes over the checksums of files that were read through others."""
         self._sources |= others._sources

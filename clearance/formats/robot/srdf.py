@@ -110,10 +110,7 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
         tuple(row.links[0] for row in said if row.tag == "disable_default_collisions"),
         tuple(_pair(row) for row in said if row.tag == "enable_collisions"),
         tuple((*_pair(row), row.reason) for row in said if row.tag == "disable_collisions"),
-        (
-            *_notes(shown, len(rows) - len(known), unknown, len(known) - len(said)),
-            *_notes_on_reasons(shown, said),
-        ),
+        tuple(f"{shown}: {note}" for note in _notes(len(rows) - len(known), unknown, known)),
         "" if of == robot.name else of,
     )
 
@@ -163,24 +160,19 @@ def _pair(row: _Row) -> tuple[str, str]:
     return row.links[0], row.links[1]
 
 
-def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) -> Iterator[str]:
+def _notes(n_left_out: int, unknown: frozenset[str], known: Sequence[_Row]) -> Iterator[str]:
+    """On rows that are left out, and on reasons of pairs that MoveIt does not have."""
+    n_of_one = sum(row.is_of_one for row in known)
     if n_of_one:
         several = "rows pair links with themselves and are"
-        rows = counted(n_of_one, "row pairs a link with itself and is", several)
-        yield f"{shown}: {rows} left out"
+        yield f"{counted(n_of_one, 'row pairs a link with itself and is', several)} left out"
     if n_left_out:
         text = f"{n_left_out} rows name links that the robot does not have and are left out"
-        yield f"{shown}: {text}: {listed(sorted(unknown), 6)}"
-
-
-def _notes_on_reasons(shown: str, rows: Sequence[_Row]) -> Iterator[str]:
-    """A note on the reasons of pairs that MoveIt does not have."""
-    unknown = [repr(row.given) for row in rows if not row.is_known]
-    if unknown:
-        one = "reason is none of MoveIt's and counts as User"
-        several = "reasons are none of MoveIt's and count as User"
-        lines = naming(counted(len(unknown), one, several), dict.fromkeys(unknown))
-        yield from (f"{shown}: {line}" for line in lines)
+        yield from naming(text, sorted(unknown))
+    odd = [repr(row.given) for row in known if not row.is_known and not row.is_of_one]
+    one = "reason is none of MoveIt's and counts as User"
+    several = "reasons are none of MoveIt's and count as User"
+    yield from naming(counted(len(odd), one, several), dict.fromkeys(odd))
 
 
 class GroupState(NamedTuple):
