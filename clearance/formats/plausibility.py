@@ -57,8 +57,12 @@ def obstacle_notices(obstacles: Sequence[Obstacle]) -> list[Notice]:
                 f"each point of {obstacle.name!r} has a radius of {obstacle.points.radius:g} m"
             )
         turned += odd_angles(f"obstacle {obstacle.name!r}", obstacle.pose.rpy)
-    notices = [units(f"{listed(wide)}; {IN_MILLIMETRES}")] if wide else []
-    return notices + angle_notices(turned)
+    return [*map(units, _asked(wide, IN_MILLIMETRES)), *angle_notices(turned)]
+
+
+def _asked(odd: Sequence[str], meant: str) -> list[str]:
+    """A line that asks what is meant by odd values, if there are some."""
+    return [f"{listed(odd)}; {meant}"] if odd else []
 
 
 def _radius(obstacle: Obstacle) -> float:
@@ -97,8 +101,7 @@ def odd_in_program(*given: BaseModel | None) -> list[str]:
     files = [one for _, one in models if isinstance(one, ProgramFile)]
     radii += [(f"zones.{word}", radius) for one in files for word, radius in one.zones.items()]
     wide = [f"{where} is {radius:g} m" for where, radius in radii if radius > LARGE_ZONE]
-    texts = [f"{listed(turned)}; {IN_DEGREES}"] if turned else []
-    return [*texts, *([f"{listed(wide)}; {IN_MILLIMETRES}"] if wide else [])]
+    return [*_asked(turned, IN_DEGREES), *_asked(wide, IN_MILLIMETRES)]
 
 
 def _within(model: Any, where: str) -> Iterator[tuple[str, BaseModel]]:
@@ -109,11 +112,8 @@ def _within(model: Any, where: str) -> Iterator[tuple[str, BaseModel]]:
     elif isinstance(model, Mapping):
         parts = [(f"{where}.{name}", one) for name, one in model.items()]
     else:
-        parts = (
-            [(f"{where}[{i}]", one) for i, one in enumerate(model)]
-            if isinstance(model, list)
-            else []
-        )
+        items = model if isinstance(model, list) else []
+        parts = [(f"{where}[{i}]", one) for i, one in enumerate(items)]
     for place, one in parts:
         yield from _within(one, place.lstrip("."))
 
@@ -126,7 +126,7 @@ def odd_angles(what: str, rpy: Sequence[float] | None) -> list[str]:
 
 def angle_notices(odd: Sequence[str]) -> list[Notice]:
     """One notice on all odd angles."""
-    return [units(f"{listed(odd)}; {IN_DEGREES}")] if odd else []
+    return [*map(units, _asked(odd, IN_DEGREES))]
 
 
 def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]:
@@ -135,9 +135,8 @@ def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]
     odd = [
         f"the file is scaled by {scale:g} ({name})" for name, scale in large if scale >= LARGE_SCALE
     ]
-    if not odd:
-        return []
-    return [units(f"{listed(odd)}; lengths are in metres, and a file in millimetres needs 0.001")]
+    meant = "lengths are in metres, and a file in millimetres needs 0.001"
+    return [*map(units, _asked(odd, meant))]
 
 
 def _looks_like_degrees(angle: float) -> bool:
