@@ -67,6 +67,8 @@ def positions_asked(
     Raises:
         MissingKey: no file names states. BadInput: no such state, or two that do not agree.
     """
+    if not names:
+        raise BadInput("[] is given", valid="names of states")
     if entry.robot.srdf is None and not robot.states:
         raise MissingKey(f"state {names[0]!r} is in no file", valid=f"{entry.field}.srdf: the file")
     known = _known(entry, robot, files)

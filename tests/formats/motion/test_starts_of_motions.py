@@ -152,6 +152,7 @@ def test_with_accelerations_it_goes_on_a_quintic_from_rest(tmp_path):
         ("{shoulder: 0, lft: 0}", UnknownJoint, "start_state: unknown joint 'lft'; did you mean 'lift'"),
         ("home", MissingKey, "start_state: state 'home' is in no file"),
         ("1.5", BadInput, "start_state"),
+        ("[]", BadInput, r"start_state: \[\] is given; names of states"),
     ],
 )  # fmt: skip
 def test_a_start_that_is_none_is_refused(tmp_path, key, fault, says):
