@@ -8,7 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import lru_cache
 
+import numpy as np
+
+from clearance.geometry.point_cloud import PointCloud
 from clearance.world.case import Case
 from clearance.world.collision_matrix import NEVER
 from clearance.world.joint_limits import notices_on_joints
@@ -21,7 +25,6 @@ from clearance.world.plausible_motion import (
 )
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_rest import notices_on_bases, notices_on_rest
-from clearance.world.plausible_scans import notices_on_scans
 from clearance.world.plausible_sizes import notices_on_planes, notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.plausible_wrap import notices_on_wrap
@@ -176,3 +179,37 @@ def _rides_with_tolerance(case: Case) -> Iterator[Notice]:
                 f"give robot {name!r} one as large if its controller measures where {on} is"
             )
             yield Notice(Severity.WARNING, "program", text, name)
+
+
+SAMPLED = 200
+"""Points that are asked whether their ball touches another."""
+
+
+def notices_on_scans(case: Case) -> Iterator[Notice]:
+    """A warning on each scan most of whose balls touch no other."""
+    for obstacle in case.obstacles:
+        shape = obstacle.body.shape
+        if isinstance(shape, PointCloud) and _has_gaps(shape):
+            mm = f"{1e3 * shape.ball_radius:.4g} mm"
+            text = (
+                f"scan {obstacle.name!r}: most of its balls of {mm} touch no other: what is thinner than the gaps "
+                "between them passes through; its radius should be at least the distance of neighbouring points"
+            )
+            yield Notice(Severity.WARNING, "scan", text)
+
+
+@lru_cache(maxsize=16)
+def _has_gaps(shape: PointCloud) -> bool:
+    """True if most of some balls, evenly spread, stand alone."""
+    points = shape.vertices
+    chosen = points[:: -(-len(points) // SAMPLED)]
+    n_alone = sum(not _touches_another(point, points, shape.ball_radius) for point in chosen)
+    return 2 * n_alone > len(chosen)
+
+
+def _touches_another(point: np.ndarray, points: np.ndarray, radius: float) -> bool:
+    """True if the ball about a point touches that of another of `points` (n, 3), which are ordered by x."""
+    reach = 2.0 * radius
+    ends = np.searchsorted(points[:, 0], [point[0] - reach, np.nextafter(point[0] + reach, np.inf)])
+    near = points[ends[0] : ends[1]] - point
+    return int(np.count_nonzero((near**2).sum(axis=1) <= reach * reach)) > 1
