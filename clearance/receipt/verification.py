@@ -22,7 +22,7 @@ from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import EvidenceReader, Receipt
 from clearance.record.wording import count
 from clearance.world.case import LOOKUP, Case, Limits, Omission
-from clearance.world.unproven_motion import not_proven
+from clearance.world.plausible_recordings import not_proven
 
 ROUNDED = 3
 """Units by which a claim may be below what was certified (`writing.claims_of`)."""

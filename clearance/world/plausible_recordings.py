@@ -54,3 +54,29 @@ def not_measured(case: Case) -> list[tuple[float, float]]:
 def _span(hole: Hole, timing: Timing) -> tuple[float, float]:
     start, end = timing.run_times(np.array([hole.start, hole.end])).tolist()
     return start, end
+
+
+def notices_on_unproven(placed: PlacedRobot, before: str = "") -> list[Notice]:
+    """A notice on all such stretches of a robot, if there are some.
+
+    Args:
+        before: what stands before the names of joints.
+    """
+    about, spans = placed.robot.name, placed.given_trajectory.unproven
+    if not spans:
+        return []
+    whose = f" of robot {about!r}" if before else ""
+    stretches = listed([f"{one.move}, {one.start:.3f}-{one.end:.3f} s: {one.why}" for one in spans])
+    text = f"measured at the samples and not proven{whose}: {stretches}"
+    return [Notice(Severity.UNPROVEN, "unproven motion", text, about)]
+
+
+def not_proven(case: Case) -> list[tuple[float, float]]:
+    """Those stretches of a run [s], in order of time."""
+    return sorted(
+        (float(start), float(end))
+        for placed in case.robots
+        if placed.trajectory is not None
+        for one in placed.trajectory.unproven
+        for start, end in [placed.timing.run_times(np.array([one.start, one.end]))]
+    )

@@ -19,8 +19,7 @@ from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import step_link
 from clearance.report.topic import Line, Topic, labelled
 from clearance.world.case import Case
-from clearance.world.plausible_recordings import not_measured
-from clearance.world.unproven_motion import not_proven
+from clearance.world.plausible_recordings import not_measured, not_proven
 
 MOST_ROWS = 200
 """Most steps of a failed cross-check printed on the page; all are in `summary.json`."""
