@@ -16,10 +16,10 @@ from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.corner_paddings import corner_off
 from clearance.world.forest import WORLD
-from clearance.world.holders import link_below
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, names_of
 from clearance.world.phase import Phase
+from clearance.world.robot_in_cell import link_below
 from clearance.world.rules import matches
 from clearance.world.timeline import Timeline, timeline_of
 

@@ -26,11 +26,11 @@ from clearance.world.extents import (
     slides_of,
 )
 from clearance.world.forest import owner_of, resolved_mount
-from clearance.world.holders import robots_below
 from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
+from clearance.world.robot_in_cell import robots_below
 
 RATIO = 200.0
 """[-] An obstacle this many times as long as the robot reaches, or a body this many times shorter, is in another

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput
 from clearance.world.case import Case
-from clearance.world.forest import forest_of, link_poses_at
-from clearance.world.holders import robots_below
+from clearance.world.forest import carried_by, forest_of, link_poses_at
 from clearance.world.motion import kinematic_motion
+from clearance.world.phase import Phase
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timeline import Timeline, timeline_of
 
@@ -84,3 +84,26 @@ def _unique_names(found: Sequence[tuple[str, str]]) -> list[str]:
         name if full.count(name) == 1 else f"{name}#{full[: i + 1].count(name)}"
         for i, name in enumerate(full)
     ]
+
+
+def link_below(phase: Phase, i_obstacle: int) -> tuple[int, int] | None:
+    """The robot and its link that an obstacle is on in a phase, carried or mounted; None where there is none."""
+    if i_obstacle in phase.absent_obstacles:
+        return None
+    case = phase.case
+    return next(_carriers(case, forest_of(case).obstacle_links[i_obstacle]), None)
+
+
+def robots_below(case: Case, i_robot: int) -> list[int]:
+    """The robots that a robot stands on, nearest first, in a case in which nothing changes hands."""
+    below = (i for i, _ in _carriers(case, forest_of(case).robot_starts[i_robot]) if i != i_robot)
+    return list(dict.fromkeys(below))
+
+
+def _carriers(case: Case, link: int) -> Iterator[tuple[int, int]]:
+    """The robot, and its link, of each link that carries a link of the forest, nearest first."""
+    forest = forest_of(case)
+    for above in carried_by(forest, link):
+        for i_robot, start in enumerate(forest.robot_starts):
+            if start <= above < start + len(case.robots[i_robot].robot.link_names):
+                yield i_robot, above - start

@@ -16,8 +16,8 @@ from clearance.simulate.physics.bullet import GRAVITY, SETTLE_TIME, simulated_mo
 from clearance.simulate.physics.course import notices_on_limits
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
-from clearance.world.holders import link_below, robots_below
 from clearance.world.motion import Motion, kinematic_motion, place_in
+from clearance.world.robot_in_cell import link_below, robots_below
 from clearance.world.timeline import Timeline, timeline_of
 
 

@@ -33,9 +33,9 @@ from clearance.world.corner_paddings import corner_off
 from clearance.world.cubic import cubics_of, extremes_between
 from clearance.world.extents import own_floor
 from clearance.world.forest import carried_by, forest_of, link_poses_at
-from clearance.world.holders import link_below
 from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
+from clearance.world.robot_in_cell import link_below
 from clearance.world.timeline import Timeline
 
 MOST_PARTS = 64
