@@ -33,7 +33,7 @@ from clearance.programs.inverse import joints_at
 from clearance.programs.links_off import Cells, links_off
 from clearance.programs.path_samples import PathSamples
 from clearance.programs.tool_path import Stretch
-from clearance.world.corner_zone import CornerZone
+from clearance.world.trajectory import CornerZone
 
 PATH_ERROR = 1e-6
 """[rad or m] How far a joint may be off its cubic on lines and arcs; a robot of 1 m loses some 6 um of

@@ -20,8 +20,8 @@ from clearance.programs.arm import Arm
 from clearance.programs.enclosure import Intervals, cubic_series
 from clearance.programs.links_off import Cells, links_off
 from clearance.programs.path_samples import PathSamples
-from clearance.world.corner_zone import Deviation
 from clearance.world.cubic import cubics_of, position_on, velocity_on
+from clearance.world.trajectory import Deviation
 
 FINEST = 0.02
 """[rad] or [m]: joints of one cell are no farther apart, if `MOST_CELLS` allow it."""

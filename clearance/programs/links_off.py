@@ -11,10 +11,10 @@ import numpy as np
 from clearance.geometry.quaternions import half_skew
 from clearance.kernels.motion.kinematics import SLIDING, Links
 from clearance.programs.arm import Arm
-from clearance.world.corner_zone import Deviation
 from clearance.world.kinematics import links_of_robot, poses_by_link
 from clearance.world.robot import JointKind, Robot
 from clearance.world.tool import movers, rates_of
+from clearance.world.trajectory import Deviation
 
 
 class Cells(NamedTuple):

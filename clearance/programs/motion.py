@@ -30,10 +30,9 @@ from clearance.programs.moves import STEP_TURN, JointMove, Move, PathMove, Progr
 from clearance.programs.path_samples import SAME_SPEED, PathSamples
 from clearance.programs.time_law import Piece
 from clearance.programs.tool_path import Stretch, line
-from clearance.world.corner_zone import CornerZone
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
-from clearance.world.trajectory import MoveSpan, Trajectory, UnprovenSpan
+from clearance.world.trajectory import CornerZone, MoveSpan, Trajectory, UnprovenSpan
 
 MOST_HALVINGS = 8
 """Times that intervals are halved until that is proven."""

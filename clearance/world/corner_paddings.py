@@ -14,13 +14,13 @@ import numpy as np
 from clearance.errors import BadProgram, BadTime
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
-from clearance.world.corner_zone import CornerZone
 from clearance.world.extents import farthest_corner
 from clearance.world.forest import links_by_name, owner_of, resolved_mount
 from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.timing import Window, time_text
+from clearance.world.trajectory import CornerZone
 
 
 def corner_windows(case: Case) -> list[tuple[int, CornerZone, Window]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
-from clearance.world.corner_zone import CornerZone
 from clearance.world.field_types import numbers_of, owned, require_types
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing, time_text
@@ -75,6 +74,38 @@ class UnprovenSpan:
     start: float
     end: float
     why: str
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far a link may be off.
+
+    Attributes:
+        way: [m] of the origin of its frame. turn: [rad] of the link.
+    """
+
+    way: float
+    turn: float
+
+    def at(self, distance: float) -> float:
+        """[m] How far a point of it may be off at a distance [m] from its origin."""
+        return self.way + self.turn * distance
+
+
+@dataclass(frozen=True, eq=False)
+class CornerZone:
+    """A stretch of a trajectory on which a controller may leave the nominal path.
+
+    Attributes:
+        name: of the move at whose end it is. start, end: [s] of the trajectory's own time. radius: [m].
+        links: how far each link that moves may be off, by name.
+    """
+
+    name: str
+    start: float
+    end: float
+    radius: float
+    links: Mapping[str, Deviation]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,12 +13,12 @@ from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLi
 from clearance.profiles.chain import chain_of, positions_at
 from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
-from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import JointKind
+from clearance.world.trajectory import CornerZone, Deviation
 from tests.examples import examples
 from tests.oracle.outlines import inside
 from tests.profiles.finely import (

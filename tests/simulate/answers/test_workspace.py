@@ -20,7 +20,6 @@ from clearance.simulate.answers.workspace.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case
-from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
@@ -28,7 +27,7 @@ from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Window
-from clearance.world.trajectory import Trajectory
+from clearance.world.trajectory import CornerZone, Deviation, Trajectory
 from tests import cells
 from tests.examples import examples
 from tests.made_cases import l_prism
