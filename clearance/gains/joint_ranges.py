@@ -11,9 +11,8 @@ from clearance.errors import BadChange
 from clearance.world.joint_positions import JointCourse
 from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS
 from clearance.world.joint_speeds import greatest_rates
-from clearance.world.motion_limits import NO_LIMIT
 from clearance.world.notice import listed
-from clearance.world.placed_robot import PlacedRobot
+from clearance.world.placed_robot import NO_LIMIT, PlacedRobot
 
 ROUNDING = 1e-9
 """[rad], [m], or that a second: what is less beyond a limit is at it."""

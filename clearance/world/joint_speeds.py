@@ -9,9 +9,8 @@ import numpy as np
 
 from clearance.world.cubic import cubics_of
 from clearance.world.joint_positions import JointCourse, joint_courses, turns
-from clearance.world.motion_limits import NO_LIMIT, MotionLimit
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.placed_robot import PlacedRobot
+from clearance.world.placed_robot import NO_LIMIT, MotionLimit, PlacedRobot
 from clearance.world.robot import Joint, JointKind
 from clearance.world.trajectory import Trajectory
 

@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import Contradiction, NotFinite, NoTrajectory, at
+from clearance.errors import BadDimension, Contradiction, NotFinite, NoTrajectory, at
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import checked_padding
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.field_types import owned, require_types
-from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.names import checked_links
 from clearance.world.pose_table import require_samples_to_loop
@@ -23,6 +22,48 @@ from clearance.world.robot import Robot, require_moving_joints
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.wrap import meant
+
+
+@dataclass(frozen=True)
+class MotionLimit:
+    """The greatest speed [rad/s or m/s] and acceleration [rad/s² or m/s²] of a joint, either way.
+
+    Raises:
+        BadDimension: a limit that is not above 0.
+    """
+
+    velocity: float = math.inf
+    acceleration: float = math.inf
+
+    def __post_init__(self) -> None:
+        _check_above_0(velocity=self.velocity, acceleration=self.acceleration)
+
+
+@dataclass(frozen=True)
+class PathTolerance:
+    """How far a joint may be off its path, and off its goal, before its controller stops [rad or m].
+
+    Attributes:
+        trajectory, goal: infinite where the controller does not check.
+
+    Raises:
+        BadDimension: one that is not above 0.
+    """
+
+    trajectory: float = math.inf
+    goal: float = math.inf
+
+    def __post_init__(self) -> None:
+        _check_above_0(trajectory=self.trajectory, goal=self.goal)
+
+
+def _check_above_0(**numbers: float) -> None:
+    for name, number in numbers.items():
+        if not number > 0.0:
+            raise BadDimension(f"{name} {number:g} is given", valid="above 0")
+
+
+NO_LIMIT = MotionLimit()
 
 
 @dataclass(frozen=True)

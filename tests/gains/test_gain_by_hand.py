@@ -16,7 +16,7 @@ from clearance.gains.shift import obstacle_shift
 from clearance.gains.shortfalls import proven
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle
-from clearance.world.motion_limits import MotionLimit
+from clearance.world.placed_robot import MotionLimit
 from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
 from clearance.world.trajectory import MoveSpan

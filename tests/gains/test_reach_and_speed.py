@@ -11,8 +11,8 @@ from clearance.gains.joint_ranges import ACCELERATION, SPEED, joint_ranges
 from clearance.gains.lower_bounds import motion_radii
 from clearance.world.forest import forest_of, positions_along
 from clearance.world.motion import kinematic_motion
-from clearance.world.motion_limits import MotionLimit
 from clearance.world.pairs import BodyIndex
+from clearance.world.placed_robot import MotionLimit
 from tests.examples import first_fast
 from tests.gains.gantries import gantry
 from tests.simulate.measure.wandering import case_of

@@ -40,8 +40,8 @@ from clearance.world.budget import (
     RobotTolerance,
 )
 from clearance.world.case import Case
-from clearance.world.motion_limits import PathTolerance
 from clearance.world.notice import listed
+from clearance.world.placed_robot import PathTolerance
 
 
 def budget_of(given: Tolerance, case: Case, files: InputFiles) -> Budget:

@@ -29,9 +29,9 @@ from clearance.formats.message.documents import Fields, described, yaml_document
 from clearance.formats.message.values import number, require_fields
 from clearance.formats.schema import case as schema
 from clearance.world.joint_positions import turns
-from clearance.world.motion_limits import NO_LIMIT, MotionLimit, PathTolerance
 from clearance.world.names import checked_name
 from clearance.world.notice import listed, naming
+from clearance.world.placed_robot import NO_LIMIT, MotionLimit, PathTolerance
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 

@@ -7,8 +7,8 @@ import pytest
 from clearance import check, load_case
 from clearance.errors import BadInput, MissingKey, UnknownJoint, UnknownKey
 from clearance.formats.robot.limit_files import parse_controllers, parse_joint_limits
-from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.notice import Severity
+from clearance.world.placed_robot import MotionLimit, PathTolerance
 from clearance.world.plausibility import notices_of
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 
