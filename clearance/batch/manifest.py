@@ -27,7 +27,7 @@ from clearance.options import made
 from clearance.run import CheckOptions
 from clearance.run.options import USUAL
 from clearance.world.names import checked_name
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 
 class Batch(NamedTuple):

@@ -19,7 +19,7 @@ from clearance.formats.motion.trajectory_file import files_of
 from clearance.options import made, options_in
 from clearance.run import CheckOptions, Question
 from clearance.world.case import Case
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 _WAIVERS = TypeAdapter(tuple[Waiver, ...])
 

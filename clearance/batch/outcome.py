@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from clearance.batch.item import Item
 from clearance.batch.measuring import Fault
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 
 @dataclass(eq=False)

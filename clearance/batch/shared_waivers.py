@@ -14,8 +14,7 @@ from clearance.batch.item import Item
 from clearance.case.case_file import load_cell, waivers_of_cell
 from clearance.errors import ClearanceError, nearest_name
 from clearance.findings.judgement import unknown_among
-from clearance.world.rules import matches
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver, matches
 
 
 def as_shared(waivers: Iterable[Waiver]) -> tuple[Waiver, ...]:

@@ -17,7 +17,7 @@ from clearance.simulate.measure.resources import Resources
 from clearance.simulate.measure.sections import SectionAnswer, SectionPlan, rule_limits
 from clearance.world.budget import Budget
 from clearance.world.case import Case, Limits
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 
 class MeasuredBudget(NamedTuple):

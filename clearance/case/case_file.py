@@ -52,9 +52,9 @@ from clearance.world.notice import Notice
 from clearance.world.pairs import nothing_to_measure, selected_pairs
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_rest import notices_on_rest
+from clearance.world.rules import Waiver
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
-from clearance.world.waiver import Waiver
 
 
 def load_case(path: str | PathLike[str]) -> Case:

@@ -16,7 +16,7 @@ from clearance.formats.schema.limits import TwoPatterns
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, validated
 from clearance.plain_yaml import parse_yaml
 from clearance.world.case import Case
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 MOST_WAIVERS = 10_000
 """In one file."""

@@ -28,7 +28,7 @@ from clearance.cli.batch_verdict import print_answer
 from clearance.progress import doing
 from clearance.record.wording import count
 from clearance.simulate.measure.parts import usable_cores
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 say = partial(click.echo, err=True)
 """Says a line on stderr."""

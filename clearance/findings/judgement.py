@@ -20,8 +20,7 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest, Session
 from clearance.record.status import STATUSES, Status
 from clearance.world.case import Case, Limits
-from clearance.world.rules import matches
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver, matches
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
 

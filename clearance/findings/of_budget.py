@@ -29,7 +29,7 @@ from clearance.record.wording import at_least_mm, mm, of_rule
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
 from clearance.world.plausible_recordings import not_measured, not_proven
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 NOT_WORKED_OUT = "the remaining clearance with tolerances was not computed"
 

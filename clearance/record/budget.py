@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.record.moment import Moment
 from clearance.world.case import Limits
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 GREATEST = {"rad": 0.02, "m": 0.05, "s": 1.0}
 """Of no single tolerance is more looked for, unless more is given."""

@@ -13,7 +13,7 @@ from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import NearRows, RuleAnswer
 from clearance.record.sensitivity import Sensitivity
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 
 PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 """Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""

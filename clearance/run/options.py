@@ -32,7 +32,7 @@ from clearance.world.notice import GAPS, KINDS, accepted_kind
 if TYPE_CHECKING:
     from clearance.world.budget import Budget
     from clearance.world.case import Case, Limits
-    from clearance.world.waiver import Waiver
+    from clearance.world.rules import Waiver
 
 KIND = Sort("KIND|CODE", "a kind of suspect input or of a warning, or its code", accepted_kind)
 NEEDS = ("steps", "pairs", "limit", "minimum")
@@ -56,7 +56,7 @@ def _tolerance(given: Any) -> Budget | Mapping[str, Any] | Path:
 
 
 def _waivers(given: Any) -> Waiver | Path:
-    from clearance.world.waiver import Waiver
+    from clearance.world.rules import Waiver
 
     return given if isinstance(given, Waiver) else FILE.of_value(given)
 
@@ -277,7 +277,7 @@ class CheckOptions(QuestionOptions):
         if not self.waivers:
             return case
         from clearance.case.waiver_file import with_waivers
-        from clearance.world.waiver import Waiver
+        from clearance.world.rules import Waiver
 
         case = with_waivers(case, self.files["waivers"])
         made = [one for one in self.waivers if isinstance(one, Waiver)]

@@ -20,7 +20,7 @@ from clearance.simulate.session import MeasuringSession
 
 if TYPE_CHECKING:
     from clearance.budget.answer import MeasuredBudget
-    from clearance.world.waiver import Waiver
+    from clearance.world.rules import Waiver
 
 
 @dataclass(frozen=True, eq=False)

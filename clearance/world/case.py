@@ -32,9 +32,8 @@ from clearance.world.names import (
 )
 from clearance.world.notice import Notice, accepted_kind
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level, ordered_warn
+from clearance.world.rules import DEFAULT, Allowance, Rule, Waiver, checked_level, ordered_warn
 from clearance.world.trajectory import Trajectory
-from clearance.world.waiver import Waiver
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch

@@ -16,7 +16,7 @@ from clearance.batch.store import FILE, FORMAT, Store, merge, open_store
 from clearance.cli import run
 from clearance.errors import BadInput, Incomplete, MissingFile, Unwritable
 from clearance.run import CheckOptions
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 from tests.batch.batches import ANSWER, answer_bytes, n_rows, run_here, write_cell
 
 NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]

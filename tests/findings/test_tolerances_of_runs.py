@@ -7,7 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 from tests.findings.gates import load_gates
 from tests.findings.test_verdict import printed
 from tests.report.made import write_junit

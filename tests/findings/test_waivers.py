@@ -25,8 +25,7 @@ from clearance.report.topics.verdict import header
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
-from clearance.world.rules import Rule
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Rule, Waiver
 from tests.findings.gates import load_gates
 from tests.report.made import page_of
 from tests.report.test_page import data_in

@@ -18,9 +18,9 @@ from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle
 from clearance.world.placed_robot import MotionLimit
 from clearance.world.robot import Joint, JointKind, Mimic
+from clearance.world.rules import Waiver
 from clearance.world.timing import Timing
 from clearance.world.trajectory import MoveSpan
-from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 from tests.made_cases import at, prism

@@ -23,7 +23,7 @@ from clearance.findings.comparison import compared
 from clearance.receipt import remade_report, verifying
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
 from clearance.run import Run
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 from tests.receipt.receipts import rewritten, saved, turning_arm
 from tests.receipt.test_forged import loose
 

@@ -24,9 +24,9 @@ from clearance.report.topic import TerminalTable
 from clearance.report.topics import worst
 from clearance.run import Run
 from clearance.world.placed_robot import PlacedRobot
+from clearance.world.rules import Waiver
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
-from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates, write_gates, write_way
 from tests.findings.test_verdict import WARNING, made
 from tests.report.made import model_of

@@ -17,7 +17,7 @@ from clearance.report.markdown import markdown
 from clearance.run import Question, answer
 from clearance.world.case import Limits, Omission
 from clearance.world.notice import Notice, Severity
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 from tests.findings.gates import load_gates
 from tests.made_cases import at
 from tests.report.cells import sliding

@@ -19,8 +19,8 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, SignOff
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.rules import Waiver
 from clearance.world.trajectory import Trajectory
-from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.findings.test_verdict import made
 from tests.made_cases import at

@@ -20,7 +20,7 @@ from clearance.options import LENGTH, SWITCH, check_values, made, option, option
 from clearance.pytest_plugin import PREFIX, pytest_addoption
 from clearance.run import CheckOptions, Question
 from clearance.world.notice import KINDS, START, WARNED_TOO, Notice, Severity, accepted_kind
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Waiver
 from tests.findings.gates import load_gates
 
 NAMES = {name for name, one in options_in(CheckOptions).items() if one.said}

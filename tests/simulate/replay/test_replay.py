@@ -9,8 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.simulate.replay.replay import frame_steps
-from clearance.world.rules import Rule
-from clearance.world.waiver import Waiver
+from clearance.world.rules import Rule, Waiver
 from tests.findings.gates import load_gates
 from tests.report.made import replay_of, run_of
 from tests.report.records import record
