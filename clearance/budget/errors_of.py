@@ -16,7 +16,7 @@ from clearance.geometry.pose import inverse
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
 from clearance.simulate.measure.layout import IN_WORLD, Layout, SeenBody
-from clearance.world.body import Obstacle
+from clearance.world.body import Mount, Obstacle
 from clearance.world.budget import (
     EXACT,
     Budget,
@@ -29,7 +29,6 @@ from clearance.world.carrier_error import CarrierError
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.mimics import leads_of
-from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex
 from clearance.world.robot import Robot
 

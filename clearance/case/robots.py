@@ -25,8 +25,7 @@ from clearance.formats.schema import case as schema
 from clearance.formats.schema.case import states_of
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.timed_files import trajectory_of
-from clearance.world.body import Obstacle
-from clearance.world.mount import Mount
+from clearance.world.body import Mount, Obstacle
 from clearance.world.names import checked_links
 from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.robot import Robot

@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from clearance.errors import BadChange
+from clearance.world.body import Mount
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.forest import owner_of
-from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex, names_of
 from clearance.world.rules import PairPattern, matches
 from clearance.world.timing import Window

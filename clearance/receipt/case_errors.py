@@ -12,12 +12,11 @@ import numpy as np
 
 from clearance.geometry.pose import inverse
 from clearance.receipt.proof.motion_data import Errors, MountFrames
-from clearance.world.body import Obstacle
+from clearance.world.body import Mount, Obstacle
 from clearance.world.budget import EXACT, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, Forest, forest_of
 from clearance.world.mimics import leads_of
-from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex
 from clearance.world.placed_robot import PlacedRobot
 

@@ -11,10 +11,10 @@ import numpy as np
 from clearance.compile.library import processor
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.package_digest import package_digest
+from clearance.world.body import Mount
 from clearance.world.case import Case
 from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
-from clearance.world.mount import Mount
 from clearance.world.pairs import Pair
 from clearance.world.robot import Robot
 

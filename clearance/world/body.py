@@ -14,7 +14,6 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.world.carrier_error import CarrierError
 from clearance.world.field_types import owned, require_types
-from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 
 
@@ -58,6 +57,24 @@ def require_no_shortfall(bodies: Iterable[Body], purpose: str) -> None:
                 valid="a mesh file in place of a CAD file, double precision in place of single, or a check of "
                 "the case, which counts it",
             )
+
+
+@dataclass(frozen=True, eq=False)
+class Mount:
+    """A place on a body.
+
+    Attributes:
+        on: its name as in tables: an obstacle, `robot/link`, or the link alone where there is one robot.
+        pose: (4, 4) `on_from_base` [m] of what stands there.
+    """
+
+    on: str
+    pose: np.ndarray = field(default_factory=lambda: np.eye(4))
+
+    def __post_init__(self) -> None:
+        require_types(self, on=str)
+        with at("pose"):
+            object.__setattr__(self, "pose", owned(validated_pose(self.pose)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from clearance.errors import Contradiction
+from clearance.world.body import Mount
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.forest import owner_of
-from clearance.world.mount import Mount
 from clearance.world.pairs import OBSTACLE, BodyIndex
 
 NO_CLOCK = -1

@@ -16,7 +16,7 @@ import numpy as np
 
 from clearance.errors import Contradiction, UnknownLink, at, nearest_name
 from clearance.kernels.motion.kinematics import FIXED, NO_COLUMN, NO_PARENT, Links
-from clearance.world.body import Obstacle
+from clearance.world.body import Mount, Obstacle
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.kinematics import (
@@ -27,7 +27,6 @@ from clearance.world.kinematics import (
     standing_link,
 )
 from clearance.world.motion import Motion
-from clearance.world.mount import Mount
 
 WORLD = -1
 """The link of what stands in the world."""

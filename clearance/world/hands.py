@@ -9,12 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.pose import inverse
-from clearance.world.body import Obstacle
+from clearance.world.body import Mount, Obstacle
 from clearance.world.carrier_error import GRASP, RELEASE, CarrierError, followed_by
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at, links_by_name
-from clearance.world.mount import Mount
 from clearance.world.phase import Phase
 from clearance.world.robot import Joint, JointKind
 

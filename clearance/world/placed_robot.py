@@ -11,10 +11,9 @@ import numpy as np
 
 from clearance.errors import BadDimension, Contradiction, NotFinite, NoTrajectory, at
 from clearance.geometry.pose import validated_pose
-from clearance.world.body import checked_padding
+from clearance.world.body import Mount, checked_padding
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.field_types import owned, require_types
-from clearance.world.mount import Mount
 from clearance.world.names import checked_links
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.recording import Recording

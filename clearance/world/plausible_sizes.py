@@ -10,7 +10,7 @@ import numpy as np
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.shapes import SHAPES
 from clearance.query.distance import distance
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.extents import (
@@ -26,7 +26,6 @@ from clearance.world.extents import (
     slides_of,
 )
 from clearance.world.forest import owner_of, resolved_mount
-from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind

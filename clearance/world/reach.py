@@ -12,14 +12,13 @@ import numpy as np
 
 from clearance.errors import BadDimension
 from clearance.tolerance import REACH, TURNS
-from clearance.world.body import Body
+from clearance.world.body import Body, Mount
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.cubic import extremes_between
 from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
-from clearance.world.mount import Mount
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.timing import time_text
 from clearance.world.trajectory import Trajectory

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadTime, Contradiction, UnknownObstacle, at, nearest_name
-from clearance.world.body import Obstacle
+from clearance.world.body import Mount, Obstacle
 from clearance.world.case import Case
 from clearance.world.corner_paddings import corner_windows, with_corner_paddings
 from clearance.world.forest import (
@@ -23,7 +23,6 @@ from clearance.world.forest import (
 from clearance.world.hands import with_parts
 from clearance.world.knots import Knots, knots_of_motion, knots_of_poses, looped
 from clearance.world.motion import Motion
-from clearance.world.mount import Mount
 from clearance.world.path_error import path_error_of
 from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable

@@ -6,10 +6,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import clearance as cl
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Limits
-from clearance.world.mount import Mount
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Robot

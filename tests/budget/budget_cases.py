@@ -11,7 +11,7 @@ from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_s
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.measure.measure import measure
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.budget import (
     Budget,
     JointTolerance,
@@ -20,7 +20,6 @@ from clearance.world.budget import (
     RobotTolerance,
 )
 from clearance.world.case import Case
-from clearance.world.mount import Mount
 from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import clearance as cl
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.case import Case
-from clearance.world.mount import Mount
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory

@@ -10,10 +10,9 @@ import pytest
 import clearance as cl
 from clearance.budget.expected import deviations, witness_of
 from clearance.errors import BadInput
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.budget import Budget, JointTolerance, ObstacleTolerance, RobotTolerance
 from clearance.world.case import Case
-from clearance.world.mount import Mount
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot

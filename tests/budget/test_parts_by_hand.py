@@ -9,6 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
+from clearance.world.body import Mount
 from clearance.world.budget import (
     Budget,
     JointTolerance,
@@ -17,7 +18,6 @@ from clearance.world.budget import (
     RobotTolerance,
 )
 from clearance.world.case import Case
-from clearance.world.mount import Mount
 from tests.budget.budget_cases import proven_sections
 from tests.budget.part_cases import (
     END,

@@ -10,9 +10,8 @@ import pytest
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.simulate.measure.measure import measure
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.case import Case
-from clearance.world.mount import Mount
 from tests.budget.budget_cases import (
     arm_robot,
     bar,

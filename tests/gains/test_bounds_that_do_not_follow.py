@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.world.body import Mount
 from clearance.world.carry import Carry
-from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind
 from clearance.world.timing import AS_GIVEN, Timing, Window

@@ -13,9 +13,9 @@ from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLi
 from clearance.profiles.chain import chain_of, positions_at
 from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
+from clearance.world.body import Mount
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
-from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import CornerZone, Deviation

@@ -17,10 +17,9 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.planar.curve import Curve
 from clearance.profiles.profile_file import svg_text
 from clearance.sketch import Sketch
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import ReservedSpace
-from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from tests.profiles.moving import slab, turning
 from tests.report.made import page_of, summary_of

@@ -11,10 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 import clearance as cl
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Limits
-from clearance.world.mount import Mount
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable

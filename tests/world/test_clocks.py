@@ -7,11 +7,11 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadDimension
+from clearance.world.body import Mount
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.clocks import NO_CLOCK, clocks_of
 from clearance.world.forest import owner_of
-from clearance.world.mount import Mount
 from clearance.world.plausibility import notices_of
 from clearance.world.rules import Rule
 from clearance.world.timing import Window

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pytest
 
 import clearance as cl
-from clearance.world.mount import Mount
+from clearance.world.body import Mount
 from clearance.world.pose_table import PoseTable
 from tests.report.cells import slider
 

@@ -12,11 +12,10 @@ from clearance.formats.plausibility import angle_notices
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.report.topics.worst import lines
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Limits
 from clearance.world.mimics import followers
-from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity
 from clearance.world.placed_robot import PlacedRobot, SelfClearance
 from clearance.world.plausibility import notices_of

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput, BadTime, UnknownLink, UnknownObstacle
-from clearance.world.body import Obstacle
+from clearance.world.body import Mount, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
 from clearance.world.motion import kinematic_motion
-from clearance.world.mount import Mount
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Timing, Window
 from tests.cells import END, cell, pose_at

@@ -13,8 +13,7 @@ from clearance.formats.schema import obstacle as obstacle_schema
 from clearance.formats.text.notes import grouped, note_on_rounded
 from clearance.formats.timed_files import pose_table_of
 from clearance.geometry.shapes import SHAPES
-from clearance.world.body import Body, Obstacle
-from clearance.world.mount import Mount
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.names import require_own_names
 
 

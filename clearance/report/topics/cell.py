@@ -13,7 +13,7 @@ from clearance.record.wording import limit_mm, seconds, span_text
 from clearance.report.blocks import Section, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.topic import Line, Topic
-from clearance.world.mount import Mount
+from clearance.world.body import Mount
 from clearance.world.notice import listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_recordings import not_measured

@@ -14,6 +14,7 @@ import numpy as np
 from clearance.geometry.pose import inverse
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT
 from clearance.simulate.answers.handling import gap_between
+from clearance.world.body import Mount
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.extents import metres
@@ -25,7 +26,6 @@ from clearance.world.forest import (
     owner_of,
     positions_along,
 )
-from clearance.world.mount import Mount
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.pairs import OBSTACLE, BodyIndex, bodies_of
 from clearance.world.phase import Phase

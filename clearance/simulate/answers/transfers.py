@@ -12,9 +12,9 @@ from functools import cached_property
 
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.point_motion import Thing, owners_of, things_under
+from clearance.world.body import Mount
 from clearance.world.case import Case
 from clearance.world.forest import owner_of
-from clearance.world.mount import Mount
 from clearance.world.pairs import Pair
 
 

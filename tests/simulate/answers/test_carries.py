@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.world.body import Mount
 from clearance.world.carry import Carry
-from clearance.world.mount import Mount
 from clearance.world.robot import Joint, JointKind
 from clearance.world.timing import Timing, Window
 from tests.made_cases import at

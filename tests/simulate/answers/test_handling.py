@@ -14,9 +14,9 @@ from clearance import check, load_case
 from clearance.report.topics.certainty import notes_of
 from clearance.simulate.answers.handling import handling_hints
 from clearance.simulate.answers.standing import always_in_contact, standing_contacts, standing_hint
+from clearance.world.body import Mount
 from clearance.world.carry import Carry
 from clearance.world.collision_matrix import CollisionMatrix
-from clearance.world.mount import Mount
 from clearance.world.robot import Joint, JointKind
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window

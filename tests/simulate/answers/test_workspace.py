@@ -17,12 +17,11 @@ from clearance.report.workspace import workspace_summary
 from clearance.report.workspace_picture import picture_of
 from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
 from clearance.simulate.answers.workspace.workspace import shared_workspace
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
-from clearance.world.mount import Mount
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.timeline import timeline_of

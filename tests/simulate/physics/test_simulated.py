@@ -11,10 +11,9 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.simulate.physics.bullet import simulated_motion
 from clearance.simulate.physics.motions import simulated_motions
-from clearance.world.body import Body, Obstacle
+from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case
-from clearance.world.mount import Mount
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing, Window
