@@ -12,8 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.sketch.graph.graph import POINT, SLIDE
-from clearance.sketch.graph.steps import IN_BODY, PlanStep
+from clearance.sketch.graph.graph import IN_BODY, POINT, SLIDE, PlanStep
 from clearance.sketch.problem import entities_of
 
 

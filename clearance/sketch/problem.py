@@ -23,6 +23,7 @@ from clearance.sketch.graph.graph import (
     MERGED,
     OFFSET,
     SLIDE,
+    ConstructionPlan,
     Merged,
     components,
     edges,
@@ -32,7 +33,6 @@ from clearance.sketch.graph.graph import (
     vertices,
 )
 from clearance.sketch.graph.plan import make_plan
-from clearance.sketch.graph.steps import ConstructionPlan
 from clearance.sketch.solve.newton import StoppingRule
 from clearance.sketch.solve.system import System
 

@@ -12,8 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.graph.graph import POINT, SIZE, TURN
-from clearance.sketch.graph.steps import PlanStep
+from clearance.sketch.graph.graph import POINT, SIZE, TURN, PlanStep
 from clearance.sketch.problem import RESIDUAL, Problem, entities_of
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.execute import DONE, FAILED, TOO_LARGE, Run, execute

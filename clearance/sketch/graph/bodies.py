@@ -7,9 +7,8 @@ Source: Kwon, Lee, Lee 2001, section 3.5.
 
 from __future__ import annotations
 
-from clearance.sketch.graph.graph import POINT, SLIDE, TURN, ConstraintGraph
+from clearance.sketch.graph.graph import IN_BODY, POINT, SLIDE, TURN, ConstraintGraph, PlanStep
 from clearance.sketch.graph.rules import MergeOrder
-from clearance.sketch.graph.steps import IN_BODY, PlanStep
 
 
 class Bodies:

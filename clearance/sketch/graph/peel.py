@@ -13,8 +13,16 @@ from __future__ import annotations
 
 from collections import deque
 
-from clearance.sketch.graph.graph import FREEDOMS, POINT, SIZE, SLIDE, TURN, ConstraintGraph
-from clearance.sketch.graph.steps import PEELED, PlanStep
+from clearance.sketch.graph.graph import (
+    FREEDOMS,
+    PEELED,
+    POINT,
+    SIZE,
+    SLIDE,
+    TURN,
+    ConstraintGraph,
+    PlanStep,
+)
 
 
 def peel(graph: ConstraintGraph, live: bytearray, removed: bytearray) -> list[PlanStep]:

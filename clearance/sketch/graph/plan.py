@@ -19,17 +19,20 @@ from scipy.sparse.csgraph import connected_components
 from clearance.sketch.graph.bodies import Bodies
 from clearance.sketch.graph.graph import (
     FREEDOMS,
+    IN_BODY,
+    IN_CORE,
     POINT,
     SLIDE,
     TURN,
     Components,
     ConstraintGraph,
+    ConstructionPlan,
+    PlanStep,
     components,
 )
 from clearance.sketch.graph.pebble import match, play
 from clearance.sketch.graph.peel import peel
 from clearance.sketch.graph.rules import RULED, MergeOrder, merge_order
-from clearance.sketch.graph.steps import IN_BODY, IN_CORE, ConstructionPlan, PlanStep
 
 
 def make_plan(graph: ConstraintGraph) -> ConstructionPlan:

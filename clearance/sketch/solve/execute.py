@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.graph.graph import POINT
-from clearance.sketch.graph.steps import ConstructionPlan, PlanStep
+from clearance.sketch.graph.graph import POINT, ConstructionPlan, PlanStep
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.fit import set_down
 from clearance.sketch.solve.newton import StoppingRule

@@ -11,8 +11,7 @@ import math
 from typing import NamedTuple
 
 from clearance.sketch.equations import Across, MiddleOn
-from clearance.sketch.graph.graph import POINT, SIZE, TURN
-from clearance.sketch.graph.steps import PlanStep
+from clearance.sketch.graph.graph import POINT, SIZE, TURN, PlanStep
 from clearance.sketch.solve.loci import locus, meet, nearest_on, root_of
 from clearance.sketch.solve.system import PlainSystem
 
