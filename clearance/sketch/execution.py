@@ -22,8 +22,7 @@ from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.solve.execute import FAILED, LARGEST_BLOCK, SKIPPED, Run, execute
-from clearance.sketch.solve.fit import set_down
+from clearance.sketch.solve.execute import FAILED, LARGEST_BLOCK, SKIPPED, Run, execute, set_down
 from clearance.sketch.solve.search import BANDED, RESTARTS, solve_cluster
 from clearance.sketch.solve.system import System
 from clearance.sketch.start import Sides, sides_hold, started
