@@ -26,7 +26,7 @@ from clearance.kernels.motion.joint_path import JointPath
 from clearance.record.measurement import Measurement
 from clearance.simulate.measure.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.measure.layout import PairsInMotion, positions_at
-from clearance.simulate.measure.parts import in_order, parts
+from clearance.simulate.measure.resources import in_order, parts
 from clearance.simulate.measure.sections import Section, SectionAnswer
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions

@@ -27,7 +27,7 @@ from clearance.cli import ExitCode
 from clearance.cli.batch_verdict import print_answer
 from clearance.progress import doing
 from clearance.record.wording import count
-from clearance.simulate.measure.parts import usable_cores
+from clearance.simulate.measure.resources import usable_cores
 from clearance.world.rules import Waiver
 
 say = partial(click.echo, err=True)

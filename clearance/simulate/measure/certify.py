@@ -31,9 +31,8 @@ from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import PARTS_IN_MEMORY
 from clearance.simulate.measure.measured import ProvenMotion
 from clearance.simulate.measure.moment_query import MomentQuery
-from clearance.simulate.measure.parts import in_order, parts
 from clearance.simulate.measure.refine import LEAST_GAP, Refinement
-from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources, in_order, parts
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.forest import joined_positions, positions_along

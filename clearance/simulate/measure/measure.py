@@ -22,8 +22,7 @@ from clearance.record.measurement import SWEEP_COUNTERS, Minima
 from clearance.record.rows.blocks import blocks
 from clearance.simulate.measure.layout import PairsInMotion, positions_at
 from clearance.simulate.measure.measured import MeasuredSteps, no_minima
-from clearance.simulate.measure.parts import in_order, parts
-from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources, in_order, parts
 
 NEEDS = ("steps", "pairs", "limit", "minimum")
 """What can be asked: the clearance of every step; of every pair as well; of the steps below the warn limit,

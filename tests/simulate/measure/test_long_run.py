@@ -19,7 +19,7 @@ from clearance.record.rows import blocks
 from clearance.record.rows import resumable as resumable_rows
 from clearance.record.rows.resumable import open_resumable_rows
 from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
-from clearance.simulate.measure import parts
+from clearance.simulate.measure import resources
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import Case
 from tests.examples import first_fast
@@ -51,8 +51,8 @@ def case() -> Case:
 @pytest.fixture(autouse=True)
 def saved_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(resumable_rows, "SAVE_AFTER", 0.0)
-    monkeypatch.setattr(parts, "LONGEST_PART", 16)
-    monkeypatch.setattr(parts, "SPARSE", 1)
+    monkeypatch.setattr(resources, "LONGEST_PART", 16)
+    monkeypatch.setattr(resources, "SPARSE", 1)
 
 
 def answer(
@@ -241,7 +241,7 @@ def check_and_write(case: Case, folder: Path, jobs: int) -> None:
 
 def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
     """[bytes] of 2000 and of 20,000 steps on one thread, and of 20,000 on two."""
-    parts.LONGEST_PART, blocks.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
+    resources.LONGEST_PART, blocks.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
     check_and_write(resampled(case, 500), folder, 2)  # loads and compiles, slow where traced
     few, many = resampled(case, 2_000), resampled(case, 20_000)

@@ -9,7 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
-from clearance.simulate.measure import parts
+from clearance.simulate.measure import resources
 from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
 
@@ -62,7 +62,7 @@ def test_how_steps_are_parted_changes_no_clearance(
 ) -> None:
     case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
     whole = cl.check(case, certify=False)
-    monkeypatch.setattr(parts, "LONGEST_PART", longest)
+    monkeypatch.setattr(resources, "LONGEST_PART", longest)
     assert cl.check(case, certify=False).steps.equals(whole.steps)
 
 
@@ -85,7 +85,7 @@ def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
     assert tally["queries"] + tally["pairs_skipped"] == 60 * 6
     assert tally["queries"] <= 60 * 2 + 11 * 4
     assert need == "steps" or tally["queries"] == 60 * 2 + 11 * 4
-    monkeypatch.setattr(parts, "LONGEST_PART", 1)  # nothing is carried from step to step
+    monkeypatch.setattr(resources, "LONGEST_PART", 1)  # nothing is carried from step to step
     afresh = cl.check(case, need=need, certify=False)
     assert afresh.steps.equals(run.steps)
     assert list(afresh.pair_minima) == list(run.pair_minima)

@@ -6,8 +6,7 @@ import time
 
 import pytest
 
-from clearance.simulate.measure.parts import in_order
-from clearance.simulate.measure.resources import Resources
+from clearance.simulate.measure.resources import Resources, in_order
 
 
 def test_nothing_is_worked_on_any_more_when_no_more_is_wanted() -> None:

@@ -45,9 +45,8 @@ from clearance.simulate.measure.certify import (
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks, actor_of
 from clearance.simulate.measure.layout import lay_out, with_whole_faces
 from clearance.simulate.measure.moment_query import as_seen
-from clearance.simulate.measure.parts import in_order, parts
 from clearance.simulate.measure.refine import FINER
-from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources, in_order, parts
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.notice import Notice
