@@ -10,8 +10,7 @@ import numpy as np
 from clearance.record.levels import LEVELS, Event, Interval
 from clearance.record.record import Record
 from clearance.record.row_status import RowStatus, status_codes_of
-from clearance.simulate.answers.measured_run import MeasuredRun
-from clearance.simulate.answers.motion_levels import MotionLevels, Span, moment_fields
+from clearance.simulate.answers.measured_run import MeasuredRun, MotionLevels, Span, moment_fields
 from clearance.simulate.answers.stretches import runs_of
 
 MOST_LISTED = 10_000
