@@ -37,17 +37,15 @@ from .run import CheckOptions, Question, Resources, Run, answer, check
 from .simulate.answers.workspace.workspace import shared_workspace
 from .simulate.measure.checker import Checker
 from .sketch import Sketch, SketchResult
-from .world.body import Body, Obstacle
+from .world.body import Body, Mount, Obstacle
 from .world.carry import Carry
 from .world.case import Case, Clock, Limits
-from .world.mount import Mount
 from .world.placed_robot import PlacedRobot, SelfClearance
 from .world.pose_table import PoseTable
 from .world.robot import Robot
-from .world.rules import Allowance, Rule
+from .world.rules import Allowance, Rule, Waiver
 from .world.timing import Timing, Window
 from .world.trajectory import Trajectory
-from .world.waiver import Waiver
 
 __all__ = [
     "Allowance",

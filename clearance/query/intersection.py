@@ -242,12 +242,12 @@ def touching_set(bodies: list[Polytope], met: CommonPoint) -> np.ndarray:
     for body in bodies:
         flat, offsets = body.normals @ axes.T, body.offsets_about(point)
         for i in np.flatnonzero(np.abs(flat).sum(axis=1) * 3.0 * size > offsets - slack):
-            ring = _cut(ring, flat[i], offsets[i], slack)
+            ring = _clipped(ring, flat[i], offsets[i], slack)
     ring = _distinct(ring, 8.0 * slack)
     return point + ring @ axes if len(ring) else point[None, :]
 
 
-def _cut(ring: np.ndarray, normal: np.ndarray, offset: float, slack: float) -> np.ndarray:
+def _clipped(ring: np.ndarray, normal: np.ndarray, offset: float, slack: float) -> np.ndarray:
     """The corners of the ring on or below the line, with those where it crosses."""
     heights = ring @ normal - offset
     if not len(ring) or heights.max() <= slack:
