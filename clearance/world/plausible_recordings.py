@@ -1,14 +1,19 @@
-"""Notices on holes in recordings: suspect until the case says how joints move there; named where not measured."""
+"""Notices on holes in recordings, suspect until the case says how joints move there, and on unproven motion.
+
+Unproven are stretches of a program on which joints are where it says at the samples, and perhaps not between.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
 from clearance.world.case import Case
 from clearance.world.notice import GAPS, HOLD, LINEAR, NOT_MEASURED, Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.timing import Timing
-from clearance.world.trajectory import Hole
+from clearance.world.timing import Window
+from clearance.world.trajectory import Trajectory, UnprovenSpan
 
 _MEANING = {
     None: (
@@ -39,25 +44,8 @@ def notices_on_holes(placed: PlacedRobot, before: str = "") -> list[Notice]:
     return found
 
 
-def not_measured(case: Case) -> list[tuple[float, float]]:
-    """The stretches of a run [s] in which some robot is not measured, in order of time, each once."""
-    spans = {
-        _span(hole, placed.timing)
-        for placed in case.robots
-        if placed.trajectory is not None
-        for hole in placed.trajectory.holes
-        if hole.means == NOT_MEASURED
-    }
-    return sorted(spans)
-
-
-def _span(hole: Hole, timing: Timing) -> tuple[float, float]:
-    start, end = timing.run_times(np.array([hole.start, hole.end])).tolist()
-    return start, end
-
-
 def notices_on_unproven(placed: PlacedRobot, before: str = "") -> list[Notice]:
-    """A notice on all such stretches of a robot, if there are some.
+    """A notice on all stretches of a robot that are not proven between the samples, if there are some.
 
     Args:
         before: what stands before the names of joints.
@@ -71,12 +59,21 @@ def notices_on_unproven(placed: PlacedRobot, before: str = "") -> list[Notice]:
     return [Notice(Severity.UNPROVEN, "unproven motion", text, about)]
 
 
+def not_measured(case: Case) -> list[tuple[float, float]]:
+    """The stretches of a run [s] in which some robot is not measured, in order of time, each once."""
+    return sorted({*_stretches(case, lambda asked: asked.not_measured)})
+
+
 def not_proven(case: Case) -> list[tuple[float, float]]:
-    """Those stretches of a run [s], in order of time."""
-    return sorted(
-        (float(start), float(end))
-        for placed in case.robots
-        if placed.trajectory is not None
-        for one in placed.trajectory.unproven
-        for start, end in [placed.timing.run_times(np.array([one.start, one.end]))]
-    )
+    """The stretches of a run [s] that are not proven between the samples, in order of time."""
+    return sorted(_stretches(case, lambda asked: asked.unproven))
+
+
+def _stretches(
+    case: Case, of: Callable[[Trajectory], Sequence[Window | UnprovenSpan]]
+) -> Iterator[tuple[float, float]]:
+    """[s] The times of a run at which stretches of the tables of robots begin and end."""
+    for placed in case.robots:
+        for one in of(placed.trajectory) if placed.trajectory is not None else ():
+            start, end = placed.timing.run_times(np.array([one.start, one.end])).tolist()
+            yield start, end

@@ -1,4 +1,4 @@
-"""One robot among all that moves in its case: its name, where its links are, and what it stands on."""
+"""One robot among all that moves in its case: its name, where its links are, what it stands on and carries."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a long run may use: threads, a call that reports progress, and a place for its rows."""
+"""What a long run may use, and its work in parts: threads, a call that reports progress, a place for its rows."""
 
 from __future__ import annotations
 
