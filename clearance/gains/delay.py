@@ -27,7 +27,7 @@ from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.point_motion import moves_with_joints
 from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import bodies_of
 from clearance.world.timing import Timing
 
 FINEST = 1e-3
@@ -203,12 +203,8 @@ def greatest_speed(case: Case, i_robot: int) -> float:
         rates = [before, after, 3.0 * mean - before - after]
     fastest = np.abs(np.concatenate(rates)).max(axis=0) * placed.timing.rate
     columns = columns_of(case, i_robot)
-    bodies = [
-        BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))
-    ]
-    bodies += [BodyIndex(-1, i) for i in range(len(case.obstacles))]
     moving = fastest > 0.0
-    radii = [motion_radii(case, body, as_they_are=True)[columns] for body in bodies]
+    radii = [motion_radii(case, body, as_they_are=True)[columns] for body in bodies_of(case)]
     return max(float(one[moving] @ fastest[moving]) for one in radii)
 
 

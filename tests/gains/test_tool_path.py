@@ -13,10 +13,11 @@ from clearance.gains.shift import base_shift
 from clearance.gains.tool_path import tool_path_kept
 from clearance.gains.turn import Turn
 from clearance.world.kinematics import link_poses
-from clearance.world.robot import Joint, JointKind, Mimic
+from clearance.world.robot import Joint, JointKind
 from clearance.world.tool import pose_errors, tool_of
 from tests.gains.gantries import along_x, gantry, slot, standing
 from tests.gains.making_gain import write_cell
+from tests.made_cases import random_robot
 
 
 def footed(x_range=(-np.inf, np.inf), rates=False):
@@ -215,37 +216,23 @@ def test_a_small_turn_of_the_tool_is_found_where_it_may_hardly_move():
     assert found.kept and move.far <= 0.0002 and 0.9 < np.degrees(move.turn) <= 1.0
 
 
-def chain():
-    """Joints of all sorts, one that follows, out of plane."""
-    rng = np.random.default_rng(5)
-
-    def placed():
-        pose = np.eye(4)
-        pose[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        pose[:3, :3] *= np.sign(np.linalg.det(pose[:3, :3]))
-        pose[:3, 3] = rng.normal(size=3)
-        return pose
-
-    axes = np.eye(3)
-    joints = (
-        Joint("a", JointKind.REVOLUTE, "base", "l1", placed(), axes[2]),
-        Joint("b", JointKind.PRISMATIC, "l1", "l2", placed(), axes[0]),
-        Joint("c", JointKind.CONTINUOUS, "l2", "l3", placed(), axes[1]),
-        Joint("d", JointKind.REVOLUTE, "l3", "l4", placed(), axes[0], mimic=Mimic("a", -0.5, 0.2)),
-        Joint("e", JointKind.FIXED, "l4", "l5", placed()),
-    )
-    names = ("base", "l1", "l2", "l3", "l4", "l5")
-    robot = cl.Robot("chain", names, joints, (cl.Body("l5", cl.box((0.1, 0.1, 0.1))),))
-    at = rng.normal(size=(3, 3))
-    return cl.PlacedRobot(robot, cl.Trajectory(np.arange(3.0), ("c", "a", "b"), at))
+def chain(seed):
+    """Joints of all sorts, some that follow, and the link behind the last that does not."""
+    rng = np.random.default_rng(seed)
+    robot = random_robot(rng, 6, mimics=0.4)
+    own = [one for one in robot.joints if one.kind is not JointKind.FIXED and one.mimic is None]
+    names = tuple(one.name for one in own[::-1])
+    at = rng.normal(size=(3, len(names)))
+    return cl.PlacedRobot(robot, cl.Trajectory(np.arange(3.0), names, at)), own[-1].child
 
 
-def test_rates_of_a_tool_are_those_of_differences():
-    placed = chain()
-    tool, at = tool_of(placed, "l5"), placed.given_trajectory.positions
+@pytest.mark.parametrize("seed", range(3))
+def test_the_usual_tool_is_what_all_joints_move_and_its_rates_are_those_of_differences(seed):
+    placed, last = chain(seed)
+    assert tool_of(placed, None).name == last
+    tool, at = tool_of(placed, "l6"), placed.given_trajectory.positions
     rates = tool.poses_and_rates(at)[1]
-    for column in range(3):
-        step = np.eye(3)[column] * 1e-6
+    for column, step in enumerate(1e-6 * np.eye(at.shape[1])):
         found = pose_errors(tool.poses(at + step), tool.poses(at - step)) / 2e-6
         assert rates[:, :, column] == pytest.approx(found, abs=1e-8)
 
@@ -258,10 +245,6 @@ def test_how_poses_lie_apart_at_any_angle():
         turned[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
         found = pose_errors(turned[None], np.eye(4)[None])[0]
         assert found == pytest.approx(np.append(np.zeros(3), angle * axis), abs=1e-9)
-
-
-def test_the_usual_tool_is_the_first_that_all_joints_move():
-    assert tool_of(chain(), None).name == "l3"
 
 
 @pytest.mark.parametrize(
