@@ -215,10 +215,11 @@ class Request:
                 "a tool is named, and nothing says that it is kept",
                 valid="kind waypoints with keep_tool, or base with a tool path that is kept",
             )
-        if self.turn is not None:
-            object.__setattr__(self, "turn", _whole_turn(self.turn, self.about, self.most_turn))
-            object.__setattr__(self, "about", None)
-            object.__setattr__(self, "most_turn", None)
+        if (turn := self.turn) is not None:  # what is said of it beside its axis is the turn's
+            most = turn.most if self.most_turn is None else self.most_turn
+            whole = replace(turn, about=self.about or turn.about, most=most)
+            for name, value in {"turn": whole, "about": None, "most_turn": None}.items():
+                object.__setattr__(self, name, value)
         if self.within is not None:
             _require_freedom(self.within, self.turn)
 
@@ -226,11 +227,6 @@ class Request:
 def kinds_of(name: str) -> tuple[str, ...]:
     """The kinds of change that an option is of."""
     return options_in(Request)[name].of or KINDS
-
-
-def _whole_turn(turn: Turn, about: Any, most: float | None) -> Turn:
-    """The turn with what is said of it beside its axis."""
-    return replace(turn, about=about or turn.about, most=turn.most if most is None else most)
 
 
 def _require_robots(request: Request) -> None:
