@@ -115,6 +115,7 @@ def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
             yield f"  note      no areas: {drawn.region_fault}"
         if drawn.profile is not None:
             yield f"  sweep {side}   exceeds what is swept by at most {scale * drawn.profile.bound:.4g}{unit}"
+            yield from (f"  note      {side}: {note}" for note in drawn.profile.notes)
     for one in found.beyond[:MOST_BEYOND]:
         yield (
             f"  beyond    on {one.outline.upper()}: {scale * one.length:.6g} long, up to "
@@ -231,6 +232,8 @@ def fit(
         found = fitted(sketch, outline, mode, free=names, margin=margin_mm)
     found.sketch.save(out)
     _print_fit(found)
+    for note in () if outline.profile is None else outline.profile.notes:
+        click.echo(f"note: {outline.name}: {note}")
     click.echo(f"written {out}")
     if picture is not None:
         from clearance.profiles.picture import draw_outlines
@@ -298,7 +301,7 @@ def _print_fit(found) -> None:
     type=OutputPath(),
     help="File to write: .yaml, .dxf, .svg or .geojson.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+@click.option("--quiet", is_flag=True, help="Print nothing but errors and what is not swept.")
 def sweep(
     case_file: Path,
     plane: str,
@@ -348,7 +351,10 @@ def sweep(
             progress=progress,
         )
     write_profile(found, out)
-    if not quiet:
+    if quiet:
+        for note in found.left_out:
+            click.echo(f"warning: {case.name}: {note}", err=True)
+    else:
         _print_sweep(found, out, uncounted_in_sweeps([case]))
     return ExitCode.BAD_INPUT if is_suspect else ExitCode.CLEAR
 
@@ -375,7 +381,7 @@ def _print_sweep(found, out: Path, uncounted: str) -> None:
         f"outlines {outer}, holes {holes}, {found.n_pieces} lines and arcs, "
         f"{found.length:.6g} m long, area {found.area:.6g} m2"
     )
-    click.echo(f"contains {found.content}, exceeds it by at most {1000 * found.bound:.4g} mm")
+    click.echo(found.promise)
     if uncounted:
         click.echo(f"without the {uncounted} of the case")
     if found.facets:

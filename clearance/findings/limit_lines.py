@@ -109,10 +109,10 @@ def _contact_is_open(rule: RuleAnswer) -> bool:
 
 def profile_text(answer: ProfileAnswer) -> str:
     """Whether a profile is kept, how close it comes, who and when."""
-    verdict = "kept" if answer.passed else "NOT KEPT"
     what = "distance" if answer.mode == "nearest" else "gap"
     swept = swept_text(answer.plane, answer.section, answer.links)
-    return (
-        f"{answer.name} ({answer.mode}, {swept}): {verdict}, {what} {gap_text(answer.gap)} mm, "
+    text = (
+        f"{answer.name} ({answer.mode}, {swept}): {answer.kept_text}, {what} {gap_text(answer.gap)} mm, "
         f"limit {answer.limit * 1000:g} mm, {answer.link}, step {answer.step}"
     )
+    return "; ".join((text, *answer.left_out))

@@ -19,7 +19,7 @@ from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
 from clearance.profiles.plausible_zones import notices_on_zone
-from clearance.profiles.profile import Profile
+from clearance.profiles.profile import MOVING, Profile
 from clearance.profiles.region import contains
 from clearance.profiles.sweep import swept_profile
 from clearance.profiles.swept_bodies import TimedCase
@@ -90,6 +90,7 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
         link=link,
         step=step,
         links=space.links,
+        left_out=swept.left_out,
     )
     picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
     odd = notices_on_zone(case, space, curve, swept.curve, answer.gap)
@@ -97,9 +98,10 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
 
 
 def _uncounted(space: ReservedSpace, swept: Profile) -> Iterator[Notice]:
-    """A warning on each thing of the motion that the sweep does not contain."""
+    """A warning on each thing that the sweep does not contain and that no other warning is on."""
     open_cuts = (f"{note}, without what it encloses" for note in swept.open_cuts)
-    for note in (*open_cuts, *swept.left_out):
+    moving = (note for note in swept.left_out if note.startswith(MOVING))
+    for note in (*open_cuts, *moving):
         yield Notice(Severity.WARNING, "profiles", f"profile {space.name!r}: {note}")
 
 

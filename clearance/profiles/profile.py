@@ -33,8 +33,14 @@ class Origin:
 NOT_CLOSED = "is not closed: its cut is that of its surface"
 """The end of a note: what an open body encloses is not in its section."""
 
-NOT_SWEPT = "not swept, though moving by themselves:"
+NOT_SWEPT = "not swept"
+"""The start of a note: the profile leaves something out."""
+
+MOVING = f"{NOT_SWEPT}, though moving by themselves:"
 """The start of a note: obstacles that no link carries and that nobody asked for."""
+
+IN_DOUBT = "in doubt"
+"""The start of a note: suspect input that the case does not accept, or motion that is not proven."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,13 +96,25 @@ class Profile:
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """The note on obstacles that move by themselves and are not swept."""
+        """The notes on motion, links and obstacles that are not swept."""
         return tuple(note for note in self.notes if note.startswith(NOT_SWEPT))
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """The notes on suspect input and on motion that is not proven."""
+        return tuple(note for note in self.notes if note.startswith(IN_DOUBT))
+
+    @property
     def content(self) -> str:
-        """What it contains for certain, in words."""
-        return "the surfaces that are swept" if self.open_cuts else "all that is swept"
+        """Its content for certain, in words."""
+        text = "the surfaces that are swept" if self.open_cuts else "all that is swept"
+        text += " but for what its notes leave out" if self.left_out else ""
+        return f"{text}, if what its notes doubt is right" if self.doubts else text
+
+    @property
+    def promise(self) -> str:
+        """The bounds in one sentence, as a file or a terminal has it."""
+        return f"contains {self.content}; exceeds it by at most {self.bound * 1000:.4g} mm"
 
     @property
     def n_pieces(self) -> int:

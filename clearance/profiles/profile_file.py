@@ -126,6 +126,7 @@ def geojson_text(profile: Profile) -> str:
     properties = {
         "name": profile.name, "plane": profile.plane, "section": profile.section, "unit": "m",
         "bound": profile.bound + FLAT, "facets": profile.facets, "steps": profile.n_steps,
+        "contains": profile.content, "notes": list(profile.notes),
     }  # fmt: skip
     geometry = {"type": "MultiPolygon", "coordinates": polygons}
     feature = {"type": "Feature", "properties": properties, "geometry": geometry}
@@ -144,7 +145,7 @@ def svg_text(profile: Profile) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
         f'viewBox="{low[0]:.9g} {-high[1]:.9g} {width:.9g} {height:.9g}" style="{FITTING}">\n'
         f"<title>{escape(profile.name)}, {escape(profile.plane)}</title>\n"
-        f"<desc>contains {profile.content}; exceeds it by at most {profile.bound * 1000:.4g} mm</desc>\n"
+        f"<desc>{escape('; '.join((profile.promise, *profile.notes)))}</desc>\n"
         f'<path transform="scale(1 -1)" d="{paths}" fill="#dbe7f5" fill-rule="evenodd" '
         f'stroke="#1f5fbf" stroke-width="{stroke:.3g}"/>\n</svg>\n'
     )
@@ -167,7 +168,8 @@ def svg_path(contour: Contour, scale: float) -> str:
 def dxf_text(profile: Profile) -> str:
     """The text of a DXF R2010 drawing, by ezdxf; the same profile gives the same text.
 
-    A contour is a closed LWPOLYLINE with bulges. Each link's own profile is on a layer of its name.
+    A contour is a closed LWPOLYLINE with bulges. Each link's own profile is on a layer of its name. Bounds and
+    notes are custom properties of the drawing.
 
     Raises:
         Unavailable: ezdxf is missing.
@@ -187,6 +189,8 @@ def _text_of(drawing, profile: Profile) -> str:
     drawing.header["$INSUNITS"] = METRES
     drawing.header["$MEASUREMENT"] = 1
     drawing.header["$LUPREC"] = 8
+    for line in (profile.promise, *profile.notes):
+        drawing.header.custom_vars.append("clearance", line)
     for layer, part in {"SWEPT": profile, **profile.parts}.items():
         drawing.layers.add(layer_name(layer))
         _draw(drawing, part, layer_name(layer))

@@ -18,7 +18,7 @@ from clearance.kernels.profile.swept_cover import Raster, row_sums
 from clearance.profiles.contour import Contour
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
-from clearance.profiles.profile import NOT_SWEPT, Origin, Profile
+from clearance.profiles.profile import Origin, Profile
 from clearance.profiles.region import (
     Region,
     covered_region,
@@ -33,14 +33,13 @@ from clearance.profiles.swept_bodies import (
     RecordHolder,
     SweptBody,
     TimedCase,
-    moving_but_not_swept,
+    notes_on_sweep,
     over_time,
     swept_bodies,
 )
 from clearance.progress import Progress
 from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
-from clearance.world.notice import listed
 
 if TYPE_CHECKING:
     from clearance.profiles.cross_section import CrossSection
@@ -119,11 +118,7 @@ def swept_profile(
             own = [one for one in bodies if one.label == label]
             parts[label] = _swept(name, own, seen_on, section, tolerance, None, None)
     found = _swept(name, bodies, seen_on, section, tolerance, progress, parts)
-    left_out = moving_but_not_swept(moved, bodies)
-    if left_out:
-        text = f"{NOT_SWEPT} {listed(left_out)}"
-        found = replace(found, notes=(*found.notes, text))
-    return found
+    return replace(found, notes=(*found.notes, *notes_on_sweep(moved, bodies)))
 
 
 def _labels(bodies: Sequence[SweptBody]) -> tuple[str, ...]:

@@ -12,13 +12,18 @@ from clearance.errors import BadShape, UnknownLink, UnknownObstacle, nearest_nam
 from clearance.profiles.chain import Chain, chain_of
 from clearance.profiles.chords import BodyKnots, knots_of, standing
 from clearance.profiles.plane import Plane
+from clearance.profiles.profile import IN_DOUBT, MOVING, NOT_SWEPT
+from clearance.record.wording import not_measured_text
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.corner_paddings import corner_off
 from clearance.world.forest import WORLD
 from clearance.world.motion import kinematic_motion
+from clearance.world.notice import Notice, Severity, listed
 from clearance.world.pairs import OBSTACLE, BodyIndex, names_of
 from clearance.world.phase import Phase
+from clearance.world.plausibility import notices_of
+from clearance.world.plausible_recordings import not_measured
 from clearance.world.robot_in_cell import link_below
 from clearance.world.rules import matches
 from clearance.world.timeline import Timeline, timeline_of
@@ -36,10 +41,11 @@ class RecordHolder(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class TimedCase:
-    """A case and when what of it moves how."""
+    """A case, when what of it moves how, and what was found about it that bears on the sweep."""
 
     case: Case
     timeline: Timeline
+    notices: tuple[Notice, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +78,10 @@ def over_time(run: Case | TimedCase | Record | RecordHolder) -> TimedCase:
         NoTrajectory and what else `timeline_of` raises.
     """
     if isinstance(run, Case):
-        return TimedCase(run, timeline_of(run, [kinematic_motion(one) for one in run.robots]))
+        motions = [kinematic_motion(one) for one in run.robots]
+        return TimedCase(run, timeline_of(run, motions), notices_of(run))
     timed = run.record if hasattr(run, "record") else run
-    return TimedCase(timed.case, timed.timeline)
+    return TimedCase(timed.case, timed.timeline, timed.notices)
 
 
 def swept_bodies(
@@ -110,6 +117,24 @@ def swept_bodies(
         found += _over_phases(run, BodyIndex(OBSTACLE, i), present)
     _require_surfaces(found)
     return found
+
+
+def notes_on_sweep(run: TimedCase, swept: Sequence[SweptBody]) -> Iterator[str]:
+    """What a sweep leaves out, and what it rests on that is in doubt; one line each."""
+    case, moving = run.case, moving_but_not_swept(run, swept)
+    if moving:
+        yield f"{MOVING} {listed(moving)}"
+    holes = not_measured_text(not_measured(case))
+    if holes:
+        yield f"{NOT_SWEPT}: motion {holes}"
+    for placed in case.robots:
+        whose = f" (robot {placed.robot.name!r})" if len(case.robots) > 1 else ""
+        without = (one for one in placed.robot.notices if one.kind == "geometry")
+        yield from (f"{NOT_SWEPT}: {one.text}{whose}" for one in without)
+    open_kinds = (Severity.SUSPECT, Severity.UNPROVEN)
+    for one in run.notices:
+        if one.severity in open_kinds and not one.accepted_by(case.accept):
+            yield f"{IN_DOUBT}: {one.line}"
 
 
 def moving_but_not_swept(run: TimedCase, swept: Sequence[SweptBody]) -> list[str]:
@@ -154,11 +179,22 @@ def _chosen_links(run: TimedCase, links: Sequence[str] | None) -> Collection[str
     for pattern in links:
         fitting = [n for n, names in known.items() if any(matches(own, pattern) for own in names)]
         if not fitting:
-            raise UnknownLink(
-                f"unknown link {pattern!r}", where="links", valid=nearest_name(pattern, known)
+            is_bare = any(matches(name, pattern) for name in _bare_links(case))
+            fault = (
+                f"link {pattern!r} has no shape to sweep"
+                if is_bare
+                else f"unknown link {pattern!r}"
             )
+            raise UnknownLink(fault, where="links", valid=nearest_name(pattern, known))
         found.update(fitting)
     return found
+
+
+def _bare_links(case: Case) -> Iterator[str]:
+    """The names of all links, those without a shape too, with and without their robot's."""
+    for placed in case.robots:
+        yield from placed.robot.link_names
+        yield from (f"{placed.robot.name}/{name}" for name in placed.robot.link_names)
 
 
 def _chosen_obstacles(case: Case, patterns: Sequence[str]) -> list[str]:

@@ -111,6 +111,7 @@ class ProfileAnswer:
         bound: [m] the true gap is at most this much larger.
         point_sweep, point_sketch: [m] in the plane, where it is attained. link, step: who swept there.
         links: names or patterns of the links that alone are judged; empty for all.
+        left_out: motion, links and obstacles that the sweep does not contain, one line each.
     """
 
     name: str
@@ -127,6 +128,13 @@ class ProfileAnswer:
     link: str
     step: int
     links: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def kept_text(self) -> str:
+        """Whether the outline is kept, in a few words."""
+        in_part = ", as far as swept" if self.left_out else ""
+        return f"kept{in_part}" if self.passed else "NOT KEPT"
 
 
 @dataclass(frozen=True, eq=False)

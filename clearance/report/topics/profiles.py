@@ -46,6 +46,8 @@ def sections(content: PageContent) -> Iterator[Section]:
         "the true gap is larger by at most the bound in summary.json. A negative gap is how far the swept "
         "outline is beyond the sketch."
     )
+    left_out = dict.fromkeys(text for answer in answers for text in answer["left_out"])
+    note = " ".join((note, *(f"{text[0].upper()}{text[1:]}." for text in left_out)))
     table = Table(heads, [_row(answer) for answer in answers], "clickable")
     yield Section("Profiles", [table, faint(note), *pictures])
 
@@ -54,13 +56,19 @@ def _row(answer: dict[str, Any]) -> Row:
     cells = [
         f"{answer['name']} ({answer['mode']})",
         swept_text(answer["plane"], answer["section"], answer["links"]),
-        Inline("yes") if answer["passed"] else Inline("no", "text-violated"),
+        _kept(answer),
         number(gap_text(answer["gap"])),
         number(f"{answer['limit'] * 1000:g}"),
         answer["link"],
         step_link(answer["step"]),
     ]
     return Row(cells, At(answer["step"]))
+
+
+def _kept(answer: dict[str, Any]) -> Inline:
+    if not answer["passed"]:
+        return Inline("no", "text-violated")
+    return Inline("yes, as far as swept" if answer["left_out"] else "yes")
 
 
 def _picture(name: str, svg: str) -> Picture:
