@@ -1,7 +1,8 @@
 """Answers a case's reserved outlines: does the sweep keep to each sketch, how close does it come, who and when.
 
 The swept profile contains all that is swept, so that a gap to it is a gap to the motion itself; a sweep that is
-beyond a sketch by less than the profile's bound is still called a violation. Not for: fitting.
+beyond a sketch by less than the profile's bound is still called a violation. Not for: fitting, nor sizes of bodies
+(`world.plausible_sizes`).
 """
 
 from __future__ import annotations
@@ -13,19 +14,21 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import at
+from clearance.planar.curve import Curve
 from clearance.planar.deviation import deviation
 from clearance.planar.hausdorff import hausdorff
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
-from clearance.profiles.plausible_zones import notices_on_zone
 from clearance.profiles.profile import MOVING, Profile
 from clearance.profiles.region import contains
 from clearance.profiles.sweep import swept_profile
 from clearance.profiles.swept_bodies import TimedCase
 from clearance.record.record import ProfileAnswer
 from clearance.world.case import Case, ReservedSpace
+from clearance.world.extents import metres, reach_of
 from clearance.world.notice import Notice, Severity
+from clearance.world.plausible_sizes import FAR, FAR_OFF, far_off_notice
 from clearance.world.timeline import Timeline
 
 
@@ -93,7 +96,7 @@ def _answer(case: Case, space: ReservedSpace, swept: Profile, path_error: float)
         left_out=swept.left_out,
     )
     picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
-    odd = notices_on_zone(case, space, curve, swept.curve, answer.gap)
+    odd = _notices_on_zone(case, space, curve, swept.curve, answer.gap)
     return AnsweredProfile(answer, picture, (*odd, *_uncounted(space, swept)))
 
 
@@ -131,3 +134,34 @@ def _picture(space: ReservedSpace, swept: Profile, sketch: DrawnOutline, ends: n
 
 def _pair(point: np.ndarray) -> tuple[float, float]:
     return float(point[0]), float(point[1])
+
+
+def _notices_on_zone(
+    case: Case, space: ReservedSpace, sketch: Curve, swept: Curve, gap: float
+) -> Iterator[Notice]:
+    """Suspect input, or a warning, where a zone is far larger than what stays in it, or far from what stays out:
+    reserved outlines that look like another unit.
+
+    Args:
+        gap: [m] between sketch and sweep, negative where it is not kept.
+    """
+    reach = max(map(reach_of, case.robots))
+    zone = f"the sketch of profile {space.name!r}"
+    if space.mode == "outside":
+        length, largest = _length(sketch), FAR * max(1.0, reach, _length(swept))
+        if length > largest:
+            yield _suspect(f"{zone} is {metres(length)} m long where the robot reaches", reach)
+    elif space.mode == "inside" and gap > FAR * max(1.0, reach):
+        yield _suspect(f"{zone} stays {metres(gap)} m away from a robot that reaches", reach)
+    elif space.mode == "inside" and gap > FAR_OFF * reach:
+        text = f"{zone} stays {metres(gap)} m away from all that the robot sweeps"
+        yield far_off_notice(text, gap / reach)
+
+
+def _length(curve: Curve) -> float:
+    return float(np.ptp(curve.box, axis=0).max())
+
+
+def _suspect(text: str, reach: float) -> Notice:
+    asks = "lengths are in metres, is this millimetres?"
+    return Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text} {metres(reach)} m; {asks}")

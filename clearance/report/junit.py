@@ -1,6 +1,6 @@
 """JUnit XML of anything that has test cases: a run, a batch, and a run that has no answer yet.
 
-Which cases there are is in `junit_cases` and `batch.junit`; here they are written. Not for: judging anything.
+Which cases there are is in `junit_cases` and `batch.output`; here they are written. Not for: judging anything.
 """
 
 from __future__ import annotations
