@@ -1,4 +1,4 @@
-"""Reserved outlines of which it is open what they enclose."""
+"""Reserved outlines: of which it is open what they enclose, and in another unit, which anything would keep to."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from clearance.sketch import Sketch
 from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import ReservedSpace
+from clearance.world.notice import Severity
 from clearance.world.pose_table import PoseTable
 from tests.profiles.moving import slab, turning
 from tests.report.made import page_of, summary_of
@@ -48,13 +49,14 @@ def checked(
     padding=0.0,
     tolerance=None,
     obstacles=(POST,),
+    accept=(),
     **given,
 ):
     """An arm of 0.5 m that turns by 1 rad, and squares that it keeps to, or out of."""
     case = turning(arm, [0.0, 0.5, 1.0])
     space = ReservedSpace("zone", squares(*spans), mode=mode, **given)
     robots = tuple(replace(one, padding={"l1": padding}) for one in case.robots)
-    changes = {"robots": robots, "obstacles": obstacles, "tolerance": tolerance}
+    changes = {"robots": robots, "obstacles": obstacles, "tolerance": tolerance, "accept": accept}
     return cl.check(replace(case, profiles=(space,), **changes))
 
 
@@ -185,3 +187,47 @@ def test_a_zone_that_slides_when_its_width_is_edited_stands_in_the_headline(
     told = [one.text for one in found.record.notices if one.kind == "sketch"]
     assert [one.split(";")[0] for one in told] == said
     assert all(one in found.verdict.text() for one in said)
+
+
+@pytest.mark.parametrize(
+    ("mode", "low", "high", "said"),
+    [
+        ("outside", -600, 600, "the sketch of profile 'zone' is 1200 m long where the robot reaches"),
+        ("outside", -60, 60, "the sketch of profile 'zone' is 120 m long where the robot reaches"),
+        ("inside", 300, 800, "the sketch of profile 'zone' stays 424 m away from a robot that reaches"),
+        ("inside", 30, 80, "the sketch of profile 'zone' stays 41.9 m away from a robot that reaches"),
+    ],
+)  # fmt: skip
+def test_a_sketch_in_another_unit_is_suspect(mode, low, high, said):
+    found = checked(mode, (low, high))
+    assert found.record.profiles[0].passed, "this is why it has to be suspect"
+    assert not found.passed and found.verdict.exit_code == 2
+    (odd,) = found.verdict.suspects
+    assert odd.kind == "units" and odd.text.startswith(f"CHECK UNITS: {said} 0.5")
+    assert odd.text.endswith(" m; lengths are in metres, is this millimetres?")
+    accepted = checked(mode, (low, high), accept=("units",))
+    assert accepted.passed and said in accepted.verdict.text()
+
+
+def test_a_zone_many_times_the_reach_away_has_a_warning():
+    found = checked("inside", (3.0, 5.0))
+    assert found.passed and not found.verdict.suspects
+    (odd,) = [one for one in found.record.notices if one.severity is Severity.WARNING]
+    assert (
+        odd.kind == "units"
+        and "zone' stays 3.74 m" in odd.text
+        and "not in millimetres" in odd.text
+    )
+
+
+@pytest.mark.parametrize(("mode", "low", "high"), [("outside", -5, 5), ("inside", 0.6, 0.9)])
+def test_a_zone_of_the_cell_is_not_odd(mode, low, high):
+    found = checked(mode, (low, high))
+    assert found.passed and not found.record.notices
+
+
+@pytest.mark.parametrize("mode", ["outside", "inside", "nearest"])
+def test_the_limit_of_a_profile_in_millimetres_is_suspect(mode):
+    found = checked(mode, (-1.0, 1.0), limit=20.0)
+    (odd,) = found.verdict.suspects
+    assert odd.text.startswith("CHECK UNITS: profiles[0].limit is 20 m; limits are in metres")
