@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
 from clearance import progress
+from clearance.cli import run
 from clearance.compile import library
 from clearance.compile.decorators import KERNELS
 from clearance.errors import Unavailable
 from tests import examples
+from tests.cart import files
 from tests.counted_end import TimelessEnd
 from tests.guards import guarded, refused
 
@@ -82,3 +85,19 @@ def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
     if refused:
         pytest.fail(f"{item.nodeid}: {'; '.join(refused)}", pytrace=False)
     return result
+
+
+@pytest.fixture
+def refusal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Runs a command on bad input: the one line that it says, with exit code 2 and every file as it was."""
+
+    def line_of(*words: object) -> str:
+        before = sorted(tmp_path.rglob("*")), files(tmp_path)
+        capsys.readouterr()
+        assert run([*map(str, words)]) == 2
+        out, err = capsys.readouterr()
+        assert out == "" and err.startswith("error: ") and err.count("\n") == 1
+        assert (sorted(tmp_path.rglob("*")), files(tmp_path)) == before
+        return err
+
+    return line_of

@@ -136,11 +136,11 @@ def test_a_store_that_is_cut_off_is_one_line(manifest, tmp_path, capsys):
     assert "the store is damaged" in err and "a new folder" in err and err.count("\n") == 1
 
 
-def test_a_store_of_another_format_is_one_line(manifest, tmp_path, capsys):
+def test_a_store_of_another_format_is_one_line(manifest, tmp_path, refusal):
     run_here(manifest, tmp_path / "out")
     changed(tmp_path / "out", f"PRAGMA user_version = {FORMAT + 1}")
-    assert run(["batch", "status", str(tmp_path / "out")]) == 2
-    assert f"a store of format {FORMAT + 1}; a new folder" in capsys.readouterr().err
+    told = refusal("batch", "status", tmp_path / "out")
+    assert f"a store of format {FORMAT + 1}; a new folder" in told
 
 
 def test_a_folder_of_something_else_is_no_store(tmp_path):

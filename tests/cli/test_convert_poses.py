@@ -57,14 +57,12 @@ def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):
     assert "e.yaml: frame_id is empty" in capsys.readouterr().out
 
 
-def test_a_frame_that_may_move_is_not_lost_in_a_table(capsys):
+def test_a_frame_that_may_move_is_not_lost_in_a_table(refusal):
     Path("a.yaml").write_text(STAMPED.replace("map", "wrist_camera"))
     assert convert("a.yaml", "b.json") == 0
-    capsys.readouterr()
-    assert convert("b.json", "c.csv") == 2
-    told = capsys.readouterr().err.strip()
+    told = refusal("convert", "b.json", "c.csv")
     assert "b.json: the poses are in frame 'wrist_camera', which a table cannot say" in told
-    assert "on: wrist_camera" in told and told.count("\n") == 0 and not Path("c.csv").exists()
+    assert "on: wrist_camera" in told
 
 
 def test_transforms_stay_transforms(capsys):
@@ -83,7 +81,7 @@ def test_transforms_stay_transforms(capsys):
     )
 
 
-def test_times_that_messages_keep_otherwise_are_told(capsys):
+def test_times_that_messages_keep_otherwise_are_told(refusal, capsys):
     rows = TABLE.replace("0.4,", "0.3333333333333333,").replace("\n0.0,", "\n0.25,")
     Path("a.csv").write_text(rows)
     assert convert("a.csv", "b.yaml") == 0
@@ -93,9 +91,7 @@ def test_times_that_messages_keep_otherwise_are_told(capsys):
     assert convert("b.yaml", "c.csv") == 0
     assert Path("c.csv").read_text().splitlines()[2].startswith("0.083333333,4.0")
     Path("a.csv").write_text(TABLE.replace("0.4,", "1e-10,"))
-    assert convert("a.csv", "d.yaml") == 2
-    assert "less than a nanosecond after the one before" in capsys.readouterr().err
-    assert not Path("d.yaml").exists()
+    assert "less than a nanosecond after the one before" in refusal("convert", "a.csv", "d.yaml")
 
 
 NUMBERS = st.floats(-1e3, 1e3)
@@ -137,12 +133,8 @@ def test_any_poses_come_back_bit_for_bit(data, nanoseconds, suffix, child):
         (["off.yaml", "b.csv"], "off.yaml: the quaternion"),
     ],
 )
-def test_a_mistake_is_one_line_and_leaves_nothing(capsys, words, says):
+def test_a_mistake_is_one_line_and_leaves_nothing(refusal, words, says):
     Path("a.yaml").write_text(STAMPED)
     Path("off.yaml").write_text(STAMPED.replace("w: 1.0", "w: 0.5"))
     Path("far.csv").write_text(TABLE.replace("1e-07", "1e160"))
-    before = sorted(Path().rglob("*"))
-    assert convert(*words) == 2
-    told = capsys.readouterr().err.strip()
-    assert says in told and told.count("\n") == 0
-    assert sorted(Path().rglob("*")) == before
+    assert says in refusal("convert", *words)

@@ -53,7 +53,7 @@ def test_the_trajectory_back_gives_the_same_results(folder, path, name):
         assert first[same] == second[same]
 
 
-def test_several_robots_are_documents_in_the_order_of_the_case(folder, capsys):
+def test_several_robots_are_documents_in_the_order_of_the_case(folder, refusal):
     Path("two.yaml").write_text(TWO)
     assert run(["check", "two.yaml", "--trajectory", "back.yaml"]) == 0
     assert Path("back.yaml").read_text().startswith("# left\njoint_names")
@@ -63,9 +63,8 @@ def test_several_robots_are_documents_in_the_order_of_the_case(folder, capsys):
     )
     first, second = (check(load_case(name)).record for name in ("two.yaml", "again.yaml"))
     assert first.steps.equals(second.steps)
-    capsys.readouterr()
-    assert run(["check", "two.yaml", "--trajectory", "back.csv"]) == 2
-    assert "a table holds one robot, the case has 2" in capsys.readouterr().err
+    told = refusal("check", "two.yaml", "--trajectory", "back.csv")
+    assert "a table holds one robot, the case has 2" in told
 
 
 @pytest.mark.parametrize(
@@ -89,15 +88,11 @@ def test_several_robots_are_documents_in_the_order_of_the_case(folder, capsys):
     ],
 )
 def test_what_cannot_be_written_is_refused_before_anything_is_measured(
-    folder, capsys, monkeypatch, given, said
+    folder, refusal, monkeypatch, given, said
 ):
     def measured(*_):
         raise AssertionError("measured")
 
     monkeypatch.setattr("clearance.run.answer", measured)
     Path("folder.png").mkdir()
-    before = files(folder)
-    assert run(["check", "case.yaml", *given]) == 2
-    told = capsys.readouterr()
-    assert told.out == "" and told.err.count("\n") == 1 and said in told.err
-    assert files(folder) == before
+    assert said in refusal("check", "case.yaml", *given)

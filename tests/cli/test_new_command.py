@@ -405,12 +405,8 @@ USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
         ((*USUAL, "--robot", "cell/case.yaml"), "cell/case.yaml: this is a case file, not a URDF file; `"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_one_line_and_leaves_nothing(capsys, words, says):
-    before = sorted(Path().rglob("*"))
-    assert new(*words) == 2
-    told = capsys.readouterr().err.strip()
-    assert says in told and told.count("\n") == 0
-    assert sorted(Path().rglob("*")) == before
+def test_a_mistake_is_one_line_and_leaves_nothing(refusal, words, says):
+    assert says in refusal("new", "out", "--robot", "cell/arm.urdf", *words)
 
 
 @pytest.mark.parametrize(

@@ -89,12 +89,10 @@ def test_a_pair_of_links_can_be_allowed_in_either_order(folder, capsys):
         (", self_clearance: perhaps", "robot.self_clearance"),
     ],
 )
-def test_what_cannot_be_meant_is_refused_in_one_line(folder, capsys, robot, told):
+def test_what_cannot_be_meant_is_refused_in_one_line(folder, refusal, robot, told):
     text = (CASE % (robot, "")).replace(
         "self_clearance: true, srdf: folder.srdf, self", "srdf: folder.srdf, self"
     )
     text = text.replace("self_clearance: true, self", "self")
     (folder / "case.yaml").write_text(text)
-    assert run(["check", str(folder / "case.yaml")]) == 2
-    (line,) = capsys.readouterr().err.strip().splitlines()
-    assert told in line
+    assert told in refusal("check", folder / "case.yaml")
