@@ -50,10 +50,10 @@ def document_of(*arrays: np.ndarray, primitive: dict | None = None) -> tuple[dic
     return document, binary
 
 
-def cube_document() -> tuple[dict, bytes]:
-    """The unit cube of `making`, its axes as in the file."""
+def cube_document(corners: np.ndarray = CUBE) -> tuple[dict, bytes]:
+    """The unit cube of `making`, or one that is moved, its axes as in the file."""
     indices = CUBE_TRIANGLES.ravel().astype("<u2")
-    return document_of(CUBE.astype("<f4"), indices, primitive={"indices": 1})
+    return document_of(corners.astype("<f4"), indices, primitive={"indices": 1})
 
 
 def changed(document: dict, *path_and_value: object) -> dict:

@@ -87,6 +87,12 @@ class SceneContent:
     bases: dict[str, np.ndarray] = field(default_factory=dict)
 
 
+def mesh_row(file: str, scale: list[float]) -> dict[str, dict]:
+    """The row of a mesh file that Gazebo or MoveIt places: COLLADA and GLB lie as they are, not turned to z up."""
+    axis = {"collada_up_axis": "ros"} if file.lower().endswith((".dae", ".glb")) else {}
+    return {"mesh": {"file": file, "scale": scale} | axis}
+
+
 def pose_row(pose: np.ndarray) -> dict[str, list[float]]:
     """The row of a (4, 4) pose [m]; without a rotation where there is none.
 

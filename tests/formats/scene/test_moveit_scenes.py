@@ -12,6 +12,7 @@ from clearance.world.pairs import measured_pairs
 from clearance.world.rules import matches
 from tests.formats.making import CUBE, cube_stl
 from tests.formats.making_case import CASE, load_small
+from tests.formats.making_glb import cube_document, glb
 from tests.formats.making_moveit import (
     FIRST,
     LISTS,
@@ -248,6 +249,14 @@ def test_meshes_are_taken_from_the_message_and_from_files(tmp_path):
     assert sorted(made["file"].body.shape.vertices.tolist()) == sorted((CUBE * [1, 2, 3]).tolist())
     case = load_small(tmp_path, NAMED, cell__yaml=document)
     assert [one.path for one in case.sources if "mesh0" in one.path] == []
+
+
+def test_a_glb_lies_as_in_moveit_which_does_not_turn_it(tmp_path):
+    (tmp_path / "cube.glb").write_bytes(glb(*cube_document(CUBE + [0, 1, 0])))
+    rows = "{id: panel, meshes: [{resource: cube.glb, dimensions: [1, 2, 3]}]}"
+    (made,) = obstacles_of(tmp_path, f"world: {{collision_objects: [{rows}]}}").values()
+    corners = (CUBE + [0, 1, 0]) * [1, 2, 3]
+    assert sorted(made.body.shape.vertices.tolist()) == sorted(corners.tolist())
 
 
 def test_text_of_the_first_version(tmp_path):

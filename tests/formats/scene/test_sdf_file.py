@@ -12,6 +12,7 @@ from clearance.geometry.pose import pose_from_rpy
 from clearance.world.notice import Severity
 from tests.formats.making import CASE, CUBE, cube_stl, write_case
 from tests.formats.making_case import load_small
+from tests.formats.making_glb import cube_document, glb
 from tests.formats.making_sdf import (
     BOX,
     at,
@@ -49,6 +50,14 @@ def test_a_mesh_is_found_beside_the_file_and_scaled(tmp_path):
     (made,) = obstacles_of(tmp_path, sdf(model(link(collision(mesh))))).values()
     corners = sorted(made.body.shape.vertices.tolist())
     assert corners == sorted((CUBE * [1, 2, -3]).tolist())
+
+
+def test_a_glb_lies_as_in_gazebo_which_does_not_turn_it(tmp_path):
+    (tmp_path / "cube.glb").write_bytes(glb(*cube_document(CUBE + [0, 1, 0])))
+    mesh = "<mesh><uri>cube.glb</uri><scale>1 2 3</scale></mesh>"
+    (made,) = obstacles_of(tmp_path, sdf(model(link(collision(mesh))))).values()
+    corners = (CUBE + [0, 1, 0]) * [1, 2, 3]
+    assert sorted(made.body.shape.vertices.tolist()) == sorted(corners.tolist())
 
 
 @pytest.mark.parametrize("normal", ["0 0 1", "0 0 -2", "1 0 0", "0 -1 0", "1 1 1"])

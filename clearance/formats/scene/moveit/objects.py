@@ -25,7 +25,7 @@ from clearance.formats.message.values import (
     require_fields,
     text,
 )
-from clearance.formats.scene.request import SceneRequest, pose_row
+from clearance.formats.scene.request import SceneRequest, mesh_row, pose_row
 
 _FIELDS = (
     "header", "pose", "id", "type", "primitives", "primitive_poses", "meshes", "mesh_poses", "planes",
@@ -223,5 +223,4 @@ class SceneMeshes:
             raise BadDimension(f"scale {scale}", valid="a scale is not zero")
         folder = self._asked.path.parent
         path = self.found.mesh(uri, folder)
-        axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}
-        return {"mesh": {"file": os.path.relpath(path, folder), "scale": scale} | axis}
+        return mesh_row(os.path.relpath(path, folder), scale)

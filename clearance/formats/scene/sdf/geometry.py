@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadScene, at, nearest_name
+from clearance.formats.scene.request import mesh_row
 from clearance.formats.scene.sdf.document import numbers_of, text_of
 from clearance.formats.text.numbers import is_zero
 from clearance.geometry.shapes import SHAPES, Measure
@@ -111,8 +112,7 @@ def _mesh(element: Element) -> Geometry:
     scale = list(numbers_of(element, "scale", 3, "1 1 1"))
     if 0.0 in scale:
         raise BadDimension(f"<scale> is {scale}", valid="a scale is not zero")
-    axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}
-    return Geometry({"mesh": {"file": uri, "scale": scale} | axis})
+    return Geometry(mesh_row(uri, scale))
 
 
 _READERS: dict[str, Callable[[Element], Geometry]] = {
