@@ -23,9 +23,10 @@ from clearance.world.plausible_clocks import notices_on_clocks
 from clearance.world.plausible_motion import (
     notices_on_motion,
 )
+from clearance.world.plausible_planes import notices_on_planes
 from clearance.world.plausible_recordings import notices_on_holes, notices_on_unproven
 from clearance.world.plausible_rest import notices_on_bases, notices_on_rest
-from clearance.world.plausible_sizes import notices_on_planes, notices_on_sizes
+from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.self_pairs import limbs, self_pairs

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,14 +13,12 @@ from clearance.world.body import Body, Mount, Obstacle
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.extents import (
-    PLANE_SIZE,
     chain_of,
     farthest_corner,
     greatest,
     length_of,
     metres,
     own_bodies,
-    own_floor,
     reach_of,
     slides_of,
 )
@@ -30,6 +27,7 @@ from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 from clearance.world.robot_in_cell import robots_below
+from clearance.world.whereabouts import Place, bases_of, obstacle_place
 
 RATIO = 200.0
 """[-] An obstacle this many times as long as the robot reaches, or a body this many times shorter, is in another
@@ -166,20 +164,9 @@ HALL, WALL, THIN = 100.0, 5.0, 0.1
 than this part of it, is a wall."""
 
 
-class Place(NamedTuple):
-    """About where something is.
-
-    Attributes:
-        pose: (4, 4) in the world [m], at one time or amid all. travel: [m] its origin never is farther from there.
-    """
-
-    pose: np.ndarray
-    travel: float
-
-
 def odd_places(case: Case) -> list[str]:
     """Obstacles, or else bases, that stand where no robot of the case gets, or far from all else."""
-    bases = _bases(case)
+    bases = bases_of(case)
     reaches = [reach_of(placed) for placed in case.robots]
     far, gaps = [], _gaps(case, bases, of_units=True)
     for obstacle, own in zip(case.obstacles, gaps, strict=True):
@@ -222,7 +209,7 @@ FAR_OFF = 5.0
 
 def _far_off(case: Case) -> list[Notice]:
     """A warning where no obstacle is within reach, else on those that no robot ever comes near to."""
-    gaps = _gaps(case, _bases(case))
+    gaps = _gaps(case, bases_of(case))
     return _out_of_reach(case, gaps) or _idle(case, gaps)
 
 
@@ -294,10 +281,6 @@ def _whose_base(case: Case) -> str:
     return "the robot's base" if len(case.robots) == 1 else "every robot's base"
 
 
-def _bases(case: Case) -> list[Place]:
-    return [_robot_place(case, i) for i in range(len(case.robots))]
-
-
 def _gaps(case: Case, bases: Sequence[Place], of_units: bool = False) -> list[list[float]]:
     """[m] Least distances of each obstacle from each base.
 
@@ -305,7 +288,7 @@ def _gaps(case: Case, bases: Sequence[Place], of_units: bool = False) -> list[li
         of_units: of parts that a robot picks up first, until it does; of a box round a base, its surface.
     """
     return [
-        [_gap(obstacle, _obstacle_place(case, i, of_units), base, of_units) for base in bases]
+        [_gap(obstacle, obstacle_place(case, i, of_units), base, of_units) for base in bases]
         for i, obstacle in enumerate(case.obstacles)
     ]
 
@@ -318,28 +301,6 @@ def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> l
         return [f"{whose} stands {metres(base)} m away, {gap_text}; {_IN_METRES}"]
     stand = [f"obstacle {name!r} stands {metres(gap)} m away from {whose}" for gap, name in far]
     return [f"{listed(stand)}; {_IN_METRES}"]
-
-
-def notices_on_planes(case: Case) -> Iterator[Notice]:
-    """A warning on each robot that may get past the end of a box that stands for an infinite plane."""
-    for placed, base in zip(case.robots, _bases(case), strict=True):
-        reach = reach_of(placed)
-        floors = [body for body in placed.robot.bodies if body.name == own_floor(placed)]
-        ends = [(f"link {one.name!r}", reach) for one in floors if length_of(one) >= PLANE_SIZE[0]]
-        for i, obstacle in enumerate(case.obstacles):
-            sides = np.ptp(obstacle.body.shape.bounds, axis=0)
-            if np.allclose(sides[:2], PLANE_SIZE[:2]):
-                place = _obstacle_place(case, i)
-                gets = reach + base.travel + place.travel
-                local = np.abs(place.pose[:3, :3].T @ (base.pose[:3, 3] - place.pose[:3, 3]))
-                ends.append((f"obstacle {obstacle.name!r}", float(local[:2].max()) + gets))
-        for name, farthest in ends:
-            if farthest > 0.5 * PLANE_SIZE[0]:
-                text = (
-                    f"{name} stands for a plane without end, and ends {metres(0.5 * PLANE_SIZE[0])} m from its "
-                    f"middle: robot {placed.robot.name!r} may get {metres(farthest)} m from there"
-                )
-                yield Notice(Severity.WARNING, "plane", text)
 
 
 def _gap(obstacle: Obstacle, place: Place, base: Place, of_units: bool) -> float:
@@ -364,36 +325,3 @@ def _from_body(body: Body, point: np.ndarray, of_units: bool) -> float:
     if body.origin == "box" and of_units:
         return float(min((point - low).min(), (high - point).min()))
     return distance(PointCloud(point[None], POINT), body.shape).distance
-
-
-def _robot_place(case: Case, i_robot: int) -> Place:
-    placed = case.robots[i_robot]
-    if placed.mount is None:
-        return Place(placed.world_from_base, 0.0)
-    return _mounted(case, placed.mount)
-
-
-def _obstacle_place(case: Case, i_obstacle: int, at_first: bool = False) -> Place:
-    obstacle = case.obstacles[i_obstacle]
-    below = Place(obstacle.world_from_body, 0.0)
-    if obstacle.mount is not None:
-        below = _mounted(case, obstacle.mount)
-    own = [carry for carry in case.carries if carry.part == obstacle.name]
-    first = min(own, key=lambda one: one.window.start, default=None)
-    stays = first is None or (at_first and not owner_of(case, Mount(first.by))[0])
-    travel = below.travel if stays else np.inf
-    if obstacle.moves is None:
-        return Place(below.pose, travel)
-    positions, middle = obstacle.moves.positions, np.eye(4)
-    middle[:3, 3] = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
-    travelled = float(np.linalg.norm(positions - middle[:3, 3], axis=1).max())
-    return Place(below.pose @ middle, travel + travelled)
-
-
-def _mounted(case: Case, mount: Mount) -> Place:
-    """About where what stands on a mount is; a link is somewhere in the reach of its robot."""
-    is_obstacle, i = owner_of(case, mount)
-    mount = resolved_mount(case, mount)
-    below = _obstacle_place(case, i) if is_obstacle else _robot_place(case, i)
-    travel = below.travel + (0.0 if is_obstacle else chain_of(case.robots[i]))
-    return Place(below.pose @ mount.pose, travel)
