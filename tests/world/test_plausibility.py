@@ -551,3 +551,40 @@ def test_a_robot_that_may_get_past_a_box_that_stands_for_a_plane_is_warned_of(x,
     found = notices_of(Case("made", (placed,), (floor,)))
     told = [notice.text for notice in found if notice.kind == "plane"]
     assert len(told) == warned and all("robot 'arm' may get" in text for text in told)
+
+
+def _told_of_planes(case: Case) -> list[str]:
+    return [notice.text for notice in notices_of(case) if notice.kind == "plane"]
+
+
+def test_an_obstacle_that_moves_past_the_end_of_a_plane_is_warned_of():
+    floor = Obstacle(Body("floor", box((40.0, 40.0, 20.0)), "box"), at(0.0, 0.0, -10.0))
+    places = np.array([[0.0, 0.0, 1.0], [30.0, 0.0, 1.0]])
+    moves = PoseTable(np.array([0.0, 1.0]), places, np.array([[0.0, 0.0, 0.0, 1.0]] * 2))
+    cart = Obstacle(Body("cart", box((1.0, 1.0, 1.0)), "box"), moves=moves)
+    (told,) = _told_of_planes(replace(case_of(), obstacles=(floor, cart)))
+    assert told.endswith("m from its middle: obstacle 'cart' may get 30.9 m from there")
+    near = replace(cart, moves=replace(moves, positions=places / 2))
+    assert _told_of_planes(replace(case_of(), obstacles=(floor, near))) == []
+
+
+def test_a_part_that_a_hand_takes_past_the_end_of_a_plane_is_warned_of():
+    """The arm reaches 0.76 m, a rod in its hand 3 m farther."""
+    case = case_of(obstacle=box((0.1, 0.1, 3.0)))
+    floor = Obstacle(Body("floor", box((40.0, 40.0, 20.0)), "box"), at(-17.0, 0.0, -10.0))
+    far = replace(case, obstacles=(*case.obstacles, floor))
+    assert _told_of_planes(far) == []
+    (told,) = _told_of_planes(replace(far, carries=(Carry("block", "upper", Window(0.5)),)))
+    assert "robot 'arm' may get 20.8 m from there" in told
+
+
+def test_another_robot_past_the_end_of_a_robots_own_floor_is_warned_of():
+    floor = Body("world", box((40.0, 40.0, 20.0)), "plane")
+    cell = Robot(
+        "cell", ("world", "upper"), (Joint("j", JointKind.FIXED, "world", "upper", at(0.0, 0.0, 0.5)),),
+        (floor, Body("upper", box((0.3, 0.3, 0.3)), "box")),
+    )  # fmt: skip
+    there = replace(case_of().robots[0], world_from_base=at(25.0, 0.0, 0.5))
+    (told,) = _told_of_planes(Case("made", (PlacedRobot(cell), there), ()))
+    assert told.startswith("link 'cell/world' stands for a plane without end")
+    assert told.endswith("m from its middle: robot 'arm' may get 25.8 m from there")
