@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,9 @@ def read_mjcf_scene(asked: SceneRequest) -> SceneContent:
             for geom in colliding
         ]
     notes = [f"{asked.shown}: {note}" for note in _notes(model, colliding)]
-    return SceneContent({"obstacles": obstacles}, (*notes, *shapes.notes()), _notices(model))
+    return SceneContent(
+        {"obstacles": obstacles}, (*notes, *shapes.notes()), tuple(_notices(model, colliding))
+    )
 
 
 def _body_poses(model: MjcfModel) -> list[np.ndarray]:
@@ -99,7 +102,14 @@ def _notes(model: MjcfModel, colliding: list[MjcfGeom]) -> list[str]:
     return [*notes, *note_on_planes(planes)]
 
 
-def _notices(model: MjcfModel) -> tuple[Notice, ...]:
-    moving = dict.fromkeys(repr(model.bodies[joint.body].name) for joint in model.joints)
-    text = "bodies on joints stand where the file has them, with all that is on them"
-    return tuple(warnings_naming(text, moving))
+def _notices(model: MjcfModel, colliding: list[MjcfGeom]) -> Iterator[Notice]:
+    """Warnings on bodies that could move, and that a geom that collides is on."""
+    bearing = {geom.body for geom in colliding}
+    for i in range(len(model.bodies) - 1, 0, -1):  # parents come first
+        bearing |= {model.bodies[i].parent} if i in bearing else set()
+    mocap = [i for i, body in enumerate(model.bodies) if body.is_mocap]
+    moving = {"bodies on joints": [joint.body for joint in model.joints], "mocap bodies": mocap}
+    for what, indices in moving.items():
+        names = [repr(model.bodies[i].name) for i in dict.fromkeys(indices) if i in bearing]
+        text = f"{what} stand where the file has them, with all that is on them"
+        yield from warnings_naming(text, names)

@@ -71,7 +71,7 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         ordered,
         tuple(bodies),
         (),
-        (*notices, *_notices(document, model), *unseen(kinds, request.geometry)),
+        (*notices, *_notices(document, model, measured), *unseen(kinds, request.geometry)),
         states=states_of(model),
         reference=reference_of(model),
     )
@@ -91,8 +91,10 @@ def _filters(
     return MjcfFilters(model, frozenset(names), colliding, neighbours(robot))
 
 
-def _notices(document: MjcfDocument, model: MjcfModel) -> list[Notice]:
-    """Warnings on what holds bodies together in MuJoCo and not here."""
+def _notices(
+    document: MjcfDocument, model: MjcfModel, measured: dict[str, list[MjcfGeom]]
+) -> list[Notice]:
+    """Warnings on what moves bodies, or holds them together, in MuJoCo and not here."""
     found = []
     if document.left_out:
         counts = ", ".join(f"{n} {tag}" for tag, n in document.left_out.items())
@@ -100,6 +102,8 @@ def _notices(document: MjcfDocument, model: MjcfModel) -> list[Notice]:
             f"equalities that close loops are not followed ({counts}): the trajectory, or joints, must "
             "give every joint of the loop its value"
         )
+    moving = [repr(one.name) for one in model.bodies if one.is_mocap and measured.get(one.name)]
+    found += naming("mocap bodies stand where the file has them", moving)
     return [Notice(Severity.WARNING, "geometry", text) for text in found]
 
 
@@ -176,13 +180,11 @@ def _notes(
         if geom.kind != "plane"
     )
     notes += naming("geoms", [f"{n} {what}" for what, n in sorted(kinds_of_geoms.items())])
-    moving = [repr(body.name) for body in model.bodies if body.is_mocap]
     free, limited = (
         [joint.name for joint in model.joints if joint.kind == kind] for kind in ("free", "ball")
     )
     return [
         *notes,
-        *naming("mocap bodies stay where the file has them", moving),
         *naming("the values of free joints are places in the model's world", free),
         *naming("limits of ball joints are not checked", limited),
         *notes_on_bare(kinds),
