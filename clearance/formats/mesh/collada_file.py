@@ -17,13 +17,14 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadSyntax, NotFinite, at
 from clearance.formats.mesh.collada_geometry import (
+    LINES,
     ElementsById,
     geometry_pieces,
     local_name,
     words_of,
 )
 from clearance.formats.mesh.placing import MOST_COPIED_NODES, Z_FROM_Y_UP, CopyCount, joined, placed
-from clearance.formats.mesh.triangles import MeshRequest, Triangles, UpAxis
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, UpAxis, on_lines
 from clearance.formats.text.numbers import floats
 from clearance.formats.text.xml_document import root_of
 
@@ -54,7 +55,9 @@ def read_collada(asked: MeshRequest) -> Triangles:
     root = _geometry_only(asked.data)
     metres, up = _unit(root), _up(root)
     _refuse_other_units(root, metres, up)
-    return _in_metres_z_up(joined(_Scene(root).pieces()), metres, up, asked.up_axis)
+    scene = _Scene(root)
+    made = _in_metres_z_up(joined(scene.pieces()), metres, up, asked.up_axis)
+    return made._replace(notes=(*made.notes, *on_lines(scene.n_lines)))
 
 
 def _geometry_only(data: bytes) -> Element:
@@ -148,6 +151,7 @@ class _Scene:
     def __init__(self, root: Element) -> None:
         self.root = root
         self.ids = ElementsById(root)
+        self.n_lines = 0
         self._made: dict[Element, list[Triangles]] = {}
         self._visits = CopyCount(MOST_COPIED_NODES, "nodes")
 
@@ -195,6 +199,7 @@ class _Scene:
         geometry = self.ids.one("geometry", instance.get("url"))
         if geometry not in self._made:
             self._made[geometry] = geometry_pieces(geometry, self.ids)
+            self.n_lines += sum(local_name(one) in LINES for one in geometry.iter("{*}*"))
         for i, piece in enumerate(self._made[geometry]):
             yield (geometry, i), placed(piece, world_from_node)
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
 _SURFACES = ("triangles", "polylist", "polygons", "tristrips", "trifans")
-_LINES = ("lines", "linestrips")
-_NO_SURFACE = ("asset", "source", "vertices", "extra", *_LINES)
+LINES = ("lines", "linestrips", "spline")
+_NO_SURFACE = ("asset", "source", "vertices", "extra", *LINES)
 
 
 class ElementsById:

@@ -22,6 +22,7 @@ from clearance.formats.mesh.polygon_cut import fan, strip
 from clearance.formats.mesh.triangles import (
     MeshRequest,
     Triangles,
+    on_lines,
     refuse_missing_corners,
     rounded_by,
 )
@@ -51,11 +52,12 @@ def read_glb(asked: MeshRequest) -> Triangles:
     document, binary = chunks(asked.data)
     _refuse_extensions(document)
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
-        surface = joined(_Scene(document, binary).pieces())
+        scene = _Scene(document, binary)
+        surface = joined(scene.pieces())
         vertices, note = surface.vertices, "not turned from y up to z up, as in RViz and MoveIt"
         if asked.up_axis == "file":
             vertices, note = vertices @ Z_FROM_Y_UP.T, "turned from y up to z up, as glTF says"
-    notes: tuple[str, ...] = (note,)
+    notes = (note, *on_lines(scene.n_lines))
     if len(document.items("scenes")) > 1:
         notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
     if document.items("animations"):
@@ -108,6 +110,7 @@ class _Scene:
     def __init__(self, document: GltfObject, binary: bytes) -> None:
         self.document = document
         self.buffers = Buffers(document, binary)
+        self.n_lines = 0
         self._visited: set[int] = set()
         self._made: dict[Hashable, list[Triangles]] = {}
 
@@ -143,9 +146,9 @@ class _Scene:
         key = (i_mesh, None if weights is None else tuple(weights))
         if key not in self._made:
             with at(f"mesh {i_mesh}"):
-                self._made[key] = mesh_pieces(
-                    self.document.item("meshes", i_mesh), weights, self.buffers
-                )
+                mesh = self.document.item("meshes", i_mesh)
+                self._made[key] = mesh_pieces(mesh, weights, self.buffers)
+                self.n_lines += len(mesh.items("primitives")) - len(self._made[key])
         for i, piece in enumerate(self._made[key]):
             yield (key, i), placed(piece, world_from_node)
 

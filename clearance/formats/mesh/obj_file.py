@@ -2,8 +2,7 @@
 
 Own code, because the usual readers count relative indices from the end of the file instead of from
 the face's line, cut concave polygons as fans, or mix up corners where materials change (NOTES.md).
-Only positions and faces are read; colour, texture, normals, lines and points do not matter for a
-distance.
+Only positions and faces are read; colour, texture and normals do not matter for a distance.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh
 from clearance.formats.mesh.polygon_cut import cut_rings
-from clearance.formats.mesh.triangles import MeshRequest, Triangles, checked
+from clearance.formats.mesh.triangles import MeshRequest, Triangles, checked, on_lines
 
 _FREE_FORM = frozenset({b"curv", b"curv2", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"res"})
 
@@ -22,8 +21,10 @@ _MOST = 2**62
 
 _OTHER_FILES = frozenset({b"call", b"csh"})
 
+_LINES = frozenset({b"p", b"l"})
+
 _NO_SURFACE = frozenset(
-    b"vt vn vp p l g s o mg usemtl mtllib usemap maplib bevel c_interp d_interp lod shadow_obj trace_obj "
+    b"vt vn vp g s o mg usemtl mtllib usemap maplib bevel c_interp d_interp lod shadow_obj trace_obj "
     b"ctech stech cstype deg bmat step parm trim hole scrv sp end con".split()
 )
 
@@ -36,6 +37,7 @@ def read_obj(asked: MeshRequest) -> Triangles:
     """
     positions: list[list[float]] = []
     faces: list[list[int]] = []
+    n_lines = 0
     lines = asked.data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()
     for number, line in enumerate(lines, 1):  # of bytes: text would also be split at U+2028
         words = line.partition(b"#")[0].split()
@@ -47,11 +49,13 @@ def read_obj(asked: MeshRequest) -> Triangles:
                 positions.append([_number(x), _number(y), _number(z)])
             elif words[0] in (b"f", b"fo"):
                 faces.append([_index(word, len(positions)) for word in words[1:]])
+            elif words[0] in _LINES:
+                n_lines += 1
             elif words[0] not in _NO_SURFACE:
                 raise _refused(words[0])
         except ValueError as error:
             raise _bad_line(number, line, error) from None
-    return _cut(positions, faces)
+    return _cut(positions, faces)._replace(notes=tuple(on_lines(n_lines)))
 
 
 def _refused(key: bytes) -> ValueError:

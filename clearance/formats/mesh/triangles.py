@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadPolygon, EmptyMesh, NotFinite
+from clearance.formats.text.notes import counted
 from clearance.geometry.edges import distinct_vertices
 from clearance.tolerance import TESSELLATION
 
@@ -83,6 +84,12 @@ def on_rounding(rounded: float, taken: str) -> Iterator[str]:
         yield (
             f"single precision so far from the origin: up to {rounded * 1e3:.3g} mm off, which {taken}"
         )
+
+
+def on_lines(n: int) -> Iterator[str]:
+    """The note on elements of points and lines."""
+    if n:
+        yield f"{counted(n, 'element')} of points or lines, which have no surface: not measured"
 
 
 def checked(triangles: Triangles) -> Triangles:

@@ -126,6 +126,7 @@ def test_polygons_of_several_primitives_are_kept_and_cut_inside():
     area = sum(np.linalg.norm(np.cross(f[1] - f[0], f[2] - f[0])) / 2 for f in areas)
     assert mesh.n_triangles == 4
     assert area == pytest.approx(4)
+    assert "1 element of points or lines, which have no surface: not measured" in mesh.notes
 
 
 def test_triangle_strips_turn_every_other_triangle():

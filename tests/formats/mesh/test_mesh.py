@@ -109,6 +109,12 @@ def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
     assert mesh.shape.closed
 
 
+def test_obj_points_and_lines_are_told():
+    mesh = mesh_from_bytes(f"{CUBE_OBJ}l 1 2 3\np 1 2\n".encode(), "cube.obj")
+    left_out = "2 elements of points or lines, which have no surface: not measured"
+    assert mesh.notes == (left_out,)
+
+
 def test_obj_relative_indices_count_from_their_own_line():
     triangle = "v 0 0 {0}\nv 1 0 {0}\nv 0 1 {0}\nf -3 -2 -1\n"
     data = (triangle.format(0) + triangle.format(5)).encode()
