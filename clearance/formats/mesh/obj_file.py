@@ -7,6 +7,7 @@ Only positions and faces are read; colour, texture and normals do not matter for
 
 from __future__ import annotations
 
+from codecs import BOM_UTF8
 from itertools import chain
 
 import numpy as np
@@ -38,7 +39,8 @@ def read_obj(asked: MeshRequest) -> Triangles:
     positions: list[list[float]] = []
     faces: list[list[int]] = []
     n_lines = 0
-    lines = asked.data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()
+    data = asked.data.removeprefix(BOM_UTF8)
+    lines = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()
     for number, line in enumerate(lines, 1):  # of bytes: text would also be split at U+2028
         words = line.partition(b"#")[0].split()
         if not words:

@@ -109,6 +109,11 @@ def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
     assert mesh.shape.closed
 
 
+def test_obj_may_begin_with_a_byte_order_mark():
+    mesh = mesh_from_bytes(b"\xef\xbb\xbf" + CUBE_OBJ.encode(), "cube.obj")
+    assert mesh.n_triangles == 12
+
+
 def test_obj_points_and_lines_are_told():
     mesh = mesh_from_bytes(f"{CUBE_OBJ}l 1 2 3\np 1 2\n".encode(), "cube.obj")
     left_out = "2 elements of points or lines, which have no surface: not measured"
