@@ -26,6 +26,7 @@ from clearance.formats.mesh.step_text import StepFacts, step_facts
 from clearance.formats.mesh.triangles import MeshRequest, Triangles
 from clearance.formats.text.notes import counted
 from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION
+from clearance.world.notice import listed
 
 _PROCESS = Path(__file__).with_name("step_process.py")
 
@@ -82,6 +83,9 @@ def read_step(asked: MeshRequest) -> Triangles:
 def _notes(facts: StepFacts, facets: Facets) -> Iterator[str]:
     if facts.n_lines:
         yield f"{counted(facts.n_lines, 'set')} of curves, which have no surface: not measured"
+    if facts.bare:
+        parts = counted(len(facts.bare), "part")
+        yield f"{parts} of its assembly without a shape in the file: not measured: {listed(facts.bare)}"
     if facets.n_free:
         yield (
             f"{facets.n_free} of its {facets.n_faces} faces are free-form: how near facets are to them is the "

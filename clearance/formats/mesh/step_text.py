@@ -53,7 +53,12 @@ _OCCURRENCE = re.compile(
     rb"#(\d+)\s*=\s*NEXT_ASSEMBLY_USAGE_OCCURRENCE\s*\([^#]*#(\d+)\s*,\s*#(\d+)"
 )
 _SHAPE_OF = re.compile(rb"#(\d+)\s*=\s*PRODUCT_DEFINITION_SHAPE\s*\([^#)]*#(\d+)")
-_HAS_SHAPE = re.compile(rb"(?<![A-Z0-9_])SHAPE_DEFINITION_REPRESENTATION\s*\(\s*#(\d+)")
+_HAS_SHAPE = re.compile(
+    rb"(?<![A-Z0-9_])SHAPE_DEFINITION_REPRESENTATION\s*\(\s*#(\d+)\s*,\s*#(\d+)"
+)
+_PLACES = re.compile(rb"#(\d+)\s*=\s*AXIS2_PLACEMENT_3D")
+_HOLDS = re.compile(rb"#(\d+)\s*=\s*\w*SHAPE_REPRESENTATION\s*\(\s*(?:''|\$)\s*,\s*\(([^()]*)\)")
+_SAME = re.compile(rb"SHAPE_REPRESENTATION_RELATIONSHIP\s*\([^#()]*#(\d+)\s*,\s*#(\d+)")
 _HAS_PLACE = re.compile(rb"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION\s*\(\s*#\d+\s*,\s*#(\d+)")
 
 _PREFIXES = {
@@ -76,11 +81,13 @@ class StepFacts(NamedTuple):
     Attributes:
         n_faces: as many faces as it has. accuracy: [m] how far it says its surfaces may be apart where they meet.
         n_lines: sets of curves, which have no surface.
+        bare: what it calls the parts of an assembly that it has no shape of.
     """
 
     n_faces: int
     accuracy: float
     n_lines: int
+    bare: tuple[str, ...] = ()
 
 
 def step_facts(data: bytes) -> StepFacts:
@@ -108,7 +115,8 @@ def step_facts(data: bytes) -> StepFacts:
     n_faces = len(_FACE.findall(plain)) + _n_of(members, _SURFACE)
     if not n_faces:
         raise BadSyntax("the STEP file has no faces", valid="a solid, or a surface")
-    return StepFacts(n_faces, _accuracy(plain), _n_of(items, _LINES))
+    bare = tuple(_name_of(text, number) for number in _bare_parts(plain))
+    return StepFacts(n_faces, _accuracy(plain), _n_of(items, _LINES), bare)
 
 
 def _unread(entity: bytes, why: str) -> BadSyntax:
@@ -140,7 +148,7 @@ def _refuse_unplaced(text: bytes) -> None:
     shape_of = dict(_SHAPE_OF.findall(text))
     placed = {shape_of.get(shape) for shape in _HAS_PLACE.findall(text)}
     occurrences = _OCCURRENCE.findall(text)
-    bodies = {shape_of.get(shape) for shape in _HAS_SHAPE.findall(text)}
+    bodies = {shape_of.get(shape) for shape, _ in _HAS_SHAPE.findall(text)}
     bodies.update(assembly for _, assembly, _ in occurrences)
     unplaced = [n for n, _, part in occurrences if n not in placed and part in bodies]
     if unplaced and b"MAPPED_ITEM" not in text:
@@ -148,6 +156,23 @@ def _refuse_unplaced(text: bytes) -> None:
             f"#{unplaced[0].decode()} is a part of an assembly without a placement",
             valid="a CONTEXT_DEPENDENT_SHAPE_REPRESENTATION for each NEXT_ASSEMBLY_USAGE_OCCURRENCE",
         )
+
+
+def _bare_parts(text: bytes) -> list[bytes]:
+    """Occurrences of parts that have a place and no shape: so exporters write parts that are hidden or linked."""
+    places, shape_of = set(_PLACES.findall(text)), dict(_SHAPE_OF.findall(text))
+    bare = {n for n, items in _HOLDS.findall(text) if places.issuperset(_REFERENCE.findall(items))}
+    bare -= {n for pair in _SAME.findall(text) if not bare.issuperset(pair) for n in pair}
+    shown = {shape_of.get(shape) for shape, held in _HAS_SHAPE.findall(text) if held not in bare}
+    occurrences = _OCCURRENCE.findall(text)
+    shown.update(assembly for _, assembly, _ in occurrences)
+    return [number for number, _, part in occurrences if part not in shown]
+
+
+def _name_of(text: bytes, number: bytes) -> str:
+    """The first name of an occurrence, as it is written; its number where it has none."""
+    found = re.search(rb"#" + number + rb"\s*=\s*[A-Z_]+\s*\(\s*'([^']+)'", text)
+    return repr(found[1].decode(errors="replace")) if found else f"#{number.decode()}"
 
 
 def _accuracy(text: bytes) -> float:

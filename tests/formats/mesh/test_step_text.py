@@ -110,7 +110,7 @@ def test_so_are_surfaces_in_a_set_and_items_of_a_complex_representation():
     ],
 )
 def test_what_has_no_surface_is_passed_over(item):
-    assert step_facts(box_step(item=item).encode()) == (6, 1e-10, 0)
+    assert step_facts(box_step(item=item).encode()) == (6, 1e-10, 0, ())
 
 
 def test_sets_of_curves_are_counted():
@@ -133,3 +133,22 @@ def test_an_occurrence_of_a_part_without_a_placement_is_refused():
     assert step_facts(unplaced.replace(TAIL, placement + TAIL).encode()).n_faces == 6
     without_shape = text.replace(TAIL, OCCURRENCE.format(part="#9005") + TAIL)
     assert step_facts(without_shape.encode()).n_faces == 6
+
+
+BARE = """#9003=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#1,#9002);
+#9005=PRODUCT_DEFINITION('holder','',#1,#2);
+#9006=PRODUCT_DEFINITION_SHAPE('','',#9005);
+#9007=AXIS2_PLACEMENT_3D('',#1,#2,#3);
+#9008=SHAPE_REPRESENTATION('',(#9007),#4);
+#9009=SHAPE_DEFINITION_REPRESENTATION(#9006,#9008);
+"""
+
+
+def test_parts_of_an_assembly_without_a_shape_are_named():
+    """A representation that is related to one with a shape is that shape."""
+    occurrence = OCCURRENCE.format(part="#9005").replace("CE('',", "CE('holder:1',")
+    text = box_step().replace(TAIL, occurrence + BARE + TAIL)
+    assert step_facts(text.encode()).bare == ("'holder:1'",)
+    shape = next(line for line in text.splitlines() if "ADVANCED_BREP" in line).partition("=")[0]
+    related = f"#9010=SHAPE_REPRESENTATION_RELATIONSHIP('','',#9008,{shape});\n"
+    assert step_facts(text.replace(TAIL, related + TAIL).encode()).bare == ()
