@@ -44,11 +44,13 @@ class JointMessage(NamedTuple):
     Attributes:
         place: the keys that lead to it. trajectory: its keys and values.
         around: the messages that hold it, from the outermost in, each with the keys that lead to it.
+        left_out: the keys that lead to other segments of the same message, where one is chosen.
     """
 
     place: str
     trajectory: Fields
     around: tuple[tuple[str, Fields], ...] = ()
+    left_out: tuple[str, ...] = ()
 
     @property
     def n_points(self) -> int:
@@ -110,7 +112,14 @@ def chosen(messages: Sequence[JointMessage], which: int | None) -> JointMessage:
             f"which is {which}, the file holds {len(messages)}: {_listed(messages)}",
             valid=f"a number from 1 to {len(messages)}",
         )
-    return messages[which - 1]
+    one = messages[which - 1]
+    others = (other for other in messages if other is not one and _are_segments(one, other))
+    return one._replace(left_out=tuple(other.place for other in others))
+
+
+def _are_segments(one: JointMessage, other: JointMessage) -> bool:
+    """True if the same message holds both."""
+    return bool(one.around and other.around) and one.around[0][1] is other.around[0][1]
 
 
 def _within(

@@ -130,8 +130,10 @@ def with_unread(
     trajectory: Trajectory, message: JointMessage, start: StartState | None
 ) -> tuple[Trajectory, list[str]]:
     """The trajectory with the fields beside its points that bear on the motion and are not read; a note on all."""
-    unread = _all_unread(message, start)
-    grave = tuple(path for path in unread if _GRAVE & {*path.split(".")})
+    unread = [*message.left_out, *_all_unread(message, start)]
+    grave = tuple(
+        path for path in unread if path in message.left_out or _GRAVE & {*path.split(".")}
+    )
     notes = naming("fields beside the points, not read", unread, 8)
     return replace(trajectory, unread=grave), notes
 

@@ -8,8 +8,10 @@ JointState what the robot did. Not for: the points of a message (`joint_points`)
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
@@ -51,6 +53,9 @@ _STATES = "sensor_msgs/msg/JointState"
 MOST_MESSAGES = 1_000_000
 """Of one topic; some 70 s."""
 
+FIRST_MESSAGES = 100
+"""Of a topic that is not chosen; drivers that tell of different joints take turns."""
+
 
 def read_bag(
     path: Path,
@@ -73,7 +78,9 @@ def read_bag(
         topic, kind = _topic(reader, choice.topic)
         if kind == _STATES:
             choice.refuse_others({"topic", "gaps"}, "recorded joint states")
-            return trajectory_of_states(_states(reader, topic), turns, choice.gaps, wrapping)
+            read = trajectory_of_states(_states(reader, topic), turns, choice.gaps, wrapping)
+            others = _other_joints(reader, topic, {*read.trajectory.joint_names}, turns)
+            return read._replace(trajectory=replace(read.trajectory, unread=tuple(others)))
         choice.refuse_others({"topic", "which"}, "messages in a bag")
         plain = ((time, _plain(one)) for time, one in _messages(reader, topic))
         goals = [*_goals_once(plain)]
@@ -170,6 +177,18 @@ def _states(reader: AnyReader, topic: str) -> list[JointState]:
         moving = len(message.velocity) > 0
         states.append(JointState(stamped or recorded, names, positions, moving, stamped != 0))
     return states
+
+
+def _other_joints(
+    reader: AnyReader, topic: str, read: Collection[str], turns: Collection[str]
+) -> Iterator[str]:
+    """Joints that other topics of joint states tell of and the one that is read does not, by their topics."""
+    topics = {one.topic for one in reader.connections if one.msgtype == _STATES}
+    for other in sorted(topics - {topic}):
+        first = islice(_messages(reader, other), FIRST_MESSAGES)
+        told = dict.fromkeys(name for _, message in first for name in message.name)
+        if lacking := [name for name in told if name not in read and (name in turns or not turns)]:
+            yield f"{listed(lacking, 4)} of topic {other}"
 
 
 def _goals_once(messages: Iterable[tuple[int, Any]]) -> Iterator[tuple[int, Any]]:

@@ -143,6 +143,19 @@ def test_drivers_that_tell_of_different_joints_are_put_together(tmp_path, contai
     assert any("2 messages at the ends are left out" in note for note in notes)
 
 
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_joints_of_a_topic_that_is_not_chosen_stand_in_the_headline(tmp_path, container):
+    """The case may say otherwise of them than the robot did; joints of other robots are not meant."""
+    topics = {"/arm": [state(i, [0.1 * i], ["shoulder"]) for i in range(3)]}
+    topics["/same"] = topics["/arm"]
+    topics["/lift"] = [state(0, [0.02, 1.0], ["lift", "elsewhere"])]
+    bag = write_bag(tmp_path, container, topics)
+    assert read(bag, topic="/arm").trajectory.unread == ("lift, elsewhere of topic /lift",)
+    named = changed("file: path.csv", f"file: {bag.relative_to(tmp_path)}, topic: /arm")
+    warned = check(write_case(tmp_path, named, urdf=TWO_JOINTS)).verdict.warnings
+    assert any("not read: lift of topic /lift" in one for one in warned)
+
+
 def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
     bag = write_bag(tmp_path / "a", "mcap", {"/joint_states": [STATES[1], STATES[0]]})
     with pytest.raises(BadTime, match=r"message 2: its time is not later than .* cut the bag"):

@@ -204,8 +204,21 @@ def test_a_later_segment_does_not_begin_at_the_start():
     assert trajectory.times.tolist() == [2.0]
     assert notes == (
         "path.json: the first point is at 2 s; how the robot gets there is not in the file",
-        "path.json: fields beside the points, not read: trajectory_start",
+        "path.json: fields beside the points, not read: trajectory[0].joint_trajectory, trajectory_start",
     )
+
+
+def test_segments_that_are_not_chosen_stand_in_the_headline(tmp_path):
+    """Other messages of the file are other plans, as are those of a list."""
+    segments = [{"joint_trajectory": plan(point(0.0, 0.1), point(t, 0.2))} for t in (1.0, 2.0, 3.0)]
+    message = {"trajectory": segments, "trajectory_start": state({"shoulder": 0.1})}
+    case = load(tmp_path, message, ", which: 2")
+    (told,) = (one for one in notices_of(case) if one.kind == "columns")
+    assert told.text.endswith(
+        "not read: trajectory[0].joint_trajectory, trajectory[2].joint_trajectory"
+    )
+    plans = [{"trajectory": segments[0]}, {"trajectory": segments[1]}]
+    assert read(plans, 2).trajectory.unread == ()
 
 
 @pytest.mark.parametrize(
