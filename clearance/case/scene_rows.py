@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.case.allow import PatternNames, body_names
 from clearance.errors import UnknownLink, nearest_name
-from clearance.formats.scene.request import SceneContent
+from clearance.formats.scene.request import ANY, SceneContent
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case
@@ -22,7 +22,7 @@ from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_rest import misplaced
 from clearance.world.pose_table import WORLD_FRAMES
 from clearance.world.robot import JointKind
-from clearance.world.rules import Allowance, matches
+from clearance.world.rules import Allowance, matches, pattern_of
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Window
 
@@ -49,11 +49,13 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
         return case, []
     names = body_names(case)
     rows, notes = [], []
-    n_links, unknown = 0, dict[str, None]()
-    for pair in content.allow:
+    n_links, unknown, unclear = 0, dict[str, None](), list[str]()
+    for pair in _each_by_name(case, content, names):
         missing = [name for name in pair if not _any(name, (*names.links, *names.obstacles))]
         unknown |= dict.fromkeys(missing)
-        if not missing:
+        if any(_n_owners(case, name) > 1 for name in pair):
+            unclear.append(" - ".join(pair))
+        elif not missing:
             row = _row(pair, names)
             n_links += row is None
             rows += [] if row is None else [row]
@@ -65,6 +67,8 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
             "of two obstacles that stand"
         )
     notes += naming("allowed pairs of bodies that are not there are left out", unknown)
+    said = "allowed pairs of the scene's file are left out, as it does not say which robot is meant"
+    notes += naming(said, unclear)
     robots = tuple(_padded(placed, content.link_padding) for placed in case.robots)
     if content.link_padding:
         notes.append(
@@ -136,6 +140,25 @@ def _is_world(placed: PlacedRobot, link: str) -> bool:
         pose, link = joint.parent_from_joint @ pose, joint.parent
     standing = placed.world_from_base @ pose
     return placed.mount is None and bool(np.abs(standing - np.eye(4)).max() < ORIGIN)
+
+
+def _each_by_name(
+    case: Case, content: SceneContent, names: PatternNames
+) -> Iterator[tuple[str, str]]:
+    """The pairs that the scene's file allows; a default for each link, or obstacle, that none forbids."""
+    for first, second in content.allow:
+        is_of_obstacle = _any(first, names.obstacles)
+        if second != ANY or (is_of_obstacle and len(case.robots) > 1):
+            yield first, second
+            continue
+        for other in names.links if is_of_obstacle else names.obstacles:
+            if not any(matches(other, one) for one in content.not_by_default):
+                yield first, pattern_of(other)
+
+
+def _n_owners(case: Case, pattern: str) -> int:
+    """How many robots have a link that is called so, without their names."""
+    return sum(_any(pattern, placed.robot.link_names) for placed in case.robots)
 
 
 def _row(pair: tuple[str, str], names: PatternNames) -> Allowance | None:

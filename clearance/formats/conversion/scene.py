@@ -18,7 +18,7 @@ from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind, suffixes_written
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.scene.obstacles import make_obstacles
-from clearance.formats.scene.request import SceneContent, SceneRequest, read_scene
+from clearance.formats.scene.request import ANY, SceneContent, SceneRequest, read_scene
 from clearance.formats.scene.scene_yaml import rows_of, written_scene
 from clearance.formats.schema.obstacle import Scene
 from clearance.formats.schema.strict_model import validated
@@ -88,10 +88,14 @@ def _on_comments(asked: SceneRequest) -> Iterator[_Loss]:
 def _losses_of(content: SceneContent) -> list[_Loss]:
     """What makes clearances no larger where it is left out: more is measured then."""
     found = []
-    pairs = [list(pair) for pair in content.allow if _is_of_obstacle(pair, content)]
+    named = [pair for pair in content.allow if ANY not in pair]
+    pairs = [list(pair) for pair in named if _is_of_obstacle(pair, content)]
     if pairs:
         found.append(_rows("allow", "which pairs may touch", pairs))
-    n_links = len(content.allow) - len(pairs)
+    if len(named) < len(content.allow):
+        whose = listed([pair[0] for pair in content.allow if ANY in pair], 6)
+        found.append(_Loss(f"left out: defaults by which bodies may touch all others: {whose}"))
+    n_links = len(named) - len(pairs)
     if n_links:
         found.append(_Loss(f"left out: {n_links} pairs of links that may touch, which srdf says"))
     if content.attached:

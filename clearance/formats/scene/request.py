@@ -22,6 +22,9 @@ from clearance.formats.schema.strict_model import validated
 from clearance.geometry.quaternions import quaternions_of
 from clearance.world.notice import Notice, Severity
 
+ANY = "*"
+"""In a pair that may touch: every body, but for those of `SceneContent.not_by_default`."""
+
 SKIP = "skip"
 """In place of an included model: nothing."""
 
@@ -71,7 +74,8 @@ class SceneContent:
     Attributes:
         scene: what stands under `scene:`, files relative to the folder of the scene's file.
         notes: what was left out or decided, one line each. notices: what bears on the verdict.
-        allow: names of bodies that may touch, in any order, of which some may not be there.
+        allow: names of bodies that may touch, in any order, of which some may not be there; `ANY` is the second.
+        not_by_default: names that no pair with `ANY` is of.
         link_padding: [m] by link. attached: obstacles that links carry.
         frame: what its poses are given in, if its file says so; it is taken for the world.
         bases: (4, 4) [m] where its file says that a robot stands, by the joint that moves it.
@@ -81,6 +85,7 @@ class SceneContent:
     notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
     allow: tuple[tuple[str, str], ...] = ()
+    not_by_default: tuple[str, ...] = ()
     link_padding: dict[str, float] = field(default_factory=dict)
     attached: tuple[AttachedPart, ...] = ()
     frame: str = ""

@@ -151,7 +151,59 @@ def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):
   default_entry_names: [base, upper, tip]
   default_entry_values: [true, true, false]
 """
-    assert content_of(tmp_path, matrix + LISTS).allow == (("base", "upper"), ("base", "*"))
+    content = content_of(tmp_path, matrix + LISTS)
+    assert content.allow == (("base", "upper"), ("base", "*")) and content.not_by_default == (
+        "tip",
+    )
+    one_way = matrix.replace("[[true, true], [true, false]]", "[[true, false], [true, true]]")
+    assert content_of(tmp_path, one_way + LISTS).allow == ()
+
+
+def defaults(**values):
+    """A matrix of defaults alone."""
+    names, given = ", ".join(values), ", ".join(str(value).lower() for value in values.values())
+    row = f"{{default_entry_names: [{names}], default_entry_values: [{given}]}}"
+    return f"allowed_collision_matrix: {row}\n"
+
+
+@pytest.mark.parametrize(
+    ("given", "allowed"),
+    [
+        ({"upper": True}, {("upper", "post"), ("upper", "own/0"), ("upper", "own/1")}),
+        ({"upper": True, "own": False}, {("upper", "post")}),
+        ({"post": True}, {("base", "post"), ("upper", "post")}),
+        ({"post": True, "base": False}, {("upper", "post")}),
+        ({"own": True, "base": False}, {("upper", "own/0"), ("upper", "own/1")}),
+        ({"post": False, "upper": False}, set()),
+    ],
+)
+def test_defaults_are_of_links_and_obstacles_and_of_two_the_stricter_counts(
+    tmp_path, given, allowed
+):
+    """As MoveIt has it; pairs of two links are those of the SRDF."""
+    text = NAMED.replace("urdf: arm.urdf", "urdf: arm.urdf, self_clearance: true")
+    case = load_small(tmp_path, text, cell__yaml=defaults(**given) + objects(post=1, own=2))
+    excused = {(out.link, out.obstacle) for out in measured_pairs(case)[1] if "allow" in out.reason}
+    assert excused == allowed
+    assert all("*" not in row.between for row in case.allow)
+
+
+def test_a_matrix_names_links_that_one_robot_has(tmp_path):
+    """A scene is of one robot, and which one is not said."""
+    cell = allowing("upper", "post") + objects(post=1)
+    one = load_small(tmp_path, NAMED, cell__yaml=cell)
+    assert [row.between for row in one.allow] == [("upper", "post")]
+    robots = "".join(
+        f"- {{name: {name}, urdf: arm.urdf, trajectory: path.csv}}\n" for name in ("left", "right")
+    )
+    text = f"robots:\n{robots}scene: cell.yaml\n"
+    case = load_small(tmp_path, text, cell__yaml=cell)
+    said = "allowed pairs of the scene's file are left out, as it does not say which robot is meant"
+    assert case.allow == () and f"{said}: upper - post" in case.notes
+    case = load_small(tmp_path, text, cell__yaml=cell.replace("upper", "left/upper"))
+    assert [row.between for row in case.allow] == [("left/upper", "post")]
+    case = load_small(tmp_path, text, cell__yaml=defaults(post=True) + objects(post=1))
+    assert case.allow == () and f"{said}: post - *" in case.notes
 
 
 def test_rows_of_an_object_of_several_shapes_are_of_them_all(tmp_path):

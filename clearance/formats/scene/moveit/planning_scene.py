@@ -26,7 +26,13 @@ from clearance.formats.message.values import (
     text,
 )
 from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
-from clearance.formats.scene.request import AttachedPart, SceneContent, SceneRequest, pose_row
+from clearance.formats.scene.request import (
+    ANY,
+    AttachedPart,
+    SceneContent,
+    SceneRequest,
+    pose_row,
+)
 from clearance.world.names import require_own_names
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import pattern_of
@@ -76,8 +82,9 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
             require_fields(state, *_STATE)
             attached, carried = _attached(state, padding, meshes, poses)
             bases = _bases(message(state, "multi_dof_joint_state"), poses)
-        matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
+        pairs, not_by_default = allowed_pairs(message(raw, "allowed_collision_matrix"))
     rows = [*obstacles, *attached]
+    own = _obstacle_patterns(_parts(raw), rows)
     notes = [*frames.notes(), *_lost(raw, state), *poses.notes()]
     tree = message(message(world, "octomap"), "octomap")
     if items(tree, "data") and all(row["name"] != OCTOMAP for row in rows):
@@ -86,7 +93,12 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *meshes.found.notes()),
         (*_unknown_scene(raw, asked.shown), *meshes.found.notices()),
-        allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
+        allow=tuple(
+            (one, other)
+            for first, second in pairs
+            for one, other in itertools.product(own.get(first, [first]), own.get(second, [second]))
+        ),
+        not_by_default=tuple(one for name in not_by_default for one in own.get(name, [name])),
         link_padding=padding,
         attached=tuple(carried),
         frame=frames.assumed_frame,
@@ -194,18 +206,15 @@ def _parts(raw: Message) -> dict[str, list[str]]:
     return {name: [f"{name}/{i}" for i in range(n)] for name, n in n_shapes.items() if n > 1}
 
 
-def _by_obstacle(
-    pairs: list[tuple[str, str]], parts: dict[str, list[str]], rows: list[Row]
-) -> Iterator[tuple[str, str]]:
-    """The pairs with the obstacles of an object of several shapes for its name; one pattern, if of no other."""
+def _obstacle_patterns(parts: dict[str, list[str]], rows: list[Row]) -> dict[str, list[str]]:
+    """Patterns of the obstacles of each object of several shapes, by that of its name; one, if of no other."""
     patterns = {}
     for name, own in parts.items():
         before = f"{name}/"
         alone = sum(row["name"].startswith(before) for row in rows) == len(own)
         one = [f"{pattern_of(name)}/*"]
         patterns[pattern_of(name)] = one if alone else [pattern_of(part) for part in own]
-    for first, second in pairs:
-        yield from itertools.product(patterns.get(first, [first]), patterns.get(second, [second]))
+    return patterns
 
 
 def _padding(raw: Message) -> dict[str, float]:
@@ -287,16 +296,13 @@ _MATRIX = ("entry_names", "entry_values", "default_entry_names", "default_entry_
 MOST_NAMES = 2000
 """Of which there are two million pairs."""
 
-ANY = "*"
-"""Stands for every body."""
 
-
-def allowed_pairs(matrix: Message) -> list[tuple[str, str]]:
+def allowed_pairs(matrix: Message) -> tuple[list[tuple[str, str]], list[str]]:
     """The pairs of names of which an entry is true, each once, as patterns of those names alone; with `ANY` for a
-    default that is true.
+    default that is true; and the names whose default is false.
 
-    A default holds for pairs of which there is no entry; where the entries of a name forbid something, its default
-    is left out, so that more is measured and not less.
+    A default holds for pairs of which there is no entry, and of two defaults the false one; where the entries of a
+    name forbid something, its default is left out, so that more is measured and not less.
 
     Raises:
         BadShape: rows and names that are not as many. BadInput: an entry that is neither true nor false.
@@ -320,18 +326,22 @@ def allowed_pairs(matrix: Message) -> list[tuple[str, str]]:
             for j in range(i + 1, len(names))
             if rows[i][j] and rows[j][i]
         ]
-        forbidding = {name for name, row in zip(names, rows, strict=True) if not all(row)}
-        return pairs + [
-            (pattern_of(name), ANY) for name in _defaults(matrix) if name not in forbidding
-        ]
+        columns = zip(*rows, strict=True)
+        forbidding = {
+            name for name, *own in zip(names, rows, columns, strict=True) if not all(map(all, own))
+        }
+        defaults = _defaults(matrix)
+    by_default = [name for name, is_allowed in defaults if is_allowed and name not in forbidding]
+    pairs += [(pattern_of(name), ANY) for name in by_default]
+    return pairs, [pattern_of(name) for name, is_allowed in defaults if not is_allowed]
 
 
-def _defaults(matrix: Message) -> list[str]:
+def _defaults(matrix: Message) -> list[tuple[str, bool]]:
     names = _names(matrix, "default_entry_names")
     values = items(matrix, "default_entry_values")
     if len(values) != len(names):
         raise BadShape(f"{len(values)} default_entry_values of {len(names)}", valid="one each")
-    return [name for name, value in zip(names, _row(values, len(names)), strict=True) if value]
+    return [*zip(names, _row(values, len(names)), strict=True)]
 
 
 def _names(matrix: Message, key: str) -> list[str]:
