@@ -14,6 +14,7 @@ from clearance.world.robot import Joint, JointKind
 from clearance.world.timing import AS_GIVEN, Timing, Window
 from tests.examples import first_fast
 from tests.gains.gantries import X, along_x, gantry, standing
+from tests.made_cases import at
 
 Z = np.eye(3)[2]
 TIMES = np.linspace(0.0, 2.0, 41)
@@ -78,8 +79,7 @@ def test_a_part_in_hand_bounds_a_wall_that_is_moved():
 
 
 def test_what_rides_on_a_robot_moves_with_the_obstacle_that_this_stands_on():
-    raised, ahead = np.eye(4), np.eye(4)
-    raised[2, 3], ahead[0, 3] = 0.3, 0.5
+    raised, ahead = at(z=0.3), at(x=0.5)
     camera = cl.Obstacle(cl.Body("camera", cl.box((0.1, 0.1, 0.1))), mount=Mount("tool", ahead))
     wall = standing("wall", cl.box((0.1, 1.0, 1.0)), (0.62, 0.0, 0.0))
     stand = standing("stand", cl.box((0.2, 0.2, 0.02)), (0.0, 0.0, -0.3))

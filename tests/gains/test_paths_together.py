@@ -77,14 +77,12 @@ def test_several_robots_where_one_is_meant(kind, how, told):
 
 def beside_a_bar(angle):
     """A block goes along x at y = 0; the face of a long bar is 0.05 before it, less at one end by its angle."""
-    bar = standing("bar", cl.box((2.0, 0.2, 0.2)), (0.0, 0.2, 0.0))
     c, s = np.cos(angle), np.sin(angle)
     turned = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    pose = bar.world_from_body.copy()
-    pose[:3, :3] = turned
-    pose[:3, 3] = (-0.1 * s, 0.1 + 0.1 * c, 0.0)  # the middle of its face stays
+    pose = at(-0.1 * s, 0.1 + 0.1 * c, turned=turned)  # the middle of its face stays
+    bar = cl.Obstacle(cl.Body("bar", cl.box((2.0, 0.2, 0.2))), pose)
     path = along_x(gantry(), start=-0.9, end=0.9)
-    return cl.Case("bar", (path,), (cl.Obstacle(bar.body, pose),), cl.Limits(fail=0.045))
+    return cl.Case("bar", (path,), (bar,), cl.Limits(fail=0.045))
 
 
 @pytest.mark.parametrize("angle", [0.02, -0.03])

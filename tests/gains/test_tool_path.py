@@ -17,7 +17,7 @@ from clearance.world.robot import Joint, JointKind
 from clearance.world.tool import pose_errors, tool_of
 from tests.gains.gantries import along_x, gantry, slot, standing
 from tests.gains.making_gain import write_cell
-from tests.made_cases import random_robot
+from tests.made_cases import at, random_robot
 
 
 def footed(x_range=(-np.inf, np.inf), rates=False):
@@ -97,17 +97,14 @@ def arm():
     names = ("base", *(f"l{i}" for i in range(6)))
     joints = []
     for i, (axis, offset) in enumerate(zip(axes, offsets, strict=True)):
-        pose = np.eye(4)
-        pose[:3, 3] = offset
-        joints.append(
-            Joint(f"j{i}", JointKind.REVOLUTE, names[i], names[i + 1], pose, axis, -3.0, 3.0)
-        )
+        turns = JointKind.REVOLUTE, names[i], names[i + 1], at(*offset), axis
+        joints.append(Joint(f"j{i}", *turns, -3.0, 3.0))
     bodies = (cl.Body("l1", cl.box((0.1, 0.1, 0.4))), cl.Body("l5", cl.box((0.05, 0.05, 0.05))))
     robot = cl.Robot("arm", names, tuple(joints), bodies)
     times = np.linspace(0.0, 1.0, 21)
     ends = np.array([[0.0, 0.3, 0.4, 0.2, 0.6, 0.1], [0.6, 0.5, 0.2, -0.2, 0.8, 0.4]])
-    at = ends[0] + times[:, None] * (ends[1] - ends[0])
-    placed = cl.PlacedRobot(robot, cl.Trajectory(times, tuple(j.name for j in joints), at))
+    positions = ends[0] + times[:, None] * (ends[1] - ends[0])
+    placed = cl.PlacedRobot(robot, cl.Trajectory(times, tuple(j.name for j in joints), positions))
     ball = standing("ball", cl.PointCloud([[0.0, 0.0, 0.0]], 0.05), (0.1, 0.13, 0.45))
     return cl.Case("arm", (placed,), (ball,), cl.Limits(fail=0.03))
 
@@ -241,9 +238,8 @@ def test_how_poses_lie_apart_at_any_angle():
     axis = np.array([2.0, -1.0, 2.0]) / 3.0
     cross = np.cross(np.eye(3), axis)
     for angle in (0.0, 1e-9, 0.3, 3.0):
-        turned = np.eye(4)
-        turned[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-        found = pose_errors(turned[None], np.eye(4)[None])[0]
+        turned = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+        found = pose_errors(at(turned=turned)[None], np.eye(4)[None])[0]
         assert found == pytest.approx(np.append(np.zeros(3), angle * axis), abs=1e-9)
 
 

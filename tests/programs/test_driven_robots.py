@@ -13,6 +13,7 @@ import clearance as cl
 from clearance.case.case_file import load_cell, with_trajectory_file
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.quaternions import quaternions_of
+from tests.made_cases import at
 from tests.programs.arms import turned
 from tests.programs.test_controllers_in_cases import frame_angles
 from tests.programs.test_programs_in_cases import (
@@ -20,9 +21,9 @@ from tests.programs.test_programs_in_cases import (
     PLATE,
     START,
     TURNTABLE,
-    as_yaml,
     beside_a_turntable,
     case,
+    cube,
     far,
     tool_at,
     written,
@@ -56,13 +57,8 @@ def lin(way=(0.0, 0.0, 0.0), **more) -> dict:
     return {"lin": {"to": {"frame": "jig", "xyz": on_plate(way)}, **more}}
 
 
-def ball(name: str, at: np.ndarray, radius: float) -> dict:
-    return {"name": name, "sphere": {"radius": radius}, "pose": {"xyz": at.tolist()}}
-
-
-def cube(name: str, on: str, pose: np.ndarray) -> dict:
-    """A box of 2 cm on a link."""
-    return {"name": name, "box": {"size": [0.02] * 3}, "on": on, "pose": as_yaml(pose)}
+def ball(name: str, place: np.ndarray, radius: float) -> dict:
+    return {"name": name, "sphere": {"radius": radius}, "pose": {"xyz": place.tolist()}}
 
 
 @pytest.mark.slow
@@ -70,9 +66,8 @@ def test_a_tool_that_stays_on_a_turning_plate_keeps_its_clearance_to_it(tmp_path
     """It goes round the axis of the table by 0.4 rad, and past a ball that is beside the middle of its way."""
     content = driving(tmp_path, [lin(hold={"turntable/turn": 0.9})])
     tip = tool_at(START)
-    seen = np.eye(4)
-    seen[:3, :3] = turned((0.0, 0.0, -0.5)) @ tip[:3, :3]
-    seen[:3, 3] = on_plate() + seen[:3, :3] @ [0.0, 0.1, 0.0]
+    turn = turned((0.0, 0.0, -0.5)) @ tip[:3, :3]
+    seen = at(*(on_plate() + turn @ [0.0, 0.1, 0.0]), turned=turn)
     out = TIP[:2] - AXIS[:2]
     beside = AXIS[:2] + 1.3 * turned((0.0, 0.0, 0.2))[:2, :2] @ out
     content["scene"]["obstacles"] = [
@@ -223,8 +218,7 @@ def test_a_work_object_that_a_mechanical_unit_moves_is_a_frame_on_it(tmp_path):
 def test_a_base_of_krl_on_another_machine_is_a_frame_on_what_carries_it(tmp_path):
     """Base 1 is 0.1 m out and 20 mm above the plate's frame; the machine turns by 0.1 rad along the line."""
     turn, to = turned((0.0, 0.0, -0.5)) @ tool_at(START)[:3, :3], on_plate((0.0, 0.05, 0.0))
-    quat, pose = quaternions_of(turn[None])[0].tolist(), np.eye(4)
-    pose[:3, :3] = turn
+    quat, pose = quaternions_of(turn[None])[0].tolist(), at(turned=turn)
     place = {"frame": "jig", "xyz": to, "quat_xyzw": quat}
     move = {"lin": {"to": place, "hold": {"turntable/turn": 0.6}, "speed": 0.1}}
     content = driving(tmp_path, [move])

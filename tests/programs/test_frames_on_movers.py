@@ -44,6 +44,7 @@ from tests.programs.test_programs_in_cases import (
     at_base,
     beside_a_turntable,
     case,
+    cube,
     tool_at,
     written,
 )
@@ -260,19 +261,11 @@ def on_belt(folder: Path, moves: list, rows: str, **more) -> dict:
     (folder / "belt.csv").write_text(f"time,x,y,z,qx,qy,qz,qw\n{rows}")
     content = yaml.safe_load(path.read_text())
     turn_back = at(turned=tool_at(JOINTS)[:3, :3].T)
+    ahead = {"xyz": (TIP + [0.1, 0.1, 0.0]).tolist()}
     content["scene"]["obstacles"] = [
         {"name": "belt", "box": {"size": [0.1] * 3}, "moves": "belt.csv"},
-        {
-            "name": "torch",
-            "box": {"size": [0.02] * 3},
-            "on": "tool_tip",
-            "pose": as_yaml(turn_back),
-        },
-        {
-            "name": "post",
-            "box": {"size": [0.02] * 3},
-            "pose": {"xyz": (TIP + [0.1, 0.1, 0.0]).tolist()},
-        },
+        cube("torch", "tool_tip", turn_back),
+        {"name": "post", "box": {"size": [0.02] * 3}, "pose": ahead},
     ]
     links = {body.name for body in arm("heron6").robot.bodies}
     content["allow"] = [[name, "*"] for name in ("belt", *sorted(links))]
@@ -339,21 +332,9 @@ def test_a_tool_goes_with_a_part_on_a_turntable_on_a_conveyor(tmp_path, carried)
     arm_of, table = content["robots"]
     arm_of["trajectory"] |= {"start": 0.3, "rate": 1.25}
     table["base"] = {"on": "belt", "xyz": [2.0, 0.0, 0.0]}
-    beside = np.linalg.inv(WORLD_FROM_PART) @ np.array(at_base()) @ tool_at(JOINTS)
-    beside[:3, 3] += beside[:3, :3] @ [0.0, 0.1, 0.0]
     belt = {"name": "belt", "box": {"size": [0.1] * 3}, "moves": "belt.csv"}
-    cubes = [("torch", "arm/tool_tip", np.eye(4)), ("rides", "part", beside)]
-    content["scene"]["obstacles"] += [belt] + [
-        {"name": name, "box": {"size": [0.02] * 3}, "on": on, "pose": as_yaml(pose)}
-        for name, on, pose in cubes
-    ]
-    content["allow"] = [
-        ["arm/*", "*"],
-        ["turntable/*", "*"],
-        ["belt", "*"],
-        ["part", "*"],
-        ["far", "*"],
-    ]
+    content["scene"]["obstacles"] += [belt, *torch_and_rider()]
+    content["allow"] = [[name, "*"] for name in ("arm/*", "turntable/*", "belt", "part", "far")]
     if carried:
         part = next(one for one in content["scene"]["obstacles"] if one["name"] == "part")
         part.pop("on")
@@ -383,12 +364,7 @@ def test_a_tool_goes_with_a_part_on_a_turntable_that_has_a_program_of_its_own(tm
     program = {"tool": {"link": "plate"}, "start": table.pop("joints"), "moves": turns}
     table["trajectory"] = {"program": program}
     content["robots"] = [arm_of, table] if first == "arm" else [table, arm_of]
-    beside = np.linalg.inv(WORLD_FROM_PART) @ np.array(at_base()) @ tool_at(JOINTS)
-    beside[:3, 3] += beside[:3, :3] @ [0.0, 0.1, 0.0]
-    content["scene"]["obstacles"] += [
-        {"name": name, "box": {"size": [0.02] * 3}, "on": on, "pose": as_yaml(pose)}
-        for name, on, pose in (("torch", "arm/tool_tip", np.eye(4)), ("rides", "part", beside))
-    ]
+    content["scene"]["obstacles"] += torch_and_rider()
     content["allow"] = [[name, "*"] for name in ("arm/*", "turntable/*", "part", "far")]
     run = cl.check(written(tmp_path, content))
     clearances = run.steps["clearance"].to_numpy() + run.record.timeline.path_error
@@ -406,6 +382,13 @@ WORLD_FROM_PART[:3, :3] = turned((0.0, 0.0, 0.5))
 WORLD_FROM_PART[:3, 3] = WORLD_FROM_PART[:3, :3] @ [0.1, 0.0, 0.0] + [2.0, 0.0, PLATE + 0.3]
 ON_PART = (WORLD_FROM_PART[:3, :3].T @ (TIP - WORLD_FROM_PART[:3, 3])).tolist()
 """Where the part is at first, and the tool seen from it."""
+
+
+def torch_and_rider() -> list[dict]:
+    """A cube at the tool, and one that rides on the part 80 mm beside it."""
+    beside = np.linalg.inv(WORLD_FROM_PART) @ np.array(at_base()) @ tool_at(JOINTS)
+    beside[:3, 3] += beside[:3, :3] @ [0.0, 0.1, 0.0]
+    return [cube("torch", "arm/tool_tip", np.eye(4)), cube("rides", "part", beside)]
 
 
 def test_what_stops_is_followed_no_farther(tmp_path):

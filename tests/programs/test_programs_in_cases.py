@@ -174,6 +174,11 @@ def as_yaml(pose: np.ndarray) -> dict:
     return {"xyz": pose[:3, 3].tolist(), "quat_xyzw": quat.tolist()}
 
 
+def cube(name: str, on: str, pose: np.ndarray) -> dict:
+    """A box of 2 cm on a link or an obstacle."""
+    return {"name": name, "box": {"size": [0.02] * 3}, "on": on, "pose": as_yaml(pose)}
+
+
 def at_base() -> np.ndarray:
     """(4, 4) where the robot stands."""
     return at(*BASE)
