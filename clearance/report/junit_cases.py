@@ -28,6 +28,7 @@ from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES, Status
 from clearance.record.wording import (
+    at_least_mm,
     certified_text,
     least_text,
     limit_mm,
@@ -42,7 +43,7 @@ from clearance.report.junit import TestResult, write_junit
 from clearance.report.model import ReportModel
 from clearance.report.moment import name_shown
 from clearance.report.topics.certainty import certified_of
-from clearance.report.topics.pairs import PairJudge
+from clearance.report.topics.pairs import PairJudge, is_loose, may_come_nearer
 from clearance.world.notice import Severity
 from clearance.world.rules import DEFAULT
 
@@ -198,7 +199,7 @@ def _of_minimum(record: Record, judge: PairJudge, minimum: PairMinimum) -> TestR
     by = "" if minimum.rule == DEFAULT else f" [{minimum.rule}]"
     name = f"{minimum.link} - {minimum.obstacle}{by}"
     status = Status(judge.status_of(minimum))
-    over = "at the samples " if minimum.proven is None else ""
+    over = "at the samples " if minimum.proven is None and not minimum.between else ""
     when = seconds(minimum.time, record.moves.at(minimum.time))
     at = f"{over}{near_mm(minimum.clearance, status, ' mm')} at {when}, step {step_text(minimum)}"
     if status in (Status.VIOLATED, Status.CONTACT):
@@ -211,7 +212,18 @@ def _of_minimum(record: Record, judge: PairJudge, minimum: PairMinimum) -> TestR
             LIMIT,
         )
     near = "near miss: " if status is Status.NEAR else ""
-    return TestResult(minimum.link, name, f"{near}least clearance {at}")
+    return TestResult(minimum.link, name, f"{near}least clearance {at}{_bound(record, minimum)}")
+
+
+def _bound(record: Record, minimum: PairMinimum) -> str:
+    """The proven bound, where a pair may come nearer than was seen by more than the certificate's gap."""
+    certificate = record.certificate
+    if certificate is None:
+        return ""
+    if minimum.proven is None:
+        nearer = may_come_nearer(certified_of(record, certificate))
+        return f"; {nearer[0].lower()}{nearer[1:].removesuffix('.')}"
+    return f"; {at_least_mm(minimum.proven)} is proven" if is_loose(record, minimum) else ""
 
 
 def _of_certificate(record: Record, judgement: Judgement) -> TestResult:

@@ -27,6 +27,7 @@ from clearance.report.model import PageContent
 from clearance.report.rendering import inside_script, render
 from clearance.report.topic import Topic
 from clearance.report.topics import BELOW, FIRST
+from clearance.report.topics.pairs import may_come_nearer
 from clearance.report.topics.verdict import badge_text, header
 from clearance.world.rules import DEFAULT
 
@@ -65,14 +66,16 @@ def page_of(
     """
     summary = content.summary
     data = _data(replay) | _pairs(summary, replay, curves.pairs)
-    data |= _more(curves.more) | _earlier(earlier) | {"sampled": summary["basis"] == "samples"}
+    untied = summary["clock"]["kind"] != "common"
+    data |= _more(curves.more) | _earlier(earlier)
+    data["sampled"] = untied or summary["basis"] == "samples"
     least, found = (summary["end"] - summary["start"]) / FINEST, summary["intervals"]
     data["intervals"] = {level: _bands(found[level], least) for level in LEVELS}
     return render(
         "report.html",
         title=f"{summary['name']}: {badge_text(content.verdict)}",
         header=header(content),
-        thinned=_thinned(replay),
+        drawn=" ".join(filter(None, (_thinned(replay), _at_steps(summary)))),
         columns=[_sections(column, content) for column in FIRST],
         sections=_sections(BELOW, content),
         data=data,
@@ -218,6 +221,16 @@ def _thinned(replay: Replay) -> str:
     return (
         f"Drawn are {n_drawn:,} of {count(replay.n_steps, 'step')}, chosen so that the "
         "least clearance of every stretch is kept; all steps are in steps.csv and steps.parquet."
+    )
+
+
+def _at_steps(summary: dict[str, Any]) -> str:
+    """A caution on chart and replay where clocks are not one, and a proof covers more than they show."""
+    if summary["clock"]["kind"] == "common" or summary["certified"] is None:
+        return ""
+    nearer = may_come_nearer(summary["certified"])
+    return (
+        f"Drawn is the least of each step of the first clock over the steps of the other. {nearer}"
     )
 
 

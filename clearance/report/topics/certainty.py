@@ -254,7 +254,11 @@ def _moving(summary: dict[str, Any]) -> Iterator[str]:
     kind = summary["clock"]["kind"]
     if kind in clocks:
         how = clocks[kind].format(slack=summary["clock"]["slack"])
-        yield f"The clocks of the actors {how}: every pair of times that this allows is measured."
+        covered = "covers" if summary["certified"] is not None else "would cover"
+        yield (
+            f"The clocks of the actors {how}: the proof between the steps {covered} every pair of times that this "
+            "allows. Chart, replay and the clearances of steps are of pairs of steps."
+        )
 
 
 _MEASURED = {

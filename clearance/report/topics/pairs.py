@@ -14,7 +14,7 @@ from clearance.findings.measurement_conditions import paddings_in
 from clearance.findings.self_clearance import self_clearance_of
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status, status_of
-from clearance.record.wording import near_mm, step_text
+from clearance.record.wording import at_least_mm, mm, near_mm, step_text
 from clearance.report.blocks import At, Paragraph, Row, Section, Table, capital, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment, time_of
@@ -92,19 +92,29 @@ def lines(model: ReportModel) -> Iterator[TerminalTable]:
         return
     judge = PairJudge.of(record)
     first, second = BODIES[record.sides[0]]
-    at_samples = "" if all(pair.proven is not None for pair in nearest) else " at the samples"
+    seen = " that was seen" if any(pair.between for pair in nearest) else " at the samples"
+    at_samples = "" if all(pair.proven is not None for pair in nearest) else seen
     several = bool(record.case.limits.rules)
     heads = [f"closest{at_samples}: {first.lower()}", second.lower()]
     made = record.moves
-    heads += [">clearance mm", ">step", ">time s", *(["move"] * bool(made.robots))]
-    heads += ["rule"] * several
+    loose = any(is_loose(record, pair) for pair in nearest)
+    heads += [">clearance mm", ">step", ">time s", *([">proven mm"] * loose)]
+    heads += ["move"] * bool(made.robots) + ["rule"] * several
     rows = [
         [pair.link, pair.obstacle, *pair_figures(pair, judge)]
+        + [mm(pair.proven) if pair.proven is not None else ""] * loose
         + [made.at(pair.time)] * bool(made.robots)
         + [pair.rule] * several
         for pair in nearest
     ]
     yield TerminalTable(heads, rows)
+
+
+def is_loose(record: Record, pair: PairMinimum) -> bool:
+    """True if a pair is proven, by more than the gap of the certificate below what was seen."""
+    if record.certificate is None or pair.proven is None:
+        return False
+    return pair.clearance - pair.proven > record.certificate.gap
 
 
 def pair_figures(pair: PairMinimum, judge: PairJudge) -> list[str]:
@@ -226,18 +236,36 @@ def _shade(pair: dict[str, Any]) -> str:
 def _meaning(summary: dict[str, Any]) -> str:
     shown = _PAIR_SHOWN[summary["need"] == "pairs"]
     proven = [pair["proven"] is not None for pair in summary["pairs"]]
-    when = "Over the motion" if any(proven) else "At the steps"
-    when += " (at the steps for pairs that stay far)" if any(proven) > all(proven) else ""
     text = (
-        f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
-        f"line and {shown}; \N{EN DASH} marks a pair that was not measured."
+        f"{_when(summary, proven)}, rounded down. A click moves the replay to where that pair comes closest, "
+        f"with its line and {shown}; \N{EN DASH} marks a pair that was not measured."
     )
+    if not any(proven) and summary["certified"] is not None:
+        text += f" {may_come_nearer(summary['certified'])}"
     if any(proven):
         text += " Far pairs may come about 1 % nearer; summary.json has their proven bounds."
     text += " Less padding." if summary["paddings"] else ""
     return text + (
         " Colours go by the rule that judges a pair." if len(summary["rules"]) > 1 else ""
     )
+
+
+def _when(summary: dict[str, Any], proven: Sequence[bool]) -> str:
+    """The moments of which the figures are the least."""
+    if any(proven):
+        far = " (at the steps for pairs that stay far)" if not all(proven) else ""
+        return f"Over the motion{far}"
+    of_clocks = "" if summary["clock"]["kind"] == "common" else " of both clocks"
+    seen = any(pair["between"] for pair in summary["pairs"])
+    nearer = ", or between them where the proof saw a pair nearer" if seen else ""
+    return f"At the steps{of_clocks}{nearer}"
+
+
+def may_come_nearer(certified: Mapping[str, Any]) -> str:
+    """The bound for what is known at the steps alone, in a sentence."""
+    least = certified["lower_bound"]
+    bound = f"; {at_least_mm(least)} is proven of all pairs" if least > 0.0 else ""
+    return f"Between the steps a pair may come nearer{bound}."
 
 
 def _unmeasured(summary: dict[str, Any]) -> Iterator[Paragraph | Table]:
