@@ -9,8 +9,7 @@ import clearance as cl
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
 from clearance.world.rules import Waiver
 from tests.findings.gates import load_gates
-from tests.findings.test_verdict import printed
-from tests.report.made import write_junit
+from tests.report.made import printed, write_junit
 
 GATES = {"left": (-0.5, 0.003), "right": (0.5, 0.008)}
 WAIVER = Waiver(("*", "left"), at_least=0.002, reason="known", by="J. Doe", until=date(2999, 1, 1))

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from rich.console import Console
 
 import clearance as cl
 from clearance.record.record import ProfileAnswer, Record
-from clearance.report.terminal import print_answer
 from clearance.report.topics.verdict import header
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates
-from tests.report.made import content_of, page_of, run_of, summary_of, verdict_of, write_junit
+from tests.report.made import (
+    content_of,
+    page_of,
+    printed,
+    run_of,
+    summary_of,
+    verdict_of,
+    write_junit,
+)
 from tests.report.records import disagreeing, record, with_steps
 from tests.report.test_page import data_in
 
@@ -69,12 +74,6 @@ CASES = {
     "disputed": (made(cross_check=disagreeing()), "clear", 3),
     "disputed and suspect": (made(notices=(UNITS,), cross_check=disagreeing()), "suspect", 3),
 }  # fmt: skip
-
-
-def printed(one: Record) -> list[str]:
-    console = Console(file=io.StringIO(), width=200)
-    print_answer(run_of(one).report, None, console)
-    return console.file.getvalue().splitlines()
 
 
 @pytest.mark.parametrize("name", CASES)

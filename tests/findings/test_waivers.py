@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import itertools
 from datetime import date
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from clearance.batch.rows import row_of
 from clearance.case.waiver_file import load_waivers
@@ -20,14 +18,13 @@ from clearance.report.glb import glb_of
 from clearance.report.model import PageContent
 from clearance.report.moveit_moments import moments_of
 from clearance.report.still import still_of
-from clearance.report.terminal import print_answer
 from clearance.report.topics.verdict import header
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.rules import Rule, Waiver
 from tests.findings.gates import load_gates
-from tests.report.made import page_of
+from tests.report.made import page_of, printed
 from tests.report.test_page import data_in
 
 TODAY = date(2026, 11, 1)
@@ -132,12 +129,6 @@ TEXT = """
 - {between: [box, gate_a], at_least: 0.002, reason: "gives  way", by: N. N., until: 2027-03-31}
 - {case: "weld_*", rule: fence, between: ["*", gate_b], at_least: 0, reason: r, by: b, until: "2027-01-01"}
 """
-
-
-def printed(run: Run) -> list[str]:
-    console = Console(file=io.StringIO(), width=200)
-    print_answer(run.report, None, console)
-    return console.file.getvalue().splitlines()
 
 
 def test_what_fails_beside_a_waiver_is_told_first(tmp_path):

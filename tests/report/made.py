@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
+from pathlib import Path
 from typing import Any
+
+from rich.console import Console
 
 from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.names import pair_names
@@ -14,6 +18,7 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.report import page
 from clearance.report.junit_cases import write_run_junit
 from clearance.report.model import PageContent, ReportModel
+from clearance.report.terminal import print_answer
 from clearance.run import Run
 from clearance.simulate.answers.contact.rows import FoundContacts
 from clearance.simulate.answers.rule_pairs import MeasuredRule, SampleMoments
@@ -116,6 +121,13 @@ def content_of(made: Record | Run, **changes: Any) -> PageContent:
 def page_of(made: Record | Run, replay: Any = None) -> str:
     """Its page."""
     return page.page_of(content_of(made), replay or replay_of(made))
+
+
+def printed(made: Record | Run, folder: Path | None = None) -> list[str]:
+    """The lines that a wide terminal shows of it; `folder`: of its report."""
+    console = Console(file=io.StringIO(), width=200)
+    print_answer(model_of(made), folder, console)
+    return console.file.getvalue().splitlines()
 
 
 def replay_of(made: Record | Run | MeasuringSession, *args: Any, **options: Any):

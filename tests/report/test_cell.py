@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import json
 import re
 
 import pyarrow.csv
 import pyarrow.parquet
 import pytest
-from rich.console import Console
 
 import clearance as cl
 from clearance.report.summary import json_text
-from clearance.report.terminal import print_answer
 from clearance.report.topics.pairs import PairJudge
 from clearance.world.case import Clock
 from clearance.world.placed_robot import SelfClearance
@@ -22,7 +19,7 @@ from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at
 from tests.report.cells import box, cell, sliding
-from tests.report.made import page_of, replay_of, write_junit
+from tests.report.made import page_of, printed, replay_of, write_junit
 
 
 @pytest.fixture(scope="module")
@@ -33,12 +30,6 @@ def run():
 @pytest.fixture(scope="module")
 def summary(run):
     return json.loads(json_text(run.summary))
-
-
-def printed(run) -> str:
-    console = Console(file=io.StringIO(), width=240)
-    print_answer(run.report, None, console)
-    return console.file.getvalue()
 
 
 def test_tables_have_the_sides_of_any_two_bodies_and_the_rule(run, tmp_path):
@@ -121,7 +112,7 @@ def test_self_collision_is_said_robot_by_robot():
     )
     run = cl.check(cell((), robots, (box("table", (4, 4, 0.1)),), ()))
     assert run.verdict.not_checked == ("self-collision of right",)
-    assert "self-collision of right not checked" in printed(run)
+    assert "self-collision of right not checked" in "\n".join(printed(run))
 
 
 @pytest.mark.parametrize(
@@ -143,7 +134,7 @@ def test_the_verdict_says_how_far_clocks_may_be_apart_and_both_times(slack, told
     assert run.verdict.headline().endswith(told)
     summary = run.summary
     assert summary["clocks"] == told and summary["worst"]["time_b"] == 2.5
-    text = printed(run)
+    text = "\n".join(printed(run))
     assert f"with {worst.obstacle} at 2.500 s" in text and told.upper() not in text
     html = page_of(run)
     assert f"with {worst.obstacle} at 2.500 s" in html and told in html

@@ -9,14 +9,12 @@ from __future__ import annotations
 
 import functools
 import html
-import io
 import re
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 import clearance as cl
 from clearance.findings.comparison import compared
@@ -26,14 +24,13 @@ from clearance.report.junit_cases import write_run_junit
 from clearance.report.markdown import markdown
 from clearance.report.moveit_moments import moments_text
 from clearance.report.summary import json_text
-from clearance.report.terminal import print_answer
 from clearance.report.topics import certainty
 from clearance.run import Run
 from clearance.world.case import Limits
 from tests.findings.test_verdict import CASES, made
 from tests.report.budgets import with_budget
 from tests.report.cells import cell
-from tests.report.made import model_of, page_of, run_of
+from tests.report.made import model_of, page_of, printed, run_of
 from tests.report.records import disagreeing, record, with_contacts
 
 HERE = Path(__file__).parent / "golden"
@@ -64,9 +61,7 @@ def test_notes_that_begin_as_one_before_them_are_counted_behind_it():
 
 
 def terminal(one) -> str:
-    console = Console(file=io.StringIO(), width=200)
-    print_answer(model_of(one), Path("out"), console)
-    return console.file.getvalue()
+    return "\n".join([*printed(one, Path("out")), ""])
 
 
 def page(text: str) -> str:

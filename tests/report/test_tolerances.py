@@ -23,13 +23,14 @@ from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.case import Limits
 from clearance.world.trajectory import UnprovenSpan
 from tests.budget.part_cases import passing
-from tests.findings.test_verdict import UNITS, made, printed
+from tests.findings.test_verdict import UNITS, made
 from tests.report.budgets import with_budget
 from tests.report.cells import with_a_hole
 from tests.report.made import (
     finding_list_of,
     findings_of,
     model_of,
+    printed,
     run_of,
     summary_of,
     verdict_of,
