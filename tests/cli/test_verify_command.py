@@ -86,18 +86,16 @@ def test_the_bound_is_proven_where_no_report_can_be_written(home, capsys, monkey
         "robots/gantry_box/gantry_box.urdf",
     ],
 )
-def test_an_input_that_was_changed_is_named(home, name, capsys):
+def test_an_input_that_was_changed_is_named(home, name, refusal):
     path = home / name
     path.write_bytes(path.read_bytes() + b"\n")
-    assert run(["verify", str(home / "out")]) == ExitCode.BAD_INPUT
-    assert Path(name).name in capsys.readouterr().err
+    assert Path(name).name in refusal("verify", home / "out")
 
 
-def test_a_case_that_is_elsewhere_is_given(home, capsys):
+def test_a_case_that_is_elsewhere_is_given(home, refusal, capsys):
     moved = home.parent / "elsewhere"
     (home / "out").rename(moved)
-    assert run(["verify", str(moved)]) == ExitCode.BAD_INPUT
-    assert "--case CASE.yaml" in capsys.readouterr().err
+    assert "--case CASE.yaml" in refusal("verify", moved)
     case = home / "scenes" / "box_box" / "case.yaml"
     assert run(["verify", str(moved), "--case", str(case), "--quiet"]) == ExitCode.CLEAR
     assert capsys.readouterr() == ("", "")
@@ -121,13 +119,10 @@ def test_a_receipt_that_is_cut_off_and_none_at_all(home, refusal):
     ],
 )
 def test_a_receipt_of_what_is_not_proven_is_refused_before_anything_is_measured(
-    options, home, monkeypatch, capsys
+    options, home, monkeypatch, refusal
 ):
     monkeypatch.chdir(home.parent)
-    case = home / "scenes" / "box_box" / "case.yaml"
-    assert run(["check", str(case), *options]) == ExitCode.BAD_INPUT
-    assert "receipt" in capsys.readouterr().err
-    assert not (home.parent / "out").exists()
+    assert "receipt" in refusal("check", home / "scenes" / "box_box" / "case.yaml", *options)
 
 
 WAIVER = """- {between: ["*", block], at_least: 0.03, reason: a, by: b, until: 2900-01-01}
@@ -135,7 +130,7 @@ WAIVER = """- {between: ["*", block], at_least: 0.03, reason: a, by: b, until: 2
 
 
 @pytest.mark.slow
-def test_what_was_asked_beside_the_case_is_asked_again_and_said(home, capsys):
+def test_what_was_asked_beside_the_case_is_asked_again_and_said(home, refusal, capsys):
     waivers, out = home / "more.yaml", home / "asked"
     waivers.write_text(WAIVER)
     case = str(home / "scenes" / "box_box" / "case.yaml")
@@ -151,30 +146,26 @@ def test_what_was_asked_beside_the_case_is_asked_again_and_said(home, capsys):
     assert "with 1 waiver (fail 40 mm, not the case's " in line
     assert "; accepted for this run: units; with ../more.yaml; waivers as of 2027" in line
     waivers.rename(home / "moved.yaml")
-    assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
-    assert "--waivers FILE" in capsys.readouterr().err
+    assert "--waivers FILE" in refusal("verify", out)
 
 
 @pytest.mark.slow
-def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys):
+def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, refusal, capsys):
     tolerances, out = home / "tol.yaml", home / "again"
     tolerances.write_text("joints: {all: 0.0001}\n")
     case = str(home / "scenes" / "box_box" / "case.yaml")
     given = ["--tolerance", str(tolerances), "--unproven-ok"]
     run(["check", case, *given, "--out", str(out), "--receipt"])
     tolerances.write_text("joints: {all: 0.0002}\n")
-    capsys.readouterr()
-    assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
-    assert "tol.yaml: it has changed" in capsys.readouterr().err
+    assert "tol.yaml: it has changed" in refusal("verify", out)
     tolerances.write_text("joints: {all: 0.0001}\n")
     assert run(["verify", str(out)]) == ExitCode.CLEAR
     told = capsys.readouterr().out
     assert "(default), at least 34.790 mm (default, with tolerances" in told
     tolerances.rename(home / "moved.yaml")
-    assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
-    assert "--tolerance FILE" in capsys.readouterr().err
+    assert "--tolerance FILE" in refusal("verify", out)
     (home / "tol.yaml").write_text("joints: {all: 0.00005}\n")
-    assert run(["verify", str(out), "--tolerance", str(home / "tol.yaml")]) == ExitCode.BAD_INPUT
+    refusal("verify", out, "--tolerance", home / "tol.yaml")
 
 
 @pytest.mark.slow
@@ -249,9 +240,7 @@ def test_a_packed_report_is_verified_and_shown_where_nothing_of_the_cell_is(
     assert [page.rstrip().endswith(b"</html>") for page in seen] == [True, True]
 
 
-def test_a_report_without_its_inputs_is_not_packed(home, capsys):
+def test_a_report_without_its_inputs_is_not_packed(home, refusal):
     path = home / "scenes" / "box_box" / "trajectory.csv"
     path.write_bytes(path.read_bytes() + b"\n")
-    assert run(["pack", str(home / "out"), str(home / "r.zip")]) == ExitCode.BAD_INPUT
-    assert "trajectory.csv: it has changed" in capsys.readouterr().err
-    assert not (home / "r.zip").exists()
+    assert "trajectory.csv: it has changed" in refusal("pack", home / "out", home / "r.zip")
