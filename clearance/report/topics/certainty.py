@@ -257,7 +257,7 @@ def _moving(summary: dict[str, Any]) -> Iterator[str]:
         covered = "covers" if summary["certified"] is not None else "would cover"
         yield (
             f"The clocks of the actors {how}: the proof between the steps {covered} every pair of times that this "
-            "allows. Chart, replay and the clearances of steps are of pairs of steps."
+            "allows. Chart, replay and tables show pairs of steps."
         )
 
 
