@@ -1,11 +1,12 @@
-"""Case files: what is in them arrives."""
+"""Case files: what is in them arrives. A cell given one trajectory after another is the case with each of them."""
 
 import hashlib
 
 import numpy as np
 import pytest
 
-from clearance.case.case_file import load_case
+from clearance.case import case_file
+from clearance.case.case_file import load_case, with_trajectory_file
 from clearance.errors import (
     BadDimension,
     BadInput,
@@ -14,7 +15,9 @@ from clearance.errors import (
     MissingFile,
     NothingToMeasure,
     UnknownKey,
+    UnknownRobot,
 )
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.world.pairs import measured_pairs
 from clearance.world.plausibility import notices_of
 from tests.formats.making import ARM, CASE, cube_stl, signed_volume, write_case
@@ -172,3 +175,44 @@ def test_messages_and_sources_never_hold_a_path_of_this_machine(tmp_path):
     with pytest.raises(ClearanceError) as caught:
         load_small(tmp_path, changed("arm.urdf", str(tmp_path / "no.urdf")))
     assert str(tmp_path) not in str(caught.value)
+
+
+CELL = CASE.replace("trajectory: {file: path.csv}\n", "")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_case(tmp_path, CASE)
+    (tmp_path / "cell.yaml").write_text(CELL)
+    return tmp_path
+
+
+def asked(text: str = "path.csv") -> TrajectoryFile:
+    return TrajectoryFile(file=text)
+
+
+def test_a_cell_with_a_trajectory_is_the_case_with_it(folder):
+    case, cell = load_case(folder / "case.yaml"), case_file.load_cell(folder / "cell.yaml")
+    made = with_trajectory_file(cell, asked(), case.name)
+    assert (made.name, made.limits, made.notes, made.notices) == (
+        case.name, case.limits, case.notes, case.notices)  # fmt: skip
+    assert {s.path for s in made.sources} == {
+        s.path.replace("case.yaml", "cell.yaml") for s in case.sources}  # fmt: skip
+    one, other = made.robots[0].given_trajectory, case.robots[0].given_trajectory
+    assert one.joint_names == other.joint_names and (one.positions == other.positions).all()
+
+
+def test_what_is_wrong_with_one_trajectory_is_told_with_its_file(folder):
+    cell = case_file.load_cell(folder / "cell.yaml")
+    with pytest.raises(MissingFile, match=r"cell\.yaml: trajectory\.file: .*gone\.csv"):
+        with_trajectory_file(cell, asked("gone.csv"), "gone")
+
+
+def test_a_robot_that_has_a_trajectory_is_given_no_other(folder):
+    with pytest.raises(BadInput, match="gives a trajectory to the robot itself"):
+        with_trajectory_file(case_file.load_cell(folder / "case.yaml"), asked(), "other")
+
+
+def test_an_unknown_robot_is_named(folder):
+    with pytest.raises(UnknownRobot, match="no one robot 'nobody'"):
+        with_trajectory_file(case_file.load_cell(folder / "cell.yaml"), asked(), "one", "nobody")

@@ -4,6 +4,7 @@ import math
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -14,9 +15,44 @@ from clearance.formats.robot import request as robot_request
 from clearance.formats.robot.request import RobotRequest, load_robot
 from clearance.formats.robot.urdf import xacro_file
 from clearance.formats.robot.urdf.xacro_file import expanded
-from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
+
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+MAIN = f"""<robot name="arm" {NAMESPACE}>
+<xacro:arg name="size" default="0.2"/>
+<xacro:include filename="$(find arm_description)/urdf/parts.xacro"/>
+<xacro:property name="sizes" value="${{xacro.load_yaml('$(find arm_description)/urdf/sizes.yaml')}}"/>
+<xacro:block name="base" size="$(arg size)"/>
+<xacro:block name="upper" size="${{sizes.upper / 2}}"/>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+<origin xyz="0 0 ${{2 * sizes.upper}}"/><limit lower="-1" upper="1"/></joint>
+</robot>
+"""
+
+PARTS = f"""<robot {NAMESPACE}><xacro:macro name="block" params="name size">
+<link name="${{name}}"><collision><geometry>
+<box size="${{size}} ${{size}} ${{size}}"/></geometry></collision></link>
+</xacro:macro></robot>
+"""
+
+SIZES = "upper: 0.4\n"
+
+
+def write_package(folder: Path, main: str = MAIN, parts: str = PARTS) -> Path:
+    """The main file of a package `arm_description`, which lies in a folder of another name: an arm of blocks, the
+    sizes of which come from an argument and a YAML file.
+    """
+    package = folder / "arm"
+    (package / "urdf").mkdir(parents=True, exist_ok=True)
+    (package / "package.xml").write_text("<package><name>arm_description</name></package>")
+    (package / "urdf" / "parts.xacro").write_text(parts)
+    (package / "urdf" / "sizes.yaml").write_text(SIZES)
+    path = package / "urdf" / "arm.urdf.xacro"
+    path.write_text(main)
+    return path
+
 
 CASE = """robot: {{urdf: arm/urdf/arm.urdf.xacro, {0}}}
 scene: {{obstacles: [{{name: post, box: {{size: [0.1, 0.1, 1]}}, pose: {{xyz: [1.2, 0, 0]}}}}]}}
