@@ -152,7 +152,9 @@ def kind_of(path: Path, files: InputFiles) -> Kind:
     """
     if is_bag(path):
         return Kind.TRAJECTORY
-    shown, head = files.shown(path), _head(path, files)
+    shown = files.shown(path)
+    with files.unread(path)() as file:
+        head = file.read(LONGEST)
     if not head.removeprefix(b"\xef\xbb\xbf").strip():
         raise BadShape("the file is empty", where=shown, valid=_WANTED)
     known = formats_in(head, shown)
@@ -171,11 +173,6 @@ def kind_of(path: Path, files: InputFiles) -> Kind:
             valid=f"--kind says it: {', '.join(CONVERTED)}",
         )
     return found
-
-
-def _head(path: Path, files: InputFiles) -> bytes:
-    with files.unread(path)() as file:
-        return file.read(LONGEST)
 
 
 def _of_keys(head: bytes) -> Kind | None:

@@ -178,9 +178,7 @@ def _says(value: Any) -> bool:
                 continue
             if isinstance(one, Fields) and isinstance(one.get("name"), list):
                 return True
-            waiting += one if isinstance(one, list) else _values_in(one)
+            if isinstance(one, Fields):
+                one = [value for key, value in one.items() if key not in _NAMES | _OF_MESSAGE]
+            waiting += one
     return False
-
-
-def _values_in(fields: Fields) -> Iterator[Any]:
-    return (one for key, one in fields.items() if key not in _NAMES and key not in _OF_MESSAGE)

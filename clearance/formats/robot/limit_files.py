@@ -126,8 +126,9 @@ def _notes_on_limits(
     limits: Mapping[str, FileLimits], known: Mapping[str, FileLimits], robot: Robot
 ) -> Iterator[str]:
     by_name = {joint.name: joint for joint in robot.joints}
+    no_position = (-math.inf, math.inf)
     kinds = {
-        "position": [name for name, one in known.items() if _has_position(one)],
+        "position": [name for name, one in known.items() if (one.lower, one.upper) != no_position],
         "velocity": [name for name, one in known.items() if one.motion.velocity < math.inf],
         "acceleration": [name for name, one in known.items() if one.motion.acceleration < math.inf],
     }
@@ -148,10 +149,6 @@ def _joints(names: Collection[str], robot: Robot) -> str:
     """Joints by name, or that they are all."""
     moving = {joint.name for joint in robot.moving_joints}
     return "all joints" if len(moving) > 1 and moving <= {*names} else listed([*names], 8)
-
-
-def _has_position(limits: FileLimits) -> bool:
-    return limits.lower > -math.inf or limits.upper < math.inf
 
 
 def _is_wider(given: FileLimits, joint: Joint) -> bool:

@@ -52,11 +52,10 @@ def checked_args(given: Mapping[str, str | bool | int | float]) -> tuple[tuple[s
     for name in given:
         if not name or ":=" in name or name != name.strip():
             raise BadRobot(f"{name!r:.60} is given", valid="names of the file's xacro:arg elements")
-    return tuple((name, _as_text(value)) for name, value in given.items())
-
-
-def _as_text(value: str | bool | int | float) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    return tuple(
+        (name, str(value).lower() if isinstance(value, bool) else str(value))
+        for name, value in given.items()
+    )
 
 
 def read_robot(request: RobotRequest, meshes: MeshStore) -> Robot:

@@ -54,7 +54,11 @@ class ShapeReader:
 
     def shape(self, element: Element) -> tuple[Polyhedron, str]:
         """The shape of a collision or visual element in its link's frame, and what it was made from."""
-        shape, origin = self._unmoved(element.find("geometry")[0])
+        given = element.find("geometry")[0]
+        if given.tag == "mesh":
+            shape, origin = self._mesh(given)
+        else:
+            shape, origin = SHAPES[given.tag].maker(**dimensions_of(given)), given.tag
         moved = element.find("origin") is not None
         return (shape.transformed(pose_of(element)) if moved else shape), origin
 
@@ -89,12 +93,6 @@ class ShapeReader:
     def notices(self) -> list[Notice]:
         """Files that stand in for others, and scales that look like another unit."""
         return [*self._found.notices(), *scale_notices(list(self._scales.items()))]
-
-    def _unmoved(self, element: Element) -> tuple[Polyhedron, str]:
-        kind = element.tag
-        if kind == "mesh":
-            return self._mesh(element)
-        return SHAPES[kind].maker(**dimensions_of(element)), kind
 
     def _mesh(self, element: Element) -> tuple[Polyhedron, str]:
         path, scale = self.mesh_file(element)

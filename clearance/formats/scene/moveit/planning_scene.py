@@ -173,18 +173,12 @@ def _attached(
         with at(where):
             require_fields(given, "link_name", "object", "touch_links", "detach_posture", "weight")
             link = text(given, "link_name")
-            touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
+            links = _names(given, "touch_links", "names of links")
+            touch = tuple(dict.fromkeys(map(pattern_of, links)))
             for row in _attached_rows(message(given, "object"), link, meshes, poses):
                 rows.append(row | {"on": link, "padding": padding.get(link, 0.0)})
                 carried.append(AttachedPart(row["name"], link, touch))
     return rows, carried
-
-
-def _touch_links(given: Message) -> list[str]:
-    links = items(given, "touch_links")
-    if not all(isinstance(link, str) for link in links):
-        raise BadScene("a name is no text", where="touch_links", valid="names of links")
-    return links
 
 
 def _attached_rows(attached: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[Row]:
@@ -344,10 +338,10 @@ def _defaults(matrix: Message) -> list[tuple[str, bool]]:
     return [*zip(names, _row(values, len(names)), strict=True)]
 
 
-def _names(matrix: Message, key: str) -> list[str]:
-    names = items(matrix, key)
+def _names(given: Message, key: str, valid: str = "names") -> list[str]:
+    names = items(given, key)
     if not all(isinstance(name, str) for name in names):
-        raise BadScene("a name is no text", where=key, valid="names")
+        raise BadScene("a name is no text", where=key, valid=valid)
     return names
 
 
