@@ -1,7 +1,5 @@
 """Columns of tables as logs have them: called otherwise, of joints that follow others, of no joint at all."""
 
-import io
-
 import numpy as np
 import pytest
 
@@ -14,21 +12,11 @@ from clearance.errors import (
     MissingKey,
     UnknownJoint,
 )
-from clearance.formats.motion.trajectory_file import TrajectoryRequest, read_trajectory
-from clearance.formats.schema.timed import Choice
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.world.plausible_motion import notices_on_motion
 from tests.formats.making import ARM
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
-
-TURNS = {"shoulder": True, "lift": False}
-
-
-def read(text, turns=TURNS, **choice):
-    data = text.encode()
-    request = TrajectoryRequest(lambda: io.BytesIO(data), choice=Choice(**choice), turns=turns)
-    return read_trajectory(request, "path.csv")
-
+from tests.formats.motion.test_foreign_tables import read
 
 ABOVE, BLANKS = "above the header, passed over:", "columns are separated by tabs or blanks"
 
