@@ -49,13 +49,11 @@ def case_schema() -> dict[str, Any]:
     motion["properties"]["columns"] = {"anyOf": [motion["properties"]["columns"], names]}
     del motion["required"]
     motion["oneOf"] = [{"required": ["file"]}, {"required": ["program"]}]
-    parts["TrajectoryFile"] = _or_path(
-        parts["TrajectoryFile"], f"a file with the motion ({names_of(Kind.TRAJECTORY)})"
-    )
+    what = f"a file with the motion ({names_of(Kind.TRAJECTORY)})"
+    parts["TrajectoryFile"] = _or_path(motion, what)
     parts["Tracking"] = {"anyOf": [{"const": CONTROLLERS}, parts["Tracking"]]}
-    parts["AllowedPair"] = {
-        "anyOf": [parts["AllowedPair"]["properties"]["between"], parts["AllowedPair"]]
-    }
+    pair = parts["AllowedPair"]
+    parts["AllowedPair"] = {"anyOf": [pair["properties"]["between"], pair]}
     parts["Clock"] = {"anyOf": [{"enum": list(schema.CLOCKS)}, parts["Clock"]]}
     keys["clock"]["default"] = "common"
     parts["Tolerance"]["anyOf"] = [{"required": [key]} for key in ERRORS]

@@ -145,8 +145,6 @@ class TrajectoryFile(Choice, TimedFile):
     @property
     def program_file(self) -> ProgramFile | None:
         """The file of the program, if it is in one."""
-        return (
-            ProgramFile(file=self.program)
-            if isinstance(self.program, str)
-            else (self.program if isinstance(self.program, ProgramFile) else None)
-        )
+        if isinstance(self.program, str):
+            return ProgramFile(file=self.program)
+        return self.program if isinstance(self.program, ProgramFile) else None
