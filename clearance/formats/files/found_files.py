@@ -131,7 +131,6 @@ def leads_to(asked: str) -> str:
 
 
 def _digest(found: Path | None, folder: Path) -> str:
-    """sha256 of a path as seen from a folder, the same on every machine; empty for nothing."""
-    if found is None:
-        return ""
-    return hashlib.sha256(os.fsencode(os.path.relpath(found, folder))).hexdigest()
+    """sha256 of a path as seen from a folder, the same on every machine; of no bytes for nothing."""
+    path = b"" if found is None else os.fsencode(os.path.relpath(found, folder))
+    return hashlib.sha256(path).hexdigest()

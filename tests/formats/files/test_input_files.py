@@ -7,7 +7,7 @@ import trimesh
 
 from clearance.case.case_file import load_case
 from clearance.errors import MissingFile
-from clearance.formats.files.found_files import MODEL, PACKAGE, leads_to, note_lookup
+from clearance.formats.files.found_files import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
 from clearance.formats.files.input_files import InputFiles, read_bytes
 from clearance.report.topics.provenance import inputs
 
@@ -70,6 +70,13 @@ def noted(folder, *asked):
     files = InputFiles(folder)
     note_lookup(files, *asked)
     return files.sources
+
+
+def test_a_search_that_leads_nowhere_has_a_hash_too_which_a_receipt_asks_for(tmp_path):
+    (one,) = noted(tmp_path, OPTIONAL, "model.config", tmp_path, (), None)
+    assert len(one.sha256) == 64 and leads_to(one.read_from) == one.sha256
+    (tmp_path / "model.config").write_text("")
+    assert leads_to(one.read_from) != one.sha256
 
 
 def test_the_folder_of_a_package_is_a_search_and_a_plain_path_is_none(tmp_path):
