@@ -59,7 +59,8 @@ def read_glb(asked: MeshRequest) -> Triangles:
             vertices, note = vertices @ Z_FROM_Y_UP.T, "turned from y up to z up, as glTF says"
     notes = (note, *on_lines(scene.n_lines))
     if len(document.items("scenes")) > 1:
-        notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
+        number, n = document.index("scene", 0) + 1, len(document.items("scenes"))
+        notes += (f"scene {number} of its {n} is read",)
     if document.items("animations"):
         notes += ("its animations are not read: nodes stand as they are placed",)
     return Triangles(vertices, surface.corners, notes, rounded=surface.rounded)
@@ -75,8 +76,13 @@ def chunks(data: bytes) -> tuple[GltfObject, bytes]:
     chunks, place = [], 12
     while place + 8 <= len(data):
         length, kind = int(words[place // 4]), data[place + 4 : place + 8]
-        if length % 4 or place + 8 + length > len(data):
+        if place + 8 + length > len(data):
             raise BadSyntax(f"a chunk of {length} bytes does not fit in the GLB file")
+        if length % 4:
+            raise BadSyntax(
+                f"a chunk of {length} bytes is not padded to a multiple of 4",
+                valid="another exporter: glTF 2.0, 4.4.3 asks for the padding",
+            )
         chunks.append((kind, data[place + 8 : place + 8 + length]))
         place += 8 + length
     if place != len(data) or chunks[0][0] != b"JSON":

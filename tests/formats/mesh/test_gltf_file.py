@@ -2,6 +2,7 @@
 
 import base64
 import json
+import struct
 
 import numpy as np
 import pytest
@@ -36,6 +37,22 @@ def test_a_cube_is_a_cube():
     assert (mesh.n_triangles, signed_volume(mesh.shape)) == (12, 1)
     assert mesh.shape.bounds.tolist() == Y_UP_BOUNDS
     assert mesh.notes == ("turned from y up to z up, as glTF says",)
+
+
+def test_a_chunk_without_padding_is_refused_for_that():
+    text = json.dumps({"asset": {"version": "2.0"}}).encode()
+    assert len(text) % 4
+    chunk = struct.pack("<I4s", len(text), b"JSON") + text
+    data = struct.pack("<4sII", b"glTF", 2, 12 + len(chunk)) + chunk
+    with pytest.raises(BadSyntax, match=f"a chunk of {len(text)} bytes is not padded"):
+        mesh_from_bytes(data, "m.glb")
+
+
+def test_the_scene_that_is_read_is_told():
+    scenes = [{"nodes": []}, {"nodes": [0]}]
+    assert load(DOCUMENT | {"scenes": scenes, "scene": 1}).notes[1:] == (
+        "scene 2 of its 2 is read",
+    )
 
 
 def test_an_animation_is_told_and_not_read():
