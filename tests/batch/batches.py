@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow.parquet as pq
+import pytest
 
 from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.engine import LocalEngine
@@ -18,6 +19,7 @@ from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
 from clearance.batch.store import open_store
+from clearance.cli.batch_verdict import print_answer
 from tests.cart import URDF
 
 CELL = """name: rail
@@ -82,6 +84,13 @@ def run_here(
         answer = answer_of(outcome, store, strict=strict)
         write_answer(answer, store)
     return told, answer
+
+
+def printed(answer: BatchAnswer, place: Path, capsys: pytest.CaptureFixture[str]) -> list[str]:
+    """The lines that a terminal shows of an answer."""
+    with open_store(place) as store:
+        print_answer(answer, store, 0, None)
+    return capsys.readouterr().out.splitlines()
 
 
 def answer_bytes(place: Path) -> dict[str, bytes]:

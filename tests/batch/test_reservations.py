@@ -3,19 +3,11 @@
 import pytest
 
 from clearance.batch.page import page_data, page_of
-from clearance.batch.store import open_store
-from clearance.cli.batch_verdict import print_answer
 from clearance.run import check
-from tests.batch.batches import cases, run_here, write_cell
+from tests.batch.batches import cases, printed, run_here, write_cell
 from tests.report.junit_schema import valid_suite
 
 HELD = "time,rail\n" + "".join(f"{i / 100:.2f},0\n" for i in range(201) if not 60 < i < 140)
-
-
-def printed(answer, place, capsys) -> list[str]:
-    with open_store(place) as store:
-        print_answer(answer, store, 0, None)
-    return capsys.readouterr().out.splitlines()
 
 
 def data_of(answer, place):

@@ -28,6 +28,12 @@ def waiver(between="[slider, wall]", at_least=0.03, until="2027-03-31", **more):
     return "- {" + ", ".join(f"{key}: {value}" for key, value in (told | more).items()) + "}\n"
 
 
+def write_waivers_of_the_cell(folder, text):
+    (folder / "own.yaml").write_text(text)
+    with (folder / "cell.yaml").open("a") as file:
+        file.write("waivers: [own.yaml]\n")
+
+
 def batch(*arguments, day=DAY):
     common = ["--out", "store", "--jobs", "1", "--today", day, "--waivers", "waivers.yaml"]
     return run(["batch", "batch.yaml", *common, *arguments])
@@ -61,12 +67,20 @@ TABLE = {
     "of no case": (
         waiver() + waiver(case="t02"), 1, "UNUSED WAIVER", "no case is called 't02'; did you mean 't002'?",
     ),
+    "of the cell": (waiver(), 0, "CLEAR with waivers  3 cases: 3 clear", "waived      1 case with what"),
+    "of the cell, and no motion needs it": (
+        waiver() + waiver("[slider, floor]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
+        "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: no body is called 'floor'",
+    ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("what", TABLE)
 def test_truth_table(what, folder, capsys):
     text, code, headline, line = TABLE[what]
+    if "of the cell" in what:
+        write_waivers_of_the_cell(folder, text)
+        text = "[]"
     (folder / "waivers.yaml").write_text(text)
     assert batch() == code
     told = capsys.readouterr().out
@@ -132,9 +146,7 @@ def test_an_expired_waiver_is_told_though_a_case_has_no_answer(of_cell, folder, 
     """Else its reader looks for why the same cases are violated again."""
     (folder / "waivers.yaml").write_text(waiver(until="2026-10-31") if not of_cell else "[]")
     if of_cell:
-        (folder / "own.yaml").write_text(waiver(until="2026-10-31"))
-        with (folder / "cell.yaml").open("a") as file:
-            file.write("waivers: [own.yaml]\n")
+        write_waivers_of_the_cell(folder, waiver(until="2026-10-31"))
     (folder / "t001.csv").write_text("time,rail\n0,x\n")
     assert batch() == 1
     told = capsys.readouterr().out
@@ -163,36 +175,10 @@ def test_a_waiver_is_a_change_of_its_cases_alone(folder, capsys):
     assert "cached      2 of 3" in told and "has expired on 2027-03-31" in told
 
 
-CELL_TABLE = {
-    # what: waivers of the cell, exit code, headline, a line
-    "one motion needs it": (waiver(), 0, "CLEAR with waivers  3 cases: 3 clear", "waived      1 case with what"),
-    "no motion needs it": (
-        waiver() + waiver("[slider, floor]"), 1, "UNUSED WAIVER  3 cases: 3 clear",
-        "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: no body is called 'floor'",
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("what", CELL_TABLE)
-def test_waivers_that_the_cell_names_are_of_all_its_motions(what, folder, capsys):
-    text, code, headline, line = CELL_TABLE[what]
-    cell = folder / "cell.yaml"
-    cell.write_text(cell.read_text() + "waivers: [own.yaml]\n")
-    (folder / "own.yaml").write_text(text)
-    asked = ["batch", "batch.yaml", "--out", "store", "--jobs", "1", "--today", DAY]
-    assert run(asked) == code
-    told = capsys.readouterr().out
-    assert told.startswith(headline), told
-    assert line in told + (folder / "store" / "batch.html").read_text()
-    first = answer_bytes(folder / "store")
-    assert run([*asked, "--quiet"]) == code and answer_bytes(folder / "store") == first
-
-
 def test_a_waiver_that_another_cell_needs_is_not_needed_for_that(folder, capsys):
     write_cell(folder / "far", [0.5])
-    for cell in (folder / "cell.yaml", folder / "far" / "cell.yaml"):
-        cell.write_text(cell.read_text() + "waivers: [own.yaml]\n")
-        (cell.parent / "own.yaml").write_text(waiver())
+    for cell in (folder, folder / "far"):
+        write_waivers_of_the_cell(cell, waiver())
     (folder / "far" / "batch.yaml").write_text(
         'name: far\ncell: cell.yaml\ntrajectories: "t*.csv"\n'
     )
