@@ -15,21 +15,12 @@ from tests.budget.part_cases import carried, off_by, quarter_turn, slid
 from tests.budget.sampled_machine import HandlingMachine
 from tests.budget.test_parts_sampled import handling
 from tests.receipt.receipts import saved, stage_of
-from tests.receipt.test_error_terms import distance, names_in
+from tests.receipt.test_error_terms import distance, names_in, rows_of
 
 ROUNDING = 1e-12
 FAR = 100.0
 LEAST = "default, with tolerances"
 SAMPLES = 8
-
-
-def whole_pairs(stage, rng) -> tuple[Items, np.ndarray]:
-    """An item of both bodies whole for each pair, in its last interval, and a direction for each."""
-    n = len(stage.stretch.pairs)
-    zero, last = np.zeros(n, dtype=np.int64), np.full(n, stage.stretch.n_intervals - 1)
-    items = Items(np.arange(n), zero, zero, last, zero + 1, zero, zero)
-    u = rng.normal(size=(3, n))
-    return items, u / np.sqrt((u * u).sum(axis=0))
 
 
 def in_the_world(stage) -> np.ndarray:
@@ -53,7 +44,8 @@ def test_no_error_of_any_moment_brings_parts_nearer_than_is_proven(seed):
     half = len(data.stretches) // 2
     for i in range(half, 2 * half):
         stage = stage_of(data, i, FAR)
-        items, u = whole_pairs(stage, rng)
+        items, u = rows_of(stage, 0, rng)
+        items = items._replace(start=np.full(len(u.T), stage.stretch.n_intervals - 1))
         world = in_the_world(stage)
         along = by_directions(stage, items, u) + FAR
         apart = by_balls(stage, items) + stage.stretch.padding + UNIT
