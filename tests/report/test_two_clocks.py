@@ -49,7 +49,7 @@ def test_pairs_of_two_clocks_are_told_as_of_samples_and_the_bound_of_all_pairs_b
     assert (
         '"sampled": true' in page and "every pair of times that this allows is measured" not in page
     )
-    assert "closest that was seen" in printed(run)
+    assert any("closest that was seen" in line for line in printed(run))
 
 
 def test_pairs_of_one_clock_are_of_the_motion(passing):
@@ -70,4 +70,4 @@ def test_a_far_pair_is_told_with_its_proven_bound():
     for one in minima:
         text = texts[f"{one.link} - {one.obstacle}"]
         assert text.endswith(" mm is proven") is (one.obstacle in loose)
-    assert "proven mm" in printed(run)
+    assert any("proven mm" in line for line in printed(run))
