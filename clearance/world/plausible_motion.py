@@ -149,13 +149,16 @@ def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
 
 
 def _odd_velocities(placed: PlacedRobot, before: str) -> list[str]:
-    """Velocities whose travel is many times that of the positions."""
-    asked = placed.given_trajectory
+    """Velocities whose travel is many times that of the positions.
+
+    Those of the file: samples that were added between follow the curves that the velocities make.
+    """
+    names, asked = placed.given_trajectory.joint_names, placed.given_trajectory.written
     if asked.velocities is None:
         return []
     joints = _moving(placed)
     odd = []
-    for i, name in enumerate(asked.joint_names):
+    for i, name in enumerate(names):
         speed = np.abs(asked.velocities[:, i])
         gone = float(np.abs(np.diff(asked.positions[:, i])).sum())
         meant = float((0.5 * (speed[1:] + speed[:-1]) * np.diff(asked.times)).sum())

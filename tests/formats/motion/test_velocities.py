@@ -13,17 +13,20 @@ from clearance.world.cubic import positions_along
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_motion import notices_on_motion
+from clearance.world.quintic import with_accelerations
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.formats.making import write_case
 from tests.formats.making_messages import POINTS, dumped, with_points
 
 
-def notes(positions, velocities, kind=JointKind.REVOLUTE):
+def notes(positions, velocities, kind=JointKind.REVOLUTE, accelerations=None):
     joint = Joint("elbow", kind, "a", "b", np.eye(4), lower=-1.0, upper=1.0)
     robot = Robot("robot", ("a", "b"), (joint,), ())
     columns = [np.array(values, dtype=float)[:, None] for values in (positions, velocities)]
     asked = Trajectory(np.arange(len(positions), dtype=float), ("elbow",), *columns)
+    if accelerations is not None:
+        asked = with_accelerations(asked, np.array(accelerations, dtype=float)[:, None])
     placed = PlacedRobot(robot, asked)
     return [
         notice.text for notice in (*notices_on_motion(placed), *notices_on_joints(placed, "warn"))
@@ -57,6 +60,10 @@ def test_degrees_a_second_are_told():
     assert not any("CHECK UNITS" in note for note in notes(positions, velocities))
     told = notes(positions, np.degrees(velocities))
     assert any("velocities of joint 'elbow'" in note and "degrees/s" in note for note in told)
+    told = notes(positions, np.degrees(velocities), accelerations=np.zeros(20))
+    assert any("velocities of joint 'elbow'" in note and "degrees/s" in note for note in told)
+    told = notes(positions, velocities, accelerations=np.gradient(velocities))
+    assert not any("CHECK UNITS" in note for note in told)
     told = notes(positions, 1000.0 * velocities, JointKind.PRISMATIC)
     assert any("is this mm/s?" in note for note in told)
     assert notes([0.0, 0.0], [1e-4, 1e-4]) == []
