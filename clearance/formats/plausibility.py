@@ -1,4 +1,5 @@
-"""What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii.
+"""What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii,
+limits of joints.
 
 Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema.case`,
 `csv_table`).
@@ -6,8 +7,8 @@ Not for: what the case itself shows (`world.plausibility`), and values that cann
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import BaseModel
@@ -17,7 +18,9 @@ from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.program import JointMove, PathMove
 from clearance.formats.schema.program_file import Axis, ProgramFile
 from clearance.geometry.shapes import SHAPES
+from clearance.world.joint_positions import turns
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import Joint
 
 LARGE_RADIUS = 5.0
 """[m] No arm of this world works near a pipe or ball of more than ten metres across; 5 mm is a
@@ -32,6 +35,9 @@ LARGE_SCALE = 100.0
 
 LARGE_ZONE = 1.0
 """[m] Corners of programs are rounded within 1 to 200 mm."""
+
+TOO_WIDE = 10.0
+"""[-] A slide's limit, or a speed, so many times the robot's own: degrees are 57 times radians."""
 
 IN_DEGREES = "angles are in radians, is this degrees (90° are 1.5708 rad)?"
 IN_MILLIMETRES = "lengths are in metres, is this millimetres?"
@@ -137,6 +143,34 @@ def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]
     ]
     meant = "lengths are in metres, and a file in millimetres needs 0.001"
     return [*map(units, _asked(odd, meant))]
+
+
+class LimitBound(NamedTuple):
+    """A limit of a joint in a file, and the robot's own of its kind [rad or m, or either a second]."""
+
+    kind: str
+    joint: Joint
+    given: float
+    own: float
+    is_wider: bool
+
+
+def limit_notices(bounds: Iterable[LimitBound], shown: str) -> list[Notice]:
+    """A notice on limits that are wider than the robot's own, so that they limit nothing, as in another unit."""
+    odd = [
+        f"{kind} of {joint.name} is {given:g} beside the robot's own {own:g}"
+        for kind, joint, given, own, is_wider in bounds
+        if is_wider
+        if (
+            _looks_like_degrees(abs(given))
+            if kind == "position" and turns(joint)
+            else abs(given) > TOO_WIDE * abs(own)
+        )
+    ]
+    meant = (
+        "limits are in radians or metres, and these limit nothing; is this degrees or millimetres?"
+    )
+    return [units(f"{shown}: {one}") for one in _asked(odd, meant)]
 
 
 def _looks_like_degrees(angle: float) -> bool:

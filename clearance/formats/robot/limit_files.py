@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeVar
 
@@ -27,6 +27,7 @@ from clearance.errors import (
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.message.documents import Fields, described, yaml_documents
 from clearance.formats.message.values import number, require_fields
+from clearance.formats.plausibility import LimitBound, limit_notices
 from clearance.formats.schema import case as schema
 from clearance.world.joint_positions import turns
 from clearance.world.names import checked_name
@@ -39,7 +40,10 @@ _Value = TypeVar("_Value")
 
 
 class LimitedRobot(NamedTuple):
-    """A robot with the narrower limits, its other limits by joint, and a line each on what was taken."""
+    """A robot with the narrower limits, its other limits by joint, and a line each on what was taken.
+
+    Limits that are wider, as in another unit, are among the robot's notices.
+    """
 
     robot: Robot
     motion_limits: dict[str, MotionLimit]
@@ -64,7 +68,8 @@ def limited(entry: schema.RobotEntry, robot: Robot, files: InputFiles) -> Limite
             limits = parse_joint_limits(files.read(path))
             known = _of_robot(limits, names)
             joints = tuple(_narrowed(joint, known) for joint in robot.joints)
-        robot = replace(robot, joints=joints)
+        notices = (*robot.notices, *limit_notices(_bounds(known, robot), shown))
+        robot = replace(robot, joints=joints, notices=notices)
         motion = {name: one.motion for name, one in known.items() if one.motion != NO_LIMIT}
         notes += [f"{shown}: {note}" for note in _notes_on_limits(limits, known, robot)]
     if given.controllers is not None:
@@ -125,18 +130,15 @@ def _narrowed(joint: Joint, limits: Mapping[str, FileLimits]) -> Joint:
 def _notes_on_limits(
     limits: Mapping[str, FileLimits], known: Mapping[str, FileLimits], robot: Robot
 ) -> Iterator[str]:
-    by_name = {joint.name: joint for joint in robot.joints}
-    no_position = (-math.inf, math.inf)
-    kinds = {
-        "position": [name for name, one in known.items() if (one.lower, one.upper) != no_position],
-        "velocity": [name for name, one in known.items() if one.motion.velocity < math.inf],
-        "acceleration": [name for name, one in known.items() if one.motion.acceleration < math.inf],
-    }
-    by_kind = [f"{kind} of {_joints(names, robot)}" for kind, names in kinds.items() if names]
-    yield f"limits taken: {'; '.join(by_kind) or 'none'}"
-    wider = [name for name, one in known.items() if _is_wider(one, by_name[name])]
+    bounds = _bounds(known, robot)
+    taken = [(one.kind, one.joint.name) for one in bounds if not one.is_wider]
+    taken += [
+        ("acceleration", name) for name, one in known.items() if one.motion.acceleration < math.inf
+    ]
+    yield f"limits taken: {_by_kind(taken, robot) or 'none'}"
+    wider = _by_kind([(one.kind, one.joint.name) for one in bounds if one.is_wider], robot)
     if wider:
-        yield f"wider than the robot file's, which stay: position of {listed(wider, 8)}"
+        yield f"wider than the robot file's, which stay: {wider}"
     yield from naming(_NOT_MOVED, [name for name in limits if name not in known], 8)
     unused = dict.fromkeys(key for one in known.values() for key in one.unused)
     yield from naming("not used", unused, 8)
@@ -151,9 +153,25 @@ def _joints(names: Collection[str], robot: Robot) -> str:
     return "all joints" if len(moving) > 1 and moving <= {*names} else listed([*names], 8)
 
 
-def _is_wider(given: FileLimits, joint: Joint) -> bool:
-    lower = given.lower > -math.inf and given.lower < joint.lower
-    return lower or (given.upper < math.inf and given.upper > joint.upper)
+def _by_kind(found: Sequence[tuple[str, str]], robot: Robot) -> str:
+    """Kinds of limits, each with the names of its joints."""
+    names: dict[str, dict[str, None]] = {}
+    for kind, name in found:
+        names.setdefault(kind, {})[name] = None
+    return "; ".join(f"{kind} of {_joints(one, robot)}" for kind, one in names.items())
+
+
+def _bounds(known: Mapping[str, FileLimits], robot: Robot) -> list[LimitBound]:
+    found = []
+    for joint in robot.joints:
+        if joint.name in known:
+            one, speed = known[joint.name], known[joint.name].motion.velocity
+            found += [
+                LimitBound("position", joint, one.lower, joint.lower, one.lower < joint.lower),
+                LimitBound("position", joint, one.upper, joint.upper, one.upper > joint.upper),
+                LimitBound("velocity", joint, speed, joint.velocity, speed > joint.velocity),
+            ]
+    return [one for one in found if math.isfinite(one.given)]
 
 
 def note_on_accelerations(

@@ -76,6 +76,33 @@ def test_the_narrower_limits_hold(tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("limits", "odd"),
+    [
+        ("min_position: -30, max_position: 30", "position of shoulder"),
+        ("min_position: -0.5, max_position: 10.0", "position of shoulder"),
+        ("min_position: -6.2832, max_position: 6.2832", ""),
+        ("min_position: -0.5, max_position: 0.5", ""),
+    ],
+)
+def test_limits_in_another_unit_are_suspect_where_the_robots_own_stay(tmp_path, limits, odd):
+    given = f"joint_limits:\n  shoulder: {{has_position_limits: true, {limits}}}\n"
+    told = texts(load(tmp_path, given), Severity.SUSPECT)
+    assert len(told) == bool(odd)
+    assert all(one.startswith("CHECK UNITS: limits.yaml: ") and odd in one for one in told)
+
+
+@pytest.mark.parametrize(("speed", "is_odd"), [(60.0, True), (3.0, False)])
+def test_speeds_in_degrees_are_suspect_where_the_robots_own_stay(tmp_path, speed, is_odd):
+    limits = f"joint_limits: {{shoulder: {{has_velocity_limits: true, max_velocity: {speed}}}}}\n"
+    urdf = TWO_JOINTS.replace('upper="1.0"', 'upper="1.0" velocity="2.0"', 1)
+    case = load(tmp_path, limits, urdf=urdf)
+    assert any("velocity of shoulder" in one for one in texts(case, Severity.SUSPECT)) is is_odd
+    told = " | ".join(case.notes)
+    assert "limits taken: none" in told
+    assert "wider than the robot file's, which stay: velocity of shoulder" in told
+
+
 def test_what_is_exceeded_is_a_warning_or_a_violation(tmp_path):
     says = "joint 'shoulder' moves at up to 0.5 rad/s, its limit is 0.4, in 1 of 2 intervals"
     assert texts(load(tmp_path), Severity.WARNING) == [says]
