@@ -7,12 +7,13 @@ Not for: which joints the robot has (`case.motion_notes`), nor how a table is pa
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadMotion, BadShape, BadSyntax, MissingKey, nearest_name
+from clearance.errors import BadMotion, BadShape, BadSyntax, BadTime, MissingKey, nearest_name
 from clearance.formats.motion.joint_columns import (
     by_angles,
     joints_by_angles,
@@ -62,6 +63,8 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
     _refuse_numbers(table)
     header = header_of(table, "joint names")
     columns = _columns(header, request)
+    if choice.period is None:
+        _refuse_half_times(header, columns)
     joints = _joints(columns, request)
     turned = turned_joints(joints, request.turns)
     by_name = {column.name: column for column in columns}
@@ -123,6 +126,19 @@ def _columns(header: list[str], request: TrajectoryRequest) -> list[Column]:
     if request.robot is None and nameless:
         raise BadSyntax(f"column {nameless[0] + 1} of the header has no name")
     return with_time(columns_in(header, request.turns, choice.unit_pair), request.turns)
+
+
+def _refuse_half_times(header: Sequence[str], columns: Sequence[Column]) -> None:
+    """Nothing, unless whole seconds and their nanoseconds are two columns, and no other one is the time."""
+    times = {one.header for one in columns if one.name == TIME}
+    for rest in header:
+        stem = re.sub(r"n(ano)?secs?$", "", rest)
+        for whole in (f"{stem}sec", f"{stem}secs"):
+            if stem != rest and whole in header and times <= {whole, rest}:
+                raise BadTime(
+                    f"columns {whole!r} and {rest!r} are a time together",
+                    valid="a column time [s] in their place: seconds + nanoseconds / 1e9",
+                )
 
 
 def _refuse_numbers(table: TextTable) -> None:

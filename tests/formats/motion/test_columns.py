@@ -8,6 +8,7 @@ from clearance.errors import (
     BadPose,
     BadShape,
     BadSyntax,
+    BadTime,
     DuplicateName,
     MissingKey,
     UnknownJoint,
@@ -90,6 +91,33 @@ LOG = (
     "RUNNING,100,9,0.1,9,0.02,nan\nRUNNING,101,9,0.2,9,0.03,\n"
 )
 TAKEN = "{time: timestamp, shoulder: actual_q_0, lift: actual_q_1}"
+
+
+@pytest.mark.parametrize(
+    ("header", "columns"),
+    [
+        ("sec,nanosec", ""),
+        ("sec,nanosec", "time: sec"),
+        ("header.stamp.secs,header.stamp.nsecs", "time: header.stamp.secs"),
+        ("stamp/sec,stamp/nanosec", "time: stamp/nanosec"),
+    ],
+)
+def test_half_of_a_time_is_no_time(tmp_path, header, columns):
+    """The second row is 10 ms before the third, and not a second."""
+    table = f"{header},shoulder\n0,0,0\n1,990000000,0.1\n2,0,0.2\n"
+    said = f"path.csv, columns: {{{columns}, shoulder: shoulder}}" if columns else "path.csv"
+    first, second = header.split(",")
+    with pytest.raises(BadTime) as caught:
+        load_small(tmp_path, changed("path.csv", said), trajectory=table)
+    told = str(caught.value)
+    assert f"'{first}' and '{second}' are a time together; a column time [s] in their place" in told
+
+
+def test_a_time_beside_a_stamp_in_two_columns_is_taken(tmp_path):
+    table = "__time,sec,nanosec,shoulder\n0,5,0,0\n0.5,5,500000000,0.1\n"
+    said = "path.csv, columns: {time: __time, shoulder: shoulder}"
+    case = load_small(tmp_path, changed("path.csv", said), trajectory=table)
+    assert case.robots[0].trajectory.times.tolist() == [0.0, 0.5]
 
 
 def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
