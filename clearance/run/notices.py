@@ -21,7 +21,7 @@ from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.pairs import names_of
 from clearance.world.phase import Phase
 from clearance.world.plausible_sizes import FAR_OFF, far_off_notice
-from clearance.world.rules import Rule
+from clearance.world.rules import Rule, Waiver
 
 ROUNDED = 1e-4
 """[m] Coordinates that a sketch's file rounds may be off by as much."""
@@ -44,7 +44,7 @@ def notices_of(
     measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [*map(_nothing_measured, plan.empty), *_idle_rules(question.case, plan)]
-    empty += _waivers_of_all(question.case)
+    empty += _waivers_of_all(question.case, plan)
     empty += [*_profiles_without(question.case), *_sketches_that_slid(question.case)]
     empty += _far_off(question.case, found)
     empty += notices_on_carries(phases) if question.case.carries else ()
@@ -83,13 +83,18 @@ def _why_idle(case: Case, plan: SectionPlan, rule: Rule) -> Iterator[str]:
         yield f"its {others}pairs are judged by later rules, or outside its time, or stand in it"
 
 
-def _waivers_of_all(case: Case) -> Iterator[Notice]:
-    """A warning on each waiver that names neither a body nor a rule."""
+def _waivers_of_all(case: Case, plan: SectionPlan) -> Iterator[Notice]:
+    """A warning on each waiver that names neither a body nor a rule, and is of all pairs that are measured."""
     for waiver in case.waivers:
-        if waiver.is_of_case(case.name) and not "".join((*waiver.between, waiver.rule)).strip("*"):
+        by_pattern = all({*one} & {*"*?["} for one in waiver.between) and not waiver.rule.strip("*")
+        if by_pattern and waiver.is_of_case(case.name) and _is_of_all(waiver, case, plan):
             level = f"down to {waiver.at_least * 1000:g} mm"
             text = f"{waiver} is for every pair: it waives later faults too, {level}"
             yield Notice(Severity.WARNING, "waivers", text)
+
+
+def _is_of_all(waiver: Waiver, case: Case, plan: SectionPlan) -> bool:
+    return all(waiver.matches(names_of(case, one), names_of(case, two)) for one, two in plan.pairs)
 
 
 def _profiles_without(case: Case) -> Iterator[Notice]:

@@ -297,3 +297,7 @@ def test_a_waiver_of_every_pair_is_warned_of_and_one_of_some_pairs_is_not(tmp_pa
     }
     of_rule = dataclasses.replace(every, rule="default")
     assert checked(tmp_path, NEAR_A, of_rule).verdict.warnings == ()
+    for between, is_told in ((("b*", "gate_?"), True), (("b*", "gate_[a]"), False)):
+        one = dataclasses.replace(every, between=between)
+        gates = {**NEAR_A, B: (0.5, 0.2)}
+        assert bool(checked(tmp_path, gates, one).verdict.warnings) is is_told
