@@ -48,6 +48,7 @@ def status_of(clearance: float, limits: Limits, touches: bool | None = None) -> 
 
 def sample_codes(found: Measurement, limits: Limits, steps: slice | np.ndarray) -> np.ndarray:
     """(k,) the status of each of `steps` by itself; -1 where its bound does not decide."""
-    undecided = (found.pair[steps] < 0) & limits.below(found.lower_bound[steps], limits.warn)
+    lower = found.lower_bound[steps]
+    undecided = (found.pair[steps] < 0) & (limits.below(lower, limits.warn) | (lower <= 0.0))
     touching = None if found.touching is None else found.touching[steps]
     return np.where(undecided, -1, status_codes(found.clearance[steps], limits, touching))

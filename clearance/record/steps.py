@@ -61,8 +61,8 @@ class RunAnswer:
 
     def motion_codes(self, steps: slice) -> np.ndarray:
         """(k,) what is proven of the motion from each of some steps to the next, the worst of all rules."""
-        found = [motion_codes(r.certificate, r.limits, steps) for r in self.rules if r.certificate]
-        return np.max(found, axis=0)
+        proven = [(one, one.certificate) for one in self.rules if one.certificate]
+        return np.max([_seen_codes(one, own, steps) for one, own in proven], axis=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +114,20 @@ class StepColumns:
             yield Table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
 
 
+def _seen_codes(rule: RuleAnswer, own: Certificate, steps: slice) -> np.ndarray:
+    """(k,) what is proven of the motion; 0 where a distance of 0 was asked about, as it is the least of others."""
+    asked = _is_unseen(rule.measurement, own, steps) & (own.upper_bound[steps] <= 0.0)
+    return np.where(asked, 0, motion_codes(own, rule.limits, steps))
+
+
+def _is_unseen(found: Measurement, certificate: Certificate, steps: slice) -> np.ndarray:
+    """(k,) True where the upper bound of the motion to the next step is no distance that was seen."""
+    seen = certificate.pair[steps] >= 0
+    known = found.pair[steps.start : steps.stop + 1] >= 0
+    after = np.append(known[1:], known[-1:])[: len(seen)]
+    return ~(seen | (known[: len(seen)] & after))
+
+
 def _with_motion(judged: RunAnswer, steps: slice, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The status of each of `steps`, or of the motion to the next where that is worse than at both of its ends;
     and whether it is."""
@@ -152,14 +166,8 @@ def _proven_columns(
     found: Measurement, certificate: Certificate, steps: slice
 ) -> dict[str, Column]:
     """What is proven of the motion from each of `steps` to the next, and the least distance seen there."""
-    seen = certificate.pair[steps] >= 0
-    known = found.pair[steps.start : steps.stop + 1] >= 0
-    after = np.append(known[1:], known[-1:])[: len(seen)]
-    unseen = ~(seen | (known[: len(seen)] & after))
-    return {
-        "lower_bound": certificate.lower_bound[steps],
-        "upper_bound": np.where(unseen, np.nan, certificate.upper_bound[steps]),
-    }
+    uppers = np.where(_is_unseen(found, certificate, steps), np.nan, certificate.upper_bound[steps])
+    return {"lower_bound": certificate.lower_bound[steps], "upper_bound": uppers}
 
 
 def _move_columns(moves: MadeMoves, times: np.ndarray) -> dict[str, Column]:

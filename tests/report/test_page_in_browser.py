@@ -24,6 +24,7 @@ from clearance.world.trajectory import Trajectory
 from tests.findings.gates import load_gates
 from tests.findings.test_verdict import made
 from tests.made_cases import at
+from tests.profiles.moving import slab, sliding
 from tests.report.browser import Page, chromium, executable
 from tests.report.budgets import with_budget
 from tests.report.made import replay_of, run_of, write
@@ -389,3 +390,21 @@ def test_both_pages_fit_every_width_and_a_finding_moves_the_replay(folder):
         step = page.run(f"Number({row}.dataset.step)")
         assert f"step {step}" in page.run("document.getElementById('readout').textContent")
         assert not page.errors
+
+
+def test_a_step_of_unknown_clearance_has_no_status_and_no_dots(tmp_path):
+    """A contact is the least, and the steps behind it are not measured."""
+    post = Obstacle(Body("post", slab([0.6, -0.05, 0.0], [0.7, 0.05, 0.1])))
+    way = sliding(slab([0.0, -0.05, 0.0], [0.1, 0.05, 0.1]), [0.0, 0.3, 0.5, 0.3, 0.1, 0.0])
+    run = cl.check(dataclasses.replace(way, obstacles=(post,)), need="minimum")
+    run.save(tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        told = {}
+        for step in (2, 5):
+            page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
+            told[step] = page.run("document.getElementById('readout').textContent")
+        assert "contact" in told[2]
+        assert "status unknown" in told[5] and "contact" not in told[5]
+        assert page.run("document.querySelectorAll('.curve.unknown').length") > 0
+        assert page.errors == []

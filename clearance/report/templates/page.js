@@ -26,7 +26,10 @@
   const measured = (i) => !Number.isFinite(clearances[i]) ? "nothing measured" : `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
   const between = (i) => !Number.isFinite(clearances[i]) ? "no pair is left" : !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
   const wordOf = (code) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[code]];
-  const word = (i) => wordOf(data.status[i]);
+  // Where a bound is all that is known and lies below a limit, or nothing is measured, there is no status.
+  const unknown = (i) => !Number.isFinite(clearances[i]) || (!data.known[i] && data.status[i] === 0 && (clearances[i] < ruleOf(i).warn || clearances[i] <= 0));
+  const word = (i) => unknown(i) ? "status unknown" : wordOf(data.status[i]);
+  const colourOf = (i) => unknown(i) ? css("--faint") : colours[data.status[i]];
   const nameOf = (pair) => pair.bodies.map((k) => data.bodies[k].name).join(" – ");
 
   const frameOfStep = (step) => nearest(data.steps, step);
@@ -67,7 +70,7 @@
     byId("readout").textContent = "";
     const pair = told(), strong = document.createElement("strong");
     strong.textContent = pair ? `${mm(pair.clearance)} mm` : measured(frame);
-    strong.style.color = colours[pair ? pair.status : data.status[frame]];
+    strong.style.color = pair ? colours[pair.status] : colourOf(frame);
     byId("readout").append(strong, ` ${pair ? wordOf(pair.status) : word(frame)}`, document.createElement("br"),
       pair ? nameOf(pair) : between(frame), document.createElement("br"), pair && pair.between ? `${seconds(pair.time, frame)}, ${betweenSteps(pair.step)}`
         : `${seconds(times[frame], frame)}, ${stepText(frame)}${pair ? "" : otherTime(frame)}`);
@@ -95,18 +98,19 @@
   }
 
   // One curve a status; each stretch reaches to the next step so that the curve has no other gaps. Dashed where nothing
-  // is known between the samples.
+  // is known between the samples. The curve of code -1 is of bounds whose status is unknown.
+  const codes = Array.from(data.status, (code, i) => unknown(i) ? -1 : code);
   function statusCurve(code) {
     const y = Array(n).fill(null);
-    for (let i = 0; i < n; i++) if (data.status[i] === code) {
+    for (let i = 0; i < n; i++) if (codes[i] === code) {
       y[i] = clearancesShown[i];
-      if (i + 1 < n && data.status[i + 1] < code) y[i + 1] = clearancesShown[i + 1];
-      if (i > 0 && data.status[i - 1] < code) y[i - 1] = clearancesShown[i - 1];
+      if (i + 1 < n && codes[i + 1] < code) y[i + 1] = clearancesShown[i + 1];
+      if (i > 0 && codes[i - 1] < code) y[i - 1] = clearancesShown[i - 1];
     }
-    return {...broken(timesShown, y), kind: `status ${data.statuses[code]}${data.sampled ? " dash" : ""}`};
+    return {...broken(timesShown, y), kind: code < 0 ? "status unknown dash" : `status ${data.statuses[code]}${data.sampled ? " dash" : ""}`};
   }
 
-  const statusCurves = data.statuses.map((_, code) => statusCurve(code));
+  const statusCurves = [-1, ...data.statuses.keys()].map(statusCurve);
 
   // Beside the curve: what errors leave of it, what was asked of a recorded run.
   const moreCurves = (data.more || []).map(({name, times: x, values, kind, filled}) => (

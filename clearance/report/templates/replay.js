@@ -190,7 +190,7 @@ class Replay {
     this.material.color.copy(colour);
     for (const contact of this.contacts) for (const part of contact.parts) part.visible = contact.frame === frame;
     const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(this.ends, at));
-    this.dots.forEach((dot, i) => dot.position.copy(ends[i]));
+    this.dots.forEach((dot, i) => { dot.position.copy(ends[i]); dot.visible = chosen !== null || data.known[frame] === 1; });
     const along = ends[1].clone().sub(ends[0]);
     const length = along.length();
     this.line.visible = length > 0;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from clearance.errors import BadInput
 from clearance.simulate.measure import resources
 from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
+from tests.profiles.moving import slab, sliding
 
 SCENES = Path(__file__).parents[3] / "scenes"
 
@@ -103,3 +105,18 @@ def test_needs_that_do_not_go_together_are_refused() -> None:
             cl.answer(cl.Question(case, **asked))
     with pytest.raises(BadInput, match="0 jobs"):
         cl.Resources(jobs=0)
+
+
+@pytest.mark.parametrize("limits", [cl.Limits(), cl.Limits(fail=0.001, warn=0.15)])
+def test_steps_that_are_not_measured_behind_a_contact_have_no_status(limits: cl.Limits) -> None:
+    """The slab touches the post at one step, and is asked about no further."""
+    post = cl.Obstacle(cl.Body("post", slab([0.6, -0.05, 0.0], [0.7, 0.05, 0.1])))
+    way = sliding(slab([0.0, -0.05, 0.0], [0.1, 0.05, 0.1]), [0.0, 0.3, 0.5, 0.3, 0.1, 0.0])
+    case = replace(way, obstacles=(post,), limits=limits)
+    run = cl.check(case, need="minimum")
+    told = {row["step"]: row["status"] for row in run.steps.to_pylist()}
+    true = {row["step"]: row["status"] for row in cl.check(case).steps.to_pylist()}
+    assert told[2] == true[2] == "contact"
+    assert all(told[step] in (None, true[step]) for step in true)
+    assert [told[step] for step in (3, 4, 5)] == [None] * 3
+    assert run.summary["status_counts"]["contact"] == 1
