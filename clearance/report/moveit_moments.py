@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from clearance.findings.measurement_conditions import paddings_in
-from clearance.formats.message.times import split_time
+from clearance.formats.message.values import split_time
 from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status

@@ -32,8 +32,7 @@ from clearance.formats.message.documents import (
     json_documents,
     yaml_documents,
 )
-from clearance.formats.message.times import NANO, nanoseconds_in
-from clearance.formats.message.values import header_of, require_fields
+from clearance.formats.message.values import NANO, header_of, nanoseconds_in, require_fields
 from clearance.formats.motion.joint_messages import JointMessage, chosen, messages_in
 from clearance.formats.motion.message_fields import start_of, with_start, with_unread
 from clearance.formats.motion.trajectory_file import ReadTrajectory, TrajectoryRequest

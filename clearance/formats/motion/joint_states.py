@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadMotion, BadShape, BadTime, NotFinite
-from clearance.formats.message.times import NANO
+from clearance.formats.message.values import NANO
 from clearance.formats.motion.recording_gaps import Track, holes_of, tracks_of, unknown_ends
 from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.world.names import checked_name

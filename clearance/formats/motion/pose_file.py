@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.errors import at
 from clearance.formats.known_formats import Kind, format_of, function_at
-from clearance.formats.message.times import NANO
+from clearance.formats.message.values import NANO
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import note_on_rounded
 from clearance.geometry.quaternions import of_unit_length

@@ -20,12 +20,13 @@ from clearance.formats.message.documents import (
     json_documents,
     yaml_documents,
 )
-from clearance.formats.message.times import NANO, nanoseconds_in
 from clearance.formats.message.values import (
+    NANO,
     frame_of,
     header_of,
     items,
     message,
+    nanoseconds_in,
     numbers,
     require_fields,
     text,

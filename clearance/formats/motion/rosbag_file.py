@@ -21,7 +21,7 @@ import numpy as np
 from clearance.errors import BadMotion, BadShape, BadSyntax, ClearanceError, nearest_name
 from clearance.extras import importing
 from clearance.formats.message.documents import Fields
-from clearance.formats.message.times import NANO
+from clearance.formats.message.values import NANO
 from clearance.formats.motion.joint_messages import chosen, messages_in
 from clearance.formats.motion.joint_points import trajectory_of_message
 from clearance.formats.motion.joint_states import JointState, trajectory_of_states
