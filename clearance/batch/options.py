@@ -15,7 +15,7 @@ from pydantic import TypeAdapter
 from clearance.case.tolerance.tolerance_file import tolerance_digest
 from clearance.errors import BadBatch, BadInput
 from clearance.formats.files.input_files import read_bytes
-from clearance.formats.motion.trajectory_file import files_of
+from clearance.formats.motion.requests import files_of
 from clearance.options import made, options_in
 from clearance.run import CheckOptions, Question
 from clearance.world.case import Case

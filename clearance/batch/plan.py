@@ -20,7 +20,7 @@ from clearance.batch.outcome import Outcome
 from clearance.batch.store import Store
 from clearance.formats.files.found_files import leads_to
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.motion.trajectory_file import files_of
+from clearance.formats.motion.requests import files_of
 from clearance.world.case import LOOKUP
 
 Files = tuple[tuple[str, str], ...]

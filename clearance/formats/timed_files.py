@@ -13,17 +13,15 @@ from clearance.errors import BadInput, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.motion.joint_columns import without_followers
-from clearance.formats.motion.pose_file import (
+from clearance.formats.motion.recording_gaps import as_recorded
+from clearance.formats.motion.requests import (
     PoseRequest,
     ReadSamples,
-    read_samples,
-)
-from clearance.formats.motion.recording_gaps import as_recorded
-from clearance.formats.motion.trajectory_file import (
     ReadTrajectory,
     TrajectoryRequest,
     files_of,
     is_bag,
+    read_samples,
     read_trajectory,
 )
 from clearance.formats.schema.timed import Choice, PoseFile, TrajectoryFile

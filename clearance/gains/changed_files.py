@@ -18,8 +18,8 @@ from clearance.case.case_file import read_case
 from clearance.case.rewritten_case import Node, rewritten_case, robot_node, robots_of
 from clearance.errors import BadChange
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.motion.pose_file import PoseRequest, read_samples
 from clearance.formats.motion.pose_writer import written_poses
+from clearance.formats.motion.requests import PoseRequest, read_samples
 from clearance.formats.motion.trajectory_writer import written
 from clearance.formats.scene.request import SceneRequest
 from clearance.formats.scene.scene_yaml import rows_of, written_scene

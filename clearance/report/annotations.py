@@ -16,7 +16,7 @@ from clearance.errors import is_unpacked
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import coded_line
 from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
-from clearance.formats.motion.trajectory_file import line_of_sample
+from clearance.formats.motion.requests import line_of_sample
 from clearance.record.record import Record
 from clearance.report.model import ReportModel
 from clearance.report.moment import own_time, sample_at

@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.errors import BadInput
-from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.motion.requests import parse_trajectory
 from clearance.formats.schema.obstacle import Obstacle
 from clearance.formats.schema.strict_model import validated
 from clearance.world.names import checked_name

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
 from clearance.formats.known_formats import Kind, suffixes_written
-from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.motion.requests import parse_trajectory
 from clearance.formats.motion.trajectory_writer import written
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from clearance.cli import run
 from clearance.formats.known_formats import Kind, suffixes_written
-from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
 from clearance.formats.motion.pose_writer import written_poses
+from clearance.formats.motion.requests import PoseRequest, PoseSamples, read_samples
 from tests.examples import examples
 from tests.formats.motion.test_pose_formats import STAMPED, pose
 

@@ -15,7 +15,7 @@ from markdown_it import MarkdownIt
 from rich.console import Console
 
 import clearance as cl
-from clearance.formats.motion.trajectory_file import line_of_sample
+from clearance.formats.motion.requests import line_of_sample
 from clearance.report.annotations import MOST, annotation_lines, command
 from clearance.report.markdown import MOST_ROWS, markdown, plain
 from clearance.report.moment import sample_at

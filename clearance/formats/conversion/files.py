@@ -16,7 +16,7 @@ from clearance.formats.conversion.scene import ConvertedFiles, converted_scene
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import FORMATS, WANTED, Kind, foreign, formats_in, written_as
 from clearance.formats.motion import pose_writer, trajectory_writer
-from clearance.formats.motion.trajectory_file import is_bag
+from clearance.formats.motion.requests import is_bag
 from clearance.formats.motion.trajectory_writer import untold
 from clearance.formats.scene.request import SceneRequest
 from clearance.formats.schema.timed import Choice

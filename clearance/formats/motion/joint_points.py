@@ -35,7 +35,7 @@ from clearance.formats.message.documents import (
 from clearance.formats.message.values import NANO, header_of, nanoseconds_in, require_fields
 from clearance.formats.motion.joint_messages import JointMessage, chosen, messages_in
 from clearance.formats.motion.message_fields import start_of, with_start, with_unread
-from clearance.formats.motion.trajectory_file import ReadTrajectory, TrajectoryRequest
+from clearance.formats.motion.requests import ReadTrajectory, TrajectoryRequest
 from clearance.world.names import checked_name
 from clearance.world.quintic import with_accelerations
 from clearance.world.trajectory import Trajectory

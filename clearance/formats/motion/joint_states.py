@@ -14,7 +14,7 @@ import numpy as np
 from clearance.errors import BadMotion, BadShape, BadTime, NotFinite
 from clearance.formats.message.values import NANO
 from clearance.formats.motion.recording_gaps import Track, holes_of, tracks_of, unknown_ends
-from clearance.formats.motion.trajectory_file import ReadTrajectory
+from clearance.formats.motion.requests import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.notice import HOLD, listed, naming
 from clearance.world.trajectory import SHORTEST, Trajectory

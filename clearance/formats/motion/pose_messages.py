@@ -31,7 +31,7 @@ from clearance.formats.message.values import (
     require_fields,
     text,
 )
-from clearance.formats.motion.pose_file import (
+from clearance.formats.motion.requests import (
     PoseRequest,
     PoseSamples,
     ReadSamples,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadMotion, BadPose, MissingKey, UnknownKey, nearest_name
-from clearance.formats.motion.pose_file import (
+from clearance.formats.motion.requests import (
     PoseRequest,
     PoseSamples,
     ReadSamples,

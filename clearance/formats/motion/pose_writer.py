@@ -13,7 +13,7 @@ from typing import Any
 from clearance.errors import BadMotion, ClearanceError
 from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.values import NANO, whole_times
-from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
+from clearance.formats.motion.requests import PoseRequest, PoseSamples, read_samples
 from clearance.formats.motion.trajectory_writer import WrittenFile, table_text
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.formats.text.yaml_text import flow

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadMotion
-from clearance.formats.motion.trajectory_file import ReadTrajectory
+from clearance.formats.motion.requests import ReadTrajectory
 from clearance.world.notice import HOLD, NOT_MEASURED
 from clearance.world.trajectory import Hole
 

@@ -25,7 +25,7 @@ from clearance.formats.message.values import NANO
 from clearance.formats.motion.joint_messages import chosen, messages_in
 from clearance.formats.motion.joint_points import trajectory_of_message
 from clearance.formats.motion.joint_states import JointState, trajectory_of_states
-from clearance.formats.motion.trajectory_file import ReadTrajectory
+from clearance.formats.motion.requests import ReadTrajectory
 from clearance.formats.schema.timed import Choice
 from clearance.world.notice import listed
 

@@ -22,7 +22,7 @@ from clearance.formats.motion.joint_columns import (
     require_joints,
     turned_joints,
 )
-from clearance.formats.motion.trajectory_file import ReadTrajectory, TrajectoryRequest
+from clearance.formats.motion.requests import ReadTrajectory, TrajectoryRequest
 from clearance.formats.schema.timed import Choice
 from clearance.formats.table.column_units import (
     VELOCITY,

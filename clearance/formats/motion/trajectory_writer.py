@@ -17,7 +17,7 @@ import numpy as np
 from clearance.errors import BadMotion, ClearanceError
 from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.values import split_time, whole_times
-from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.motion.requests import parse_trajectory
 from clearance.formats.table.column_units import VELOCITY
 from clearance.formats.table.csv_table import TIME
 from clearance.formats.text.yaml_text import flow

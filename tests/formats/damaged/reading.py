@@ -90,7 +90,7 @@ def scene(data: bytes, folder: Path, name: str) -> object:
 
 
 def trajectory(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.motion.trajectory_file import parse_trajectory
+    from clearance.formats.motion.requests import parse_trajectory
 
     return parse_trajectory(data, name)
 
@@ -132,7 +132,7 @@ def programmed():
 
 
 def bag(path: Path) -> object:
-    from clearance.formats.motion.trajectory_file import Choice
+    from clearance.formats.motion.requests import Choice
     from clearance.formats.timed_files import load_trajectory
 
     return load_trajectory(path, Choice())
@@ -147,7 +147,7 @@ def bag_folder(path: Path) -> object:
 
 
 def poses(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.motion.pose_file import PoseRequest, read_samples
+    from clearance.formats.motion.requests import PoseRequest, read_samples
 
     return read_samples(PoseRequest(lambda: io.BytesIO(data)), name)
 

@@ -12,7 +12,7 @@ from clearance.errors import (
     BadSyntax,
     DuplicateName,
 )
-from clearance.formats.motion.trajectory_file import TrajectoryRequest, read_trajectory
+from clearance.formats.motion.requests import TrajectoryRequest, read_trajectory
 from clearance.formats.schema.timed import Choice
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 

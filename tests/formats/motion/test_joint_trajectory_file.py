@@ -14,7 +14,7 @@ from clearance.errors import (
     NotFinite,
     UnknownKey,
 )
-from clearance.formats.motion.trajectory_file import (
+from clearance.formats.motion.requests import (
     TrajectoryRequest,
     parse_trajectory,
     read_trajectory,

@@ -9,7 +9,7 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
-from clearance.formats.motion.pose_file import PoseRequest, read_samples
+from clearance.formats.motion.requests import PoseRequest, read_samples
 from tests.formats.making_cell import DOOR, load_cell, write_cell
 
 STAMPED = """header:

@@ -18,7 +18,7 @@ from clearance.errors import (
     NotFinite,
     UnknownKey,
 )
-from clearance.formats.motion.pose_file import PoseRequest, read_samples
+from clearance.formats.motion.requests import PoseRequest, read_samples
 
 TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 

@@ -9,7 +9,7 @@ import pytest
 from clearance import check, load_case
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime, MissingKey, UnknownJoint
-from clearance.formats.motion.trajectory_file import TrajectoryRequest, read_trajectory
+from clearance.formats.motion.requests import TrajectoryRequest, read_trajectory
 from clearance.formats.schema.timed import Choice
 from clearance.world.cubic import positions_along
 from clearance.world.plausibility import notices_of

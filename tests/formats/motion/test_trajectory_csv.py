@@ -12,7 +12,7 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
 )
-from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.motion.requests import parse_trajectory
 
 
 def parse(text: str):

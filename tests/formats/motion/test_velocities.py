@@ -7,7 +7,7 @@ import pytest
 
 from clearance import check, load_case
 from clearance.errors import MissingKey
-from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.motion.requests import parse_trajectory
 from clearance.formats.motion.trajectory_writer import written
 from clearance.world.cubic import positions_along
 from clearance.world.joint_limits import notices_on_joints
