@@ -12,7 +12,7 @@ from clearance.cli.options import INCLUDE_OPTION, OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.formats.conversion.scene import ConvertedFiles
+    from clearance.formats.conversion import ConvertedFiles
 
 _KINDS = ("trajectory", "scene", "poses")
 
@@ -54,7 +54,7 @@ def convert(
     check repeats them. Meshes inside a scene get files beside OUT. Exit code: 0, or 2 for bad input.
     """
     from clearance.files import refuse_there, write_files
-    from clearance.formats.conversion.files import Conversion, converted, kind_of
+    from clearance.formats.conversion import Conversion, converted, kind_of
     from clearance.formats.files.input_files import InputFiles
     from clearance.formats.known_formats import Kind
     from clearance.formats.scene.request import includes_of

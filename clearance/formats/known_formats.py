@@ -197,7 +197,7 @@ FORMATS = (
            sniff=sniff.has_keys(b"collision_objects"), keys=_SCENE_KEYS, what="a MoveIt planning scene",
            hint="name it in a case file: scene: {name}, beside robot and trajectory"),
     Format("YAML", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
-           "conversion.scene:converted_scene", _unseen, ("obstacles",)),
+           "conversion:converted_scene", _unseen, ("obstacles",)),
     Format("robot program", Kind.PROGRAM, (".yaml", ".yml"), "program.program_yaml:read_yaml_program",
            sniff=sniff.has_keys(b"tool", b"moves"), what="a robot program", hint=_PROGRAM),
     _program("URScript", (".script", ".urscript"), "urscript:read_urscript"),

@@ -1,4 +1,4 @@
-"""A pose table to a file that `pose_file` reads back: CSV, or stamped poses in YAML or JSON.
+"""A pose table to a file that `requests` reads back: CSV, or stamped poses in YAML or JSON.
 
 Every number is written so that it comes back bit for bit, quaternions as their file had them; times of messages
 are whole nanoseconds. What would not come back is refused. Not for: reading (`pose_table_file`, `pose_messages`).

@@ -1,4 +1,4 @@
-"""A trajectory to a file that `trajectory_file` reads back: CSV, or a JointTrajectory message in YAML or JSON.
+"""A trajectory to a file that `requests` reads back: CSV, or a JointTrajectory message in YAML or JSON.
 
 Every number is written so that it comes back bit for bit; times of messages are whole nanoseconds. What would not
 come back is refused. Not for: results (`report`).

@@ -1,6 +1,6 @@
 """The schema of where something is: poses, what it stands on, and files that say where it goes.
 
-Not for: reading those files (`trajectory_file`, `pose_file`).
+Not for: reading those files (`motion.requests`).
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from clearance.errors import BadInput, BadShape
-from clearance.formats.conversion.files import kind_of
+from clearance.formats.conversion import kind_of
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind
 from tests.formats import making_messages, making_moveit
