@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
 from clearance.formats.schema import case as schema
-from clearance.formats.schema import limits as limits_schema
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Limits
 from clearance.world.rules import Allowance, Rule, matches
@@ -117,7 +116,7 @@ def _refuse_unmatched(
     raise fault(f"{problem} {pattern!r}", valid=nearest_name(pattern, names))
 
 
-def limits_of(given: limits_schema.Limits) -> Limits:
+def limits_of(given: schema.Limits) -> Limits:
     """The limits; a rule that gives no `fail` has that of the limits.
 
     Raises:
@@ -131,12 +130,12 @@ def limits_of(given: limits_schema.Limits) -> Limits:
         return Limits(given.fail, given.warn, given.joints, tuple(rules))  # type: ignore[arg-type]
 
 
-def _rule(row: limits_schema.Rule) -> Rule:
+def _rule(row: schema.Rule) -> Rule:
     name = row.name or ""
     return Rule(row.patterns, row.window, row.while_carried, name, row.fail, row.warn)
 
 
-def allowances_of(given: Sequence[limits_schema.AllowedPair]) -> tuple[Allowance, ...]:
+def allowances_of(given: Sequence[schema.AllowedPair]) -> tuple[Allowance, ...]:
     """The pairs that are not measured."""
     return tuple(Allowance(row.patterns, row.window, row.while_carried) for row in given)
 

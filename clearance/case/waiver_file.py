@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 
 from clearance.errors import BadWaiver, at
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.schema.limits import TwoPatterns
+from clearance.formats.schema.case import TwoPatterns
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, validated
 from clearance.plain_yaml import parse_yaml
 from clearance.world.case import Case

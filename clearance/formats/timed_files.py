@@ -1,4 +1,6 @@
-"""The files that say how a robot or an obstacle moves, found and read. Not for: their format (`motion.requests`), nor which joints there are (`robots`)."""
+"""The files that say how a robot or an obstacle moves, found and read. Not for: their format (`motion.requests`),
+nor which joints there are (`robots`).
+"""
 
 from __future__ import annotations
 
