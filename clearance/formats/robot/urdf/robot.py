@@ -21,7 +21,6 @@ from clearance.formats.robot.request import RobotRequest
 from clearance.formats.robot.robot_element import ALLOW_XACRO, XACRO
 from clearance.formats.robot.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.formats.robot.tree import links_from_root
-from clearance.formats.robot.urdf.axis_check import axis_notices
 from clearance.formats.robot.urdf.elements import (
     checked_document,
     odd_angles_of,
@@ -29,7 +28,7 @@ from clearance.formats.robot.urdf.elements import (
     without_empty_shapes,
 )
 from clearance.formats.robot.urdf.joints import joints_of
-from clearance.formats.robot.urdf.shapes import ShapeReader
+from clearance.formats.robot.urdf.shapes import ShapeReader, axis_notices
 from clearance.formats.text.unread import Unread, notes_on, notices_on
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
