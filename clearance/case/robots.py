@@ -19,11 +19,11 @@ from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
 from clearance.formats.robot.request import RobotRequest, checked_args, read_robot
-from clearance.formats.robot.robot_element import XACRO
 from clearance.formats.robot.srdf import read_srdf, virtual_joints
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.case import states_of
 from clearance.formats.text.notes import note_on_rounded
+from clearance.formats.text.xml_document import XACRO
 from clearance.formats.timed_files import trajectory_of
 from clearance.world.body import Mount, Obstacle
 from clearance.world.names import checked_links

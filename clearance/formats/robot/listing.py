@@ -16,7 +16,7 @@ from clearance.errors import ClearanceError
 from clearance.formats.files.brought import PROVIDERS, Provider, robot_names
 from clearance.formats.files.mesh_paths import mesh_path
 from clearance.formats.mesh.mesh_file import triangles_from_bytes
-from clearance.formats.robot.robot_element import robot_element
+from clearance.formats.text.xml_document import robot_element
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element

@@ -16,7 +16,7 @@ from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.mesh.triangles import UpAxis
 from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.robot_element import XACRO
+from clearance.formats.text.xml_document import XACRO
 from clearance.world.robot import Robot
 
 Geometry = Literal["collision", "visual", "collision_or_visual"]

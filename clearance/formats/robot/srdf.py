@@ -23,10 +23,10 @@ from clearance.errors import (
     nearest_name,
 )
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.robot.robot_element import robot_element
 from clearance.formats.text.notes import counted
 from clearance.formats.text.numbers import finite_numbers
 from clearance.formats.text.unread import Format, Row, unread
+from clearance.formats.text.xml_document import robot_element
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.collision_matrix import CollisionMatrix

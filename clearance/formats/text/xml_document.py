@@ -1,4 +1,7 @@
-"""XML documents in which nothing stands for something else. Not for: what the elements mean."""
+"""XML documents in which nothing stands for something else, and the `<robot>` element of URDF and SRDF files.
+
+Not for: what the elements mean (`urdf.elements`, `srdf`).
+"""
 
 from __future__ import annotations
 
@@ -50,4 +53,47 @@ def plain_root(data: bytes, needed: str) -> Element:
             "a document type or an entity, which may stand for anything",
             valid="write out what it stands for",
         )
+    return root
+
+
+XACRO = ".xacro"
+"""Suffix of files that are xacro's."""
+
+ALLOW_XACRO = "xacro evaluates Python in it: `xacro: true` beside urdf, or --xacro, allows that"
+
+
+def robot_element(data: bytes, wanted: str) -> Element:
+    """The root element of a document, its elements without a namespace; comments are gone.
+
+    Args:
+        wanted: "a URDF file" or "an SRDF file".
+
+    Raises:
+        BadSyntax: not XML, another root, an entity that stands for something, or a xacro file.
+    """
+    from lxml import etree
+
+    root = root_of(data, wanted)
+    if etree.QName(root).localname != "robot":
+        raise BadSyntax(
+            f"the root element is <{etree.QName(root).localname}>", valid="<robot> is needed"
+        )
+    entity = next(root.iter(etree.Entity), None)
+    if entity is not None:
+        raise BadSyntax(
+            f"{entity.text} stands for something among the elements",
+            valid="write out what it stands for",
+        )
+    if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
+        otherwise = (
+            f"`xacro: true` beside urdf in a case makes {wanted} of it, as the xacro command does"
+        )
+        raise BadSyntax(
+            f"this is a xacro file, not {wanted}",
+            valid=ALLOW_XACRO if wanted == "a URDF file" else otherwise,
+        )
+    namespace = etree.QName(root).namespace
+    if namespace is not None:  # URDF has none of its own
+        for element in root.iter():
+            element.tag = element.tag.removeprefix(f"{{{namespace}}}")
     return root

@@ -14,10 +14,10 @@ import numpy as np
 from clearance.errors import BadRobot, MissingKey, at
 from clearance.formats.plausibility import odd_angles
 from clearance.formats.robot.request import Geometry
-from clearance.formats.robot.robot_element import robot_element
 from clearance.formats.robot.shape_kinds import chosen_kind
 from clearance.formats.text.numbers import finite_numbers, is_zero
 from clearance.formats.text.unread import ANY, Format, Row, Unread, unread
+from clearance.formats.text.xml_document import robot_element
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
 from clearance.geometry.shapes import SHAPES, Measure

@@ -18,7 +18,6 @@ from clearance.formats.mesh_store import MeshStore
 from clearance.formats.plausibility import angle_notices
 from clearance.formats.robot.compound_joints import frames_between
 from clearance.formats.robot.request import RobotRequest
-from clearance.formats.robot.robot_element import ALLOW_XACRO, XACRO
 from clearance.formats.robot.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.formats.robot.tree import links_from_root
 from clearance.formats.robot.urdf.elements import (
@@ -30,6 +29,7 @@ from clearance.formats.robot.urdf.elements import (
 from clearance.formats.robot.urdf.joints import joints_of
 from clearance.formats.robot.urdf.shapes import ShapeReader, axis_notices
 from clearance.formats.text.unread import Unread, notes_on, notices_on
+from clearance.formats.text.xml_document import ALLOW_XACRO, XACRO
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.extents import greatest, metres
