@@ -215,7 +215,7 @@ def _proposing(made: NewCase) -> NewCase:
 def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     """Writes all files or none."""
     from clearance.case.new_case.files import CASE, TRAJECTORY
-    from clearance.case.new_case.scene import SCENE
+    from clearance.case.new_case.text import SCENE
     from clearance.errors import Unwritable
     from clearance.files import write_files
 

@@ -16,8 +16,7 @@ import numpy as np
 
 from clearance.case.case_file import read_case
 from clearance.case.new_case.robot import NewCaseRequest, NewRobot, new_robot
-from clearance.case.new_case.scene import NewScene, new_scene
-from clearance.case.new_case.text import TOUCHING, CaseText, text_of
+from clearance.case.new_case.text import TOUCHING, CaseText, NewScene, new_scene, text_of
 from clearance.errors import BadInput, MissingKey, NothingToMeasure, at
 from clearance.formats.files.input_files import InputFiles, path_from, resolved
 from clearance.formats.mesh_store import MeshStore

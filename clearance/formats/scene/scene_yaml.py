@@ -2,7 +2,7 @@
 from whatever format, to our YAML and the meshes that were written out in its file.
 
 Every number stands as the reader gave it, so that what is read back is the same scene. Not for: its keys, nor what
-its file says of robots, which a case holds (`new_case.scene`) or a conversion tells (`conversion.scene`).
+its file says of robots, which a case holds (`new_case.text`) or a conversion tells (`conversion`).
 """
 
 from __future__ import annotations
