@@ -8,9 +8,9 @@ import pytest
 
 import clearance as cl
 from clearance.cli import run
-from clearance.sketch import Sketch
 from scripts.makers.point_sketches import irreducible, shaken, sketched
 from tests.formats.making import CASE, write_case
+from tests.profiles.moving import drawn
 from tests.report.made import page_of
 
 
@@ -20,17 +20,8 @@ def asked(tmp_path, capsys):
 
     def ask(case: str, *options: str) -> str:
         path = write_case(tmp_path, case, trajectory="time,shoulder\n0,0\n900,0.5\n")
-        arguments = [
-            "profile",
-            "sweep",
-            str(path),
-            "--plane",
-            "xy",
-            "--out",
-            str(tmp_path / "s.svg"),
-            *options,
-        ]
-        assert run(arguments) == (0 if "accept: [units]" in case else 2)
+        asked = [str(path), "--plane", "xy", "--out", str(tmp_path / "s.svg"), *options]
+        assert run(["profile", "sweep", *asked]) == (0 if "accept: [units]" in case else 2)
         return capsys.readouterr().err
 
     return ask
@@ -46,11 +37,7 @@ def test_a_sweep_says_what_is_suspect_and_not_accepted_quiet_or_not(asked):
 def folder(tmp_path, monkeypatch):
     points, edges = irreducible(12, 3)
     sketched(points, shaken(points, 0.2, 3), edges).save(tmp_path / "cluster.yaml")
-    square = Sketch()
-    corners = [square.point(*place) for place in [(0, 0), (1, 0), (1, 1), (0, 1)]]
-    for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
-        square.segment(a, b)
-    square.save(tmp_path / "square.yaml")
+    drawn([(0, 0), (1, 0), (1, 1), (0, 1)]).save(tmp_path / "square.yaml")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box
+from clearance.sketch import Sketch
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.placed_robot import PlacedRobot
@@ -64,3 +65,13 @@ def tetrahedron(rng, size):
 def rows(profile):
     """The contours as the oracle takes them."""
     return [np.column_stack([c.vertices, c.bulges]).tolist() for c in profile.contours]
+
+
+def drawn(*outlines):
+    """A sketch of closed outlines, segments from corner to corner."""
+    sketch = Sketch()
+    for corners in outlines:
+        points = [sketch.point(*corner) for corner in corners]
+        for one, other in zip(points, [*points[1:], points[0]], strict=True):
+            sketch.segment(one, other)
+    return sketch

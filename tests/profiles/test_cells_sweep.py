@@ -26,7 +26,7 @@ from tests import cells
 from tests.examples import examples
 from tests.oracle.outlines import inside
 from tests.profiles.finely import assert_within_chord_and_turn
-from tests.profiles.moving import rows
+from tests.profiles.moving import drawn, rows
 
 shapely = pytest.importorskip("shapely")
 
@@ -224,11 +224,7 @@ def test_a_part_that_goes_from_a_hand_to_a_truck_is_not_swept_on_the_truck():
 def test_a_reserved_outline_is_held_against_what_is_in_hand_too(top, kept):
     """The part reaches y = 1.1 while it is carried."""
     corners = [(-0.3, -0.3), (1.5, -0.3), (1.5, top), (-0.3, top)]
-    sketch = cl.Sketch()
-    names = [sketch.point(*corner) for corner in corners]
-    for one, other in zip(names, [*names[1:], names[0]], strict=True):
-        sketch.segment(one, other)
-    space = ReservedSpace("zone", sketch, "xy", mode="outside")
+    space = ReservedSpace("zone", drawn(corners), "xy", mode="outside")
     wall = Obstacle(
         Body("wall", cl.box((0.1, 0.1, 0.1))), cells.pose(np.random.default_rng(1), 9.0)
     )

@@ -22,7 +22,7 @@ from clearance.world.budget import Budget, PlacementTolerance, RobotTolerance
 from clearance.world.case import ReservedSpace
 from clearance.world.notice import Severity
 from clearance.world.pose_table import PoseTable
-from tests.profiles.moving import slab, turning
+from tests.profiles.moving import drawn, slab, turning
 from tests.report.made import page_of, summary_of
 
 POST = Obstacle(Body("post", slab([0.3, -0.5, 0.0], [0.4, -0.4, 0.1])))
@@ -30,13 +30,7 @@ POST = Obstacle(Body("post", slab([0.3, -0.5, 0.0], [0.4, -0.4, 0.1])))
 
 def squares(*spans: tuple[float, float]) -> Sketch:
     """Squares from (low, low) to (high, high)."""
-    sketch = Sketch()
-    for low, high in spans:
-        places = [(low, low), (high, low), (high, high), (low, high)]
-        corners = [sketch.point(*place) for place in places]
-        for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
-            sketch.segment(a, b)
-    return sketch
+    return drawn(*([(low, low), (high, low), (high, high), (low, high)] for low, high in spans))
 
 
 ARM = slab([0.0, -0.05, 0.0], [0.5, 0.05, 0.1])
