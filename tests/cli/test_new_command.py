@@ -110,7 +110,7 @@ SCRIPT = "movej([{},0,0,0,0,0])\ngrip()\nmovej([0.1,0,0,0,0,0])\n"
 
 
 @pytest.mark.slow
-def test_a_program_stays_the_file_that_it_is(capsys):
+def test_a_program_stays_the_file_that_it_is(refusal, capsys):
     Path("cell/move.script").write_text(SCRIPT.format(0.0))
     words = [
         "--program",
@@ -139,7 +139,7 @@ def test_a_program_stays_the_file_that_it_is(capsys):
         ([*words, "--trajectory", "cell/path.csv"], "both --program and another motion"),
         ([*words, "--start", "joint_1=x"], "joint_1=0.5,joint_2=0, or a state"),
     ):
-        assert new(*more, robot=str(FILES["heron6"])) == 2 and what in capsys.readouterr().err
+        assert what in refusal("new", "out", "--robot", FILES["heron6"], *more)
 
 
 HOME, FAR = "movej([0,0,0,0,0,0])", "set_tcp(p[0,0,0,0,0,0])\nmovej(p[0.4,0,0.4,0,0,0])"
@@ -164,11 +164,11 @@ TIP = ["--flange", "tool_tip"]
          "Robots at 0, "),
     ],
 )  # fmt: skip
-def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told, capsys):
+def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told, refusal):
     Path("cell/move.script").write_text(move + "\n")
-    code = new("--program", "cell/move.script", *more, robot=str(FILES["heron6"]))
-    said = capsys.readouterr().err
-    assert code == 2 and told in said and "trajectory" not in said
+    asked = ("--robot", FILES["heron6"], "--program", "cell/move.script", *more)
+    said = refusal("new", "out", *asked)
+    assert told in said and "trajectory" not in said
 
 
 LISTING = """/PROG  CELL
@@ -186,14 +186,14 @@ P[1]{
 
 
 @pytest.mark.slow
-def test_what_a_program_lacks_is_said_by_its_keys(capsys):
+def test_what_a_program_lacks_is_said_by_its_keys(refusal):
     Path("cell/CELL.LS").write_text(LISTING)
     home = LISTING.replace("CELL", "HOME").replace("CNT50", "FINE").replace("J1= 5", "J1= 10")
     Path("cell/HOME.LS").write_text(home.replace("   2:  CALL HOME    ;\n", ""))
     words = ["--program", "cell/CELL.LS", *TIP, "--scene", "cell/cell.scene"]
     robot = str(FILES["heron6"])
-    assert new(*words, "--program-keys", "zones: {CNT: 0.05}", robot=robot) == 2
-    assert "--program-keys '{beside: [HOME.LS]}'" in capsys.readouterr().err
+    asked = ("--robot", robot, *words, "--program-keys", "zones: {CNT: 0.05}")
+    assert "--program-keys '{beside: [HOME.LS]}'" in refusal("new", "out", *asked)
     keys = ["zones: {CNT: 0.05}, beside: [cell/HOME.LS]"]
     keys += ["axes: {joint_5: {sign: -1}}", "axes: {joint_4: {sign: -1}}"]
     said = [word for one in keys for word in ("--program-keys", one)]
@@ -250,14 +250,14 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
     assert warned in capsys.readouterr().out
 
 
-def test_limits_are_those_that_are_given(capsys):
+def test_limits_are_those_that_are_given(refusal, capsys):
     given = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--fail-mm", "7.5")
     assert new(*given, "--warn-mm", "20") == 0
     assert "fail limit" not in capsys.readouterr().out
     limits = load_case("out/case.yaml").limits
     assert (limits.fail, limits.warn) == (0.0075, 0.02)
-    assert new(*given, "--warn-mm", "2", "--force") == 2
-    assert "the warn limit 2 mm is below the fail limit 7.5 mm" in capsys.readouterr().err
+    told = refusal("new", "out", "--robot", "cell/arm.urdf", *given, "--warn-mm", 2, "--force")
+    assert "the warn limit 2 mm is below the fail limit 7.5 mm" in told
 
 
 def test_how_a_file_was_read_stays_in_the_case(capsys):
@@ -423,13 +423,12 @@ def test_errors_name_options_in_place_of_keys_of_a_case(valid, told):
     assert str(caught.value) == f"--robot: looked for it in --package-dir; {told}"
 
 
-def test_nothing_is_overwritten_unasked(capsys):
+def test_nothing_is_overwritten_unasked(refusal):
     Path("out").mkdir()
     Path("out/scene.yaml").write_text("mine")
     Path("out/notes.txt").write_text("mine too")
-    assert new(*USUAL) == 2
-    assert "out/scene.yaml: already exists; --force overwrites it" in capsys.readouterr().err
-    assert Path("out/scene.yaml").read_text() == "mine" and not Path("out/case.yaml").exists()
+    told = refusal("new", "out", "--robot", "cell/arm.urdf", *USUAL)
+    assert "out/scene.yaml: already exists; --force overwrites it" in told
     assert new(*USUAL, "--force") == 0
     assert Path("out/notes.txt").read_text() == "mine too"
     assert Path("out/scene.yaml").read_text() != "mine"

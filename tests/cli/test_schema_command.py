@@ -1,8 +1,5 @@
 """`clearance schema` says of a case file what loading it says, as far as a schema can."""
 
-import contextlib
-import io
-import json
 import re
 from pathlib import Path
 
@@ -15,20 +12,15 @@ from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
 from tests.formats.making import CASE
 from tests.formats.making_cell import CELL
+from tests.report.schemas import printed_schema
 
 ROOT = Path(__file__).resolve().parents[2]
-
-jsonschema = pytest.importorskip("jsonschema")
 
 
 @pytest.fixture(scope="module")
 def errors():
     """Asks the printed schema whether it objects to YAML text."""
-    with contextlib.redirect_stdout(io.StringIO()) as out:
-        assert run(["schema"]) == 0
-    printed = json.loads(out.getvalue())
-    jsonschema.Draft202012Validator.check_schema(printed)
-    validator = jsonschema.Draft202012Validator(printed)
+    _, validator = printed_schema()
     return lambda text: [
         error.message for error in validator.iter_errors(YAML(typ="safe").load(text))
     ]

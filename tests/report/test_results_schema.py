@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -11,15 +9,13 @@ from pathlib import Path
 import pytest
 
 import clearance as cl
-from clearance.cli import run
 from clearance.findings.findings_file import findings_text
 from clearance.run import Run
 from tests.case import test_recorded_run as recorded
 from tests.report.made import run_of
 from tests.report.records import record
+from tests.report.schemas import printed_schema
 from tests.report.test_golden import OPEN, SUSPECT, SWING, cell_run
-
-jsonschema = pytest.importorskip("jsonschema")
 
 DEMO = Path(cl.__file__).parent / "demo"
 
@@ -40,13 +36,7 @@ RUNS: dict[str, Callable[[Path], Run]] = {
 @pytest.fixture(scope="module")
 def errors() -> Callable[[str, dict], list[str]]:
     """Asks the schema of a file, as the command prints it, what it objects to."""
-    validators = {}
-    for name in ("summary", "findings"):
-        with contextlib.redirect_stdout(io.StringIO()) as out:
-            assert run(["schema", "--results", name]) == 0
-        printed = json.loads(out.getvalue())
-        jsonschema.Draft202012Validator.check_schema(printed)
-        validators[name] = jsonschema.Draft202012Validator(printed)
+    validators = {name: printed_schema("--results", name)[1] for name in ("summary", "findings")}
     return lambda name, told: [error.message for error in validators[name].iter_errors(told)]
 
 
