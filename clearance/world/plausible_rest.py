@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -12,6 +12,10 @@ from clearance.world.robot import Joint, Robot
 
 NEAR_BASE = 1e-4
 """[m] and [-] How far a robot's base may be from where a file has it, whose numbers may be rounded."""
+
+
+NEAR_REST = 1e-4
+"""[rad] or [m] How far a joint may rest from where a message has it, whose numbers may be rounded."""
 
 
 def notices_on_bases(placed: PlacedRobot) -> list[Notice]:
@@ -56,9 +60,11 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
     asked, joints = placed.trajectory, placed.robot.moving_joints
     moved = set() if asked is None else {*asked.joint_names}
     given = moved | {*placed.fixed_positions}
-    resting = [joint for joint in joints if joint.name not in given]
+    told = {} if asked is None else dict(asked.elsewhere)
+    found = _rest_otherwise(placed, told, before)
+    resting = [joint for joint in joints if joint.name not in given and joint.name not in told]
     if not resting:
-        return []
+        return found
     between = _between(placed.robot, resting, moved)
     names = [repr(before + one.name) for one in sorted(resting, key=lambda one: one not in between)]
     are = "is given by nobody and stays" if len(resting) == 1 else "are given by nobody and stay"
@@ -66,7 +72,27 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
     text += f"joints on both sides of {names[0]} are given, " if between else ""
     text += f"is {'a column' if moved else 'its trajectory'} missing? "
     text += "robot: {joints: {NAME: …}} says where they are"
-    return [Notice(Severity.WARNING, "rest", text, placed.robot.name)]
+    return [*found, Notice(Severity.WARNING, "rest", text, placed.robot.name)]
+
+
+def _rest_otherwise(placed: PlacedRobot, told: Mapping[str, float], before: str) -> list[Notice]:
+    """A warning on joints that rest elsewhere than the message of the trajectory starts with."""
+    rest = {
+        joint.name: placed.fixed_positions.get(joint.name, 0.0)
+        for joint in placed.robot.moving_joints
+        if joint.name in told
+    }
+    odd = [name for name, position in rest.items() if abs(position - told[name]) > NEAR_REST]
+    if not odd:
+        return []
+    shown = listed(
+        [f"joint {before + name!r} at {rest[name]:g}, and there at {told[name]:g}" for name in odd]
+    )
+    taken = ", ".join(f"{name}: {told[name]:g}" for name in odd)
+    about = placed.robot.name
+    text = f"robot {about!r} rests otherwise than its message starts: {shown}"
+    remedy = f"robot: {{joints: {{{taken}}}}} has them as there"
+    return [Notice(Severity.WARNING, "rest", f"{text}; {remedy}", about)]
 
 
 def _between(robot: Robot, resting: list[Joint], moved: set[str]) -> list[Joint]:

@@ -142,6 +142,7 @@ class Trajectory:
         given_extents: (2, k) the least and greatest position before whole turns were subtracted, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
             start_off: how far a start that the message gives is off that sample, in words, if it is.
+        elsewhere: where the start of a message has other joints [rad or m], by name.
         starts_before_file: True if its first sample is a start at 0 s that was added to the file's.
         assumed: of a program's controller, where nothing confirms it, one line each. left_out: its instructions
             that the case leaves out, whatever time they take. odd: what looks like another unit in its file.
@@ -176,6 +177,7 @@ class Trajectory:
     given_extents: np.ndarray | None = None
     has_way_in: bool = False
     start_off: str = ""
+    elsewhere: tuple[tuple[str, float], ...] = ()
     starts_before_file: bool = False
     corners: tuple[CornerZone, ...] = ()
     moves: tuple[MoveSpan, ...] = ()

@@ -131,8 +131,11 @@ class NewRobot:
     def resting(self, trajectory: Trajectory) -> dict[str, Any]:
         """What stands under `joints` for those that a trajectory does not move."""
         states = self.rest[0] if len(self.rest) == 1 else list(self.rest)
+        told = dict(trajectory.elsewhere)
         return ({"state": states} if self.rest else {}) | {
-            joint.name: self._rest(joint) for joint in self._unset_joints(trajectory)
+            joint.name: told.get(joint.name, self._rest(joint))
+            for joint in self.placed.robot.moving_joints
+            if joint.name not in self._set_joints(trajectory)
         }
 
     def remarks(self, trajectory: Trajectory) -> dict[str, str]:
@@ -188,9 +191,13 @@ class NewRobot:
         meant = self.placed.robot.reference.get(joint.name, 0.0)
         return float(min(max(meant, joint.lower), joint.upper)) + 0.0
 
+    def _set_joints(self, trajectory: Trajectory) -> set[str]:
+        """The joints that the trajectory or a state gives a position."""
+        return {*trajectory.joint_names, *self.placed.fixed_positions}
+
     def _unset_joints(self, trajectory: Trajectory) -> list[Joint]:
-        """The joints that neither the trajectory nor a state gives a position."""
-        known = {*trajectory.joint_names, *self.placed.fixed_positions}
+        """The joints that neither of them gives a position, nor the start of a message."""
+        known = {*self._set_joints(trajectory), *dict(trajectory.elsewhere)}
         return [joint for joint in self.placed.robot.moving_joints if joint.name not in known]
 
 

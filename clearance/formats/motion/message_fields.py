@@ -90,10 +90,12 @@ def with_start(
         without = f"the first point is at {first:g} s; how the robot gets there is not in the file"
         return _with_way_in(trajectory), (without,) if first > 0.0 else ()
     names = trajectory.joint_names
-    others = [f"{name}: {at_:g}" for name, at_ in start.positions.items() if name not in names]
+    elsewhere = tuple((name, at_) for name, at_ in start.positions.items() if name not in names)
+    trajectory = replace(trajectory, elsewhere=elsewhere)
+    others = [f"{name}: {at_:g}" for name, at_ in elsewhere]
     notes = [
-        f"{start.place} also has joints that the trajectory does not move {{{listed(others, 8)}}}: not used, "
-        "robot.joints of the case says where they rest"
+        f"{start.place} also has joints that the trajectory does not move {{{listed(others, 8)}}}: "
+        "they rest where robot.joints of the case says"
     ] if others else []  # fmt: skip
     missing = [name for name in names if name not in start.positions]
     if missing:

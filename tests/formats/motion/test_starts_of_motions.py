@@ -196,6 +196,36 @@ def test_what_the_start_says_of_other_joints_and_another_place_is_told():
     assert any("trajectory_start is not used: it has no position of lift" in note for note in notes)
 
 
+START = state({"shoulder": 0.1, "lift": 0.04, "elsewhere": 1.0})
+MOVE = displayed(plan(point(0.0, 0.1), point(1.0, 0.2)), START)
+
+
+@pytest.mark.parametrize(
+    ("joints", "told"),
+    [
+        ("", "robot 'arm' rests otherwise than its message starts: joint 'lift' at 0, and there at 0.04; "),
+        (", joints: {lift: 0.01}", "joint 'lift' at 0.01, and there at 0.04; "),
+        (", joints: {lift: 0.04}", ""),
+    ],
+)  # fmt: skip
+def test_joints_that_rest_otherwise_than_a_message_has_them_stand_in_the_headline(
+    tmp_path, joints, told
+):
+    found = [one for one in notices_of(load(tmp_path, MOVE, robot=joints)) if one.kind == "rest"]
+    assert len(found) == bool(told)
+    assert all(told in one.text and "joints: {lift: 0.04}" in one.text for one in found)
+
+
+def test_a_new_case_has_joints_at_rest_where_the_message_has_them(tmp_path):
+    load(tmp_path, MOVE)
+    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
+    files = {"robot": "arm.urdf", "trajectory": "path.json", "scene": "scene.yaml"}
+    asked = [word for key, name in files.items() for word in (f"--{key}", str(tmp_path / name))]
+    assert run(["new", str(tmp_path / "made"), *asked]) == 0
+    case = load_case(tmp_path / "made" / "case.yaml")
+    assert case.robots[0].fixed_positions == {"lift": 0.04} and kinds(case) == []
+
+
 def test_a_later_segment_does_not_begin_at_the_start():
     segments = [{"joint_trajectory": plan(point(t, 0.1))} for t in (1.0, 2.0)]
     message = {"trajectory": segments, "trajectory_start": state({"shoulder": 0.0})}
