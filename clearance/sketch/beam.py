@@ -5,7 +5,7 @@ flatter than the drawing is off, and later circles do not meet. So the steps are
 After each step those survive whose points, set down where they fit best, are off least from the drawing. A wrong
 choice moves all that hangs on it, hence it falls behind, or its circles miss each other. A point on which nothing
 hangs gets the nearer of its two places at once. Not for: steps that place other things (`folds`).
-Source: Lowerre 1976 (beam search); the fit is Schönemann's (`solve.fit`), summed up step by step.
+Source: Lowerre 1976 (beam search); the fit is Schönemann's (`solve.execute`), summed up step by step.
 """
 
 from __future__ import annotations
