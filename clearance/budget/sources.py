@@ -157,7 +157,9 @@ def slopes(case: Case, budget: Budget, witness: Witness) -> list[Slope]:
     between = witness.points[:, 1] - witness.points[:, 0]
     with np.errstate(invalid="ignore", divide="ignore"):
         u = between / np.linalg.norm(between, axis=1)[:, None]
-    common = _common(case, witness.pair)
+    common = carrying_links(case, witness.pair.a) & carrying_links(
+        case, witness.pair.b
+    )  # both move alike
     found: dict[tuple[SourceKey, int], np.ndarray] = {}
     for side, body, x in ((-1.0, witness.pair.a, 0), (1.0, witness.pair.b, 1)):
         seen = _Side(body, side * u, witness.points[:, x], witness)
@@ -183,11 +185,6 @@ class _Side(NamedTuple):
 
 Effects = Iterator[tuple[SourceKey, int, np.ndarray]]
 """Errors, which of their numbers, and the gradient by it."""
-
-
-def _common(case: Case, pair: Pair) -> set[int]:
-    """The links that both bodies of a pair hang on: their errors move both alike."""
-    return carrying_links(case, pair.a) & carrying_links(case, pair.b)
 
 
 def _of_body(case: Case, budget: Budget, side: _Side, common: set[int]) -> Effects:

@@ -219,7 +219,10 @@ class _PlacedPair:
         return all(parts.closed for parts in self._both_parts)
 
     def _depth(self, *, bounded: bool) -> tuple[Ray, float]:
-        """The separation vector, and a lower bound of its length; 0 where that is neither known nor needed."""
+        """The separation vector, and a lower bound of its length; 0 where that is neither known nor needed.
+
+        A search is needed where hulls are more than the bodies; they stand for surfaces without an inside.
+        """
         outer = self._corners(*(parts.outer for parts in self._both_parts))
         whole = penetration(*map(_joined, outer))
         ray = Ray(whole.depth, whole.direction)
@@ -227,7 +230,7 @@ class _PlacedPair:
             return ray, whole.at_least
         if self._by_region:
             ray = self._through_region(ray)
-        elif self._needs_search:
+        elif self._both_closed and not all(parts.tight for parts in self._both_parts):
             across = (ray.direction for ray in self._rays_across())
             extra = np.array([whole.direction, *across])
             rays = separations(*outer, whole.depth, extra)
@@ -237,11 +240,6 @@ class _PlacedPair:
         at_least = self._depth_of_balls() if self._by_region else self._depth_of_inner()
         is_close = at_least > CLOSE * ray.length
         return ray, max(at_least, self._width_of_region(at_least, only_convex=is_close))
-
-    @property
-    def _needs_search(self) -> bool:
-        """True where hulls are more than the bodies; hulls stand for surfaces without an inside."""
-        return self._both_closed and not all(parts.tight for parts in self._both_parts)
 
     @property
     def _by_region(self) -> bool:

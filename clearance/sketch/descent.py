@@ -95,8 +95,19 @@ class ProblemPart:
         return place.entries[p] * place.entries[q] + self.columns.bent(place.x, place.error)
 
     def factored(self, curvature: np.ndarray, damping: float):
-        """The factors of a curvature with damping on its diagonal; None when it is not positive definite."""
-        return _factored(self._matrix(curvature, damping))
+        """The factors of a curvature with damping on its diagonal, None when it is not positive definite."""
+        try:
+            factor = splu(
+                self._matrix(curvature, damping),
+                permc_spec="NATURAL",
+                diag_pivot_thresh=0.0,
+                relax=4,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError:
+            return None
+        straight = np.array_equal(factor.perm_r, factor.perm_c)
+        return factor if straight and (factor.U.diagonal() > 0.0).all() else None
 
     def _matrix(self, curvature: np.ndarray, damping: float) -> csc_array:
         place, indices, starts, diagonal = self._pattern
@@ -157,22 +168,6 @@ def _eased(damping: float, gained: float, promised: float, total: float) -> floa
     if gained <= 0.75 * promised:
         return damping
     return max(damping * (0.2 if promised > 0.01 * total else 0.05), LEAST)
-
-
-def _factored(matrix: csc_array):
-    """The factors of a symmetric matrix, None when it is not positive definite: then a pivot is not."""
-    try:
-        factor = splu(
-            matrix,
-            permc_spec="NATURAL",
-            diag_pivot_thresh=0.0,
-            relax=4,
-            options={"SymmetricMode": True},
-        )
-    except RuntimeError:
-        return None
-    straight = np.array_equal(factor.perm_r, factor.perm_c)
-    return factor if straight and (factor.U.diagonal() > 0.0).all() else None
 
 
 def _corrected(

@@ -44,12 +44,8 @@ def _obstacle_at(obstacle: Obstacle, time: float) -> Obstacle:
     return replace(obstacle, moves=PoseTable(np.array([time]), values[:, :3], values[:, 3:]))
 
 
-def time_dependent_parts(case: Case) -> tuple[str, ...]:
+def time_dependent_parts(case: Case) -> Iterator[str]:
     """What of a case is otherwise at other times of its run, in words: where it is taken to be without a time."""
-    return tuple(_time_dependent_parts(case))
-
-
-def _time_dependent_parts(case: Case) -> Iterator[str]:
     for name in dict.fromkeys(carry.part for carry in case.carries):
         yield f"part {name!r} is carried, and is measured where it lies before"
     for one in case.obstacles:

@@ -65,15 +65,12 @@ def robots_in_cell(cases: Sequence[Case]) -> list[RobotInCell]:
             f"{len(names)} robot is given", valid="cases with two or more robots in all are needed"
         )
     unique = iter(_unique_names(names))
+    timelines = [timeline_of(case, [*map(kinematic_motion, case.robots)]) for case in cases]
     return [
         RobotInCell(next(unique), i_case, i_robot, timeline)
-        for i_case, timeline in enumerate(_timelines(cases))
-        for i_robot in range(len(cases[i_case].robots))
+        for i_case, timeline in enumerate(timelines)
+        for i_robot in range(len(timeline.motions))
     ]
-
-
-def _timelines(cases: Sequence[Case]) -> list[Timeline]:
-    return [timeline_of(case, [kinematic_motion(one) for one in case.robots]) for case in cases]
 
 
 def _unique_names(found: Sequence[tuple[str, str]]) -> list[str]:

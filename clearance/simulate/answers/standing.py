@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.contact import ContactRows
 from clearance.record.record import Record
 from clearance.simulate.answers.handling import gap_between, handling_hints
@@ -40,7 +39,8 @@ def standing_contacts(record: Record) -> list[tuple[str, str]]:
         if not all(_stands(case, body, standing) for body in (pair.a, pair.b)):
             continue
         pose_a, pose_b = (body.poses_in(first.case, poses)[0] for body in (pair.a, pair.b))
-        if _touch(pair.a.shape_in(case), pose_a, pair.b.shape_in(case), pose_b):
+        shapes = pair.a.shape_in(case), pair.b.shape_in(case)
+        if gap_between(shapes[0], pose_a, shapes[1], pose_b, far=0.0) <= 0.0:
             touching.append((pair.a.name_in(case), pair.b.name_in(case)))
     return touching
 
@@ -103,7 +103,8 @@ def standing_hint(record: Record) -> list[str]:
     of the case file that leaves all of them out."""
     standing = standing_contacts(record)
     always = [pair for pair in always_in_contact(record) if pair not in standing]
-    links = [pair for pair in always if _are_links(record.case, pair)]
+    obstacles = {one.name for one in record.case.obstacles}
+    links = [pair for pair in always if obstacles.isdisjoint(pair)]
     known = {frozenset(pair) for pair in (*standing, *always)}
     parts = [hint for hint in handling_hints(record) if hint.pair not in known]
     hints = [
@@ -152,22 +153,10 @@ def _on_links(case: Case, pairs: list[tuple[str, str]]) -> str:
     return said
 
 
-def _are_links(case: Case, pair: tuple[str, str]) -> bool:
-    """True if neither name is an obstacle's."""
-    return not any(obstacle.name in pair for obstacle in case.obstacles)
-
-
 def _hint(pairs: list[tuple[str, str]], when: str) -> Iterator[str]:
     if pairs:
         count = "1 pair touches" if len(pairs) == 1 else f"{len(pairs)} pairs touch"
         yield f"{count} {when}: {listed([' - '.join(pair) for pair in pairs])}"
-
-
-def _touch(
-    a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray
-) -> bool:
-    """True if two bodies touch; balls about their boxes that are disjoint decide without a search."""
-    return gap_between(a, world_from_a, b, world_from_b, far=0.0) <= 0.0
 
 
 def _standing_links(motion: Motion) -> set[str]:

@@ -200,7 +200,7 @@ def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts
         parted &= ~inner
     split = opened[parted][:MOST_SPLIT]
     whole = np.setdiff1d(opened, split, assume_unique=True)
-    found = [own.steps(own.steps_below), own.whole(whole)]
+    found = [own.steps(_places(len(own.times), own.below)), own.whole(whole)]
     found += [own.parts(int(i), int(n)) for i, n in zip(split, own.most_parts(split), strict=True)]
     joined = Parts(*(np.concatenate(column) for column in zip(*found, strict=True)))
     return joined._replace(
@@ -227,11 +227,6 @@ class _Intervals:
         """(k,) the intervals that are not proven to be above the level."""
         lower = self.certificate.lower_bound[:-1]
         return _places(len(lower), lambda block: ~self.threshold.above(lower[block]))
-
-    @property
-    def steps_below(self) -> np.ndarray:
-        """(k,) the steps that are below the level."""
-        return _places(len(self.times), lambda block: self.below(block))
 
     def below(self, steps: np.ndarray | slice) -> np.ndarray:
         """(k,) True for steps that are known to be below the level."""

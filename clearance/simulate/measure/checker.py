@@ -238,9 +238,7 @@ def _measured(case: Case, time: float | None) -> tuple[Case, Selection]:
         if not measured.pairs:
             raise nothing_to_measure()
         return phase.case, measured
-    at_other_times = time_dependent_parts(case)
-    if at_other_times:
-        text = "; ".join(at_other_times)
+    if text := "; ".join(time_dependent_parts(case)):
         warnings.warn(
             f"this Checker knows no time: {text}; give time=, [s] of the run", stacklevel=4
         )

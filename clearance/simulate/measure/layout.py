@@ -150,7 +150,9 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
 
 @once_a_cell(2)
 def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
-    solids = sorted({body for pair in pairs for body in pair}, key=_links_first)
+    solids = sorted(
+        {body for pair in pairs for body in pair}, key=lambda one: (one.is_obstacle, one)
+    )
     number = {body: i for i, body in enumerate(solids)}
     frames = np.array([body.frame_in(case) for body in solids])
     numbers = np.array([(number[a], number[b]) for a, b in pairs], dtype=np.int64)
@@ -207,10 +209,6 @@ def positions_at(case: Case, motions: Sequence[Motion], steps: np.ndarray | rang
     return joined_positions(
         case, motions, slice(steps.start, steps.stop) if isinstance(steps, range) else steps
     )
-
-
-def _links_first(body: BodyIndex) -> tuple[bool, BodyIndex]:
-    return body.is_obstacle, body
 
 
 def _references(case: Case, links: np.ndarray) -> np.ndarray:

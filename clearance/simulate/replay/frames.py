@@ -50,7 +50,7 @@ class ReplayFrames:
         joined: dict[str, tuple[np.ndarray, ArrayLike]] = {
             "steps": (chosen, [moment.step for moment in moments]),
             "times": (table.numbers("time"), [moment.time for moment in moments]),
-            "times_b": (_times_b(table), [_or_nan(moment.time_b) for moment in moments]),
+            "times_b": (_times_b(table), np.array([one.time_b for one in moments], dtype=float)),
             "clearances": (least_of(table), clearances),
             "between": (np.zeros(len(chosen), dtype=np.uint8), 1),
             "known": (known.astype(np.uint8), 1),
@@ -89,10 +89,6 @@ def _places(
 def _times_b(table: Table) -> np.ndarray:
     """(n,) [s] when the second body of each row is there, NaN where that is its time."""
     return table.numbers("time_b") if "time_b" in table else np.full(table.n_rows, np.nan)
-
-
-def _or_nan(value: float | None) -> float:
-    return np.nan if value is None else value
 
 
 def _rows_at(record: Record, chosen: np.ndarray, on_disk: MeasuredRows) -> Table:

@@ -91,7 +91,10 @@ def _solve_numeric(
     columns = Columns(s, vertices, rows, body_of)
     found = None
     try:
-        if BANDED <= columns.n and freedoms(s, vertices) <= FREED * columns.n:
+        if (
+            BANDED <= columns.n
+            and np.where(s.kind[vertices] == POINT, 2, 1).sum() <= FREED * columns.n
+        ):
             found = find_freed(s, plan, step, x, run.sketch, run.rule)
         if found is None:
             found = solve_cluster(columns, x, run.rule)
@@ -103,11 +106,6 @@ def _solve_numeric(
         return FAILED
     x[:] = found
     return DONE
-
-
-def freedoms(s: System, vertices: np.ndarray) -> int:
-    """How many unknowns vertices have, each by itself."""
-    return int(np.where(s.kind[vertices] == POINT, 2, 1).sum())
 
 
 def find_freed(
