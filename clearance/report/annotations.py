@@ -15,7 +15,7 @@ from pathlib import Path
 from clearance.errors import is_unpacked
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import coded_line
-from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
+from clearance.findings.verdict import POSE, SAMPLES, Verdict
 from clearance.formats.motion.requests import line_of_sample
 from clearance.record.record import Record
 from clearance.report.model import ReportModel
@@ -37,7 +37,7 @@ def annotation_lines(model: ReportModel, root: Path) -> Iterator[str]:
     lines = [
         *(command("error", title, text) for text in _of_verdict(model.verdict)),
         *_of_findings(model.record, model.findings, root),
-        *(command("warning", title, text) for text in _other_lines(model.verdict)),
+        *(command("warning", title, text) for text in _other_lines(model)),
     ]
     yield from lines[:MOST]
 
@@ -56,12 +56,13 @@ def _of_verdict(verdict: Verdict) -> list[str]:
     return lines
 
 
-def _other_lines(verdict: Verdict) -> list[str]:
+def _other_lines(model: ReportModel) -> list[str]:
     """What bears on a verdict and fails nothing."""
+    verdict = model.verdict
     lines = [line for line in verdict.warnings if line not in verdict.warned]
     lines += [*(f"waived: {line}" for line in verdict.waived)]
-    if verdict.tolerances == ACCEPTED:
-        lines += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
+    accepted = (finding for finding in model.of_tolerances if finding.accepted)
+    lines += [f"accepted: {coded_line(finding)}" for finding in accepted]
     for basis, unchecked in (
         (SAMPLES, "the motion between the samples is not checked"),
         (POSE, "no motion is checked"),

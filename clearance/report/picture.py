@@ -20,7 +20,7 @@ from clearance.findings.limit_lines import moment_line
 from clearance.findings.verdict import Verdict
 from clearance.record.record import Record
 from clearance.record.replay import Replay
-from clearance.record.wording import limits_text
+from clearance.record.wording import limits_text, of_rule
 from clearance.report.raster import Screen, Surface, drawn_segments, surface
 from clearance.report.still import (
     COLOURS,
@@ -62,8 +62,8 @@ KEY_LIGHT = np.array([0.36, -0.48, 0.8])
 _INK, _FAINT, _SUSPECT = "#17202b", "#5d6975", "#6b2fa0"
 _DOTS_PER_INCH, _LETTERS_OF_SIZE_1 = 100, 1500
 
-MOST_WARNINGS = 4
-"""Lines of warnings in a picture."""
+MOST_NOTES = 8
+"""Lines below the limits in a picture."""
 
 
 def png_of(record: Record, replay: Replay, verdict: Verdict) -> bytes:
@@ -96,24 +96,35 @@ def _with_inset(still: Still) -> np.ndarray:
     return image
 
 
-def _most(warnings: Sequence[str]) -> Sequence[str]:
-    """The first warnings, and how many more there are."""
-    if len(warnings) <= MOST_WARNINGS:
-        return warnings
-    more = len(warnings) - MOST_WARNINGS + 1
-    return (*warnings[: MOST_WARNINGS - 1], f"and {more} more, in the report")
+def _notes(verdict: Verdict) -> list[str]:
+    """What bears on the verdict beside the clearance, what fails it first, and how many more lines there are."""
+    found = [
+        *(f"suspect {one.kind}: {one.line}" for one in verdict.suspects),
+        *verdict.beside,
+        *verdict.unproven_motion,
+        *verdict.waiver_faults,
+        *filter(None, (verdict.unproven, verdict.at_level)),
+        *(f"waived: {text}" for text in verdict.waived),
+        *verdict.with_tolerances,
+        *([f"nearest of all {verdict.nearest}"] if verdict.nearest else []),
+        *(f"warning: {text}" for text in verdict.warnings),
+    ]
+    if len(found) <= MOST_NOTES:
+        return found
+    more = len(found) - MOST_NOTES + 1
+    return [*found[: MOST_NOTES - 1], f"and {more} more, in the report"]
 
 
 def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
-    """The verdict, the moment, the limits and what was not checked, and warnings, one below the other."""
-    hue, limits = COLOURS.get(verdict.shade), record.case.limits
-    colour = _SUSPECT if hue is None else f"#{hue:06x}"
-    below = ", ".join([limits_text(limits.fail, limits.warn), *verdict.scope])
+    """The verdict, the moment, the limits that judge it, what was not checked, and notes, one below the other."""
+    hue, judge = COLOURS.get(verdict.shade), verdict.worst.rule
+    colour, limits = _SUSPECT if hue is None else f"#{hue:06x}", record.rule(judge).limits
+    below = ", ".join([limits_text(limits.fail, limits.warn) + of_rule(judge), *verdict.scope])
     lines = (
         (f"{verdict.headline(str.upper)}   {record.case.name}", 15, colour, "bold"),
         (moment_line(record, verdict.worst), 12, _INK, "normal"),
         (below, 10, _FAINT, "normal"),
-        *((f"warning: {text}", 10, _FAINT, "normal") for text in _most(verdict.warnings)),
+        *((text, 10, _FAINT, "normal") for text in _notes(verdict)),
     )
     top = MARGIN
     box = {"facecolor": "#fafbfc", "alpha": 0.8, "edgecolor": "none", "pad": 2}

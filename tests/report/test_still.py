@@ -9,11 +9,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import clearance as cl
 from clearance.report import picture
 from clearance.report.glb import glb_of
 from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of
 from clearance.report.raster import Screen, surface
 from clearance.report.still import COLOURS, Camera, at_gap, overview, rgb, still_of
+from tests.findings.test_verdict import CASES
+from tests.made_cases import at
+from tests.profiles.moving import slab, turning
+from tests.report.cells import box
 from tests.report.made import replay_of, run_of
 from tests.report.records import record
 
@@ -97,6 +102,41 @@ def test_names_of_any_letters_are_words_not_formulas(monkeypatch):
     run = record()
     odd = replace(run, case=replace(run.case, name="$x^{2$ 机器人 " + "long " * 90))
     assert png_of(odd, replay_of(odd), run_of(odd).verdict).startswith(b"\x89PNG")
+
+
+def words_of(run, monkeypatch) -> str:
+    """All that is written into the picture of a record."""
+    from matplotlib.figure import Figure
+
+    found = []
+    monkeypatch.setattr(
+        picture, "_with_inset", lambda still: np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+    )
+    monkeypatch.setattr(Figure, "text", lambda self, x, y, text, **style: found.append(text))
+    png_of(run, replay_of(run), run_of(run).verdict)
+    return "\n".join(found)
+
+
+@pytest.mark.parametrize("name", ["suspect", "profile", "rule", "warned"])
+def test_all_that_bears_on_the_verdict_is_in_the_picture(name, monkeypatch):
+    run, status, _ = CASES[name]
+    verdict, words = run_of(run).verdict, words_of(run, monkeypatch)
+    assert verdict.status == status
+    told = [*verdict.beside, *verdict.warnings, *(one.line for one in verdict.suspects)]
+    assert told and all(text[:100] in words for text in told)
+
+
+def test_the_limits_in_the_picture_are_those_that_judge(monkeypatch):
+    posts = [
+        box("post", (0.1, 0.1, 0.1), at(0.0, 0.6)),
+        box("knob", (0.1, 0.1, 0.1), at(0.0, -0.4)),
+    ]
+    rules = (cl.Rule(("*", "knob"), name="tight", fail=0.4, warn=0.45),)
+    case = turning(slab([0.0, -0.05, 0.0], [0.5, 0.05, 0.1]), [0.0, 0.5, 1.0])
+    case = replace(case, obstacles=tuple(posts), limits=cl.Limits(0.001, 0.05, rules=rules))
+    words = words_of(cl.check(case).record, monkeypatch)
+    limits = "fail below 400 mm, warn below 450 mm of rule 'tight'"
+    assert words.splitlines()[2].startswith(limits)
 
 
 RUN = record()
