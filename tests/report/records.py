@@ -26,6 +26,7 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import DEFAULT
 from clearance.world.timeline import timeline_of
 from clearance.world.trajectory import Trajectory
+from tests.made_cases import at
 from tests.report.step_rows import rows_of
 
 LIMITS = Limits(fail=0.01, warn=0.06)
@@ -46,22 +47,13 @@ def box(low, high, excess=0.0) -> Polyhedron:
     )
 
 
-def moved(x=0.0, y=0.0, z=0.0) -> np.ndarray:
-    """A pose without a turn."""
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
-
-
 def arm(name="arm") -> Robot:
     """Base, two turning links and a sliding gripper."""
     turning, sliding = JointKind.REVOLUTE, JointKind.PRISMATIC
     joints = (
-        Joint("pan", turning, "base", "upper", moved(z=0.3), np.array([0.0, 0, 1]), -3.0, 3.0),
-        Joint(
-            "lift", turning, "upper", "fore", moved(x=0.4, z=0.2), np.array([0.0, 1, 0]), -2.0, 2.0
-        ),
-        Joint("slide", sliding, "fore", "gripper", moved(x=0.4), np.array([1.0, 0, 0]), 0.0, 0.2),
+        Joint("pan", turning, "base", "upper", at(z=0.3), np.array([0.0, 0, 1]), -3.0, 3.0),
+        Joint("lift", turning, "upper", "fore", at(x=0.4, z=0.2), np.array([0.0, 1, 0]), -2.0, 2.0),
+        Joint("slide", sliding, "fore", "gripper", at(x=0.4), np.array([1.0, 0, 0]), 0.0, 0.2),
     )
     bodies = (
         Body("base", box((-0.1, -0.1, 0), (0.1, 0.1, 0.3)), "base.stl"),
@@ -83,10 +75,10 @@ def scene() -> tuple[Obstacle, ...]:
     return (
         Obstacle(
             Body("post", box((-0.03, -0.03, 0), (0.03, 0.03, 1.2), excess=1e-4), "cylinder"),
-            moved(0.75, 0.55),
+            at(0.75, 0.55),
         ),
-        Obstacle(Body("table", box((-0.3, -0.3, 0), (0.3, 0.3, 0.16)), "box"), moved(0.75, -0.35)),
-        Obstacle(Body("wall </script>", box((-0.02, -1, 0), (0.02, 1, 1.4)), "box"), moved(-0.7)),
+        Obstacle(Body("table", box((-0.3, -0.3, 0), (0.3, 0.3, 0.16)), "box"), at(0.75, -0.35)),
+        Obstacle(Body("wall </script>", box((-0.02, -1, 0), (0.02, 1, 1.4)), "box"), at(-0.7)),
     )
 
 
@@ -110,7 +102,7 @@ def motion(n_steps=240, robot: Robot | None = None, base: np.ndarray | None = No
 
 def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
     """The measured swing; `changes` replace fields of the record."""
-    motions = tuple(motion(n_steps, arm(f"arm_{i}"), moved(z=0.001 * i)) for i in range(n_robots))
+    motions = tuple(motion(n_steps, arm(f"arm_{i}"), at(z=0.001 * i)) for i in range(n_robots))
     sources = (
         Source("/home/someone/cell/case.yaml", "ab" * 32, 1234),
         Source("/home/someone/robots/arm.urdf", "cd" * 32, 9876),
@@ -240,19 +232,7 @@ def measure(motions, case):
 
 def table(rows, limits: Limits) -> Table:
     """The steps table with its status column."""
-    names = (
-        "step",
-        "time",
-        "clearance",
-        "link",
-        "obstacle",
-        "link_x",
-        "link_y",
-        "link_z",
-        "obstacle_x",
-        "obstacle_y",
-        "obstacle_z",
-    )
+    names = ("step", "time", "clearance", *columns_of(LINK_AND_OBSTACLE))
     columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
     gaps = np.array(columns["clearance"])
     codes = np.select([gaps <= 0, gaps < limits.fail, gaps < limits.warn], [3, 2, 1], default=0)

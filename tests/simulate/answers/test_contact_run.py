@@ -13,7 +13,7 @@ from clearance.world.case import Case
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
-from tests.report.records import moved
+from tests.made_cases import at
 
 ROOT = Path(__file__).parents[3]
 
@@ -71,5 +71,5 @@ def touching_case(world):
     robot = Robot("cart", ("ground", "cube"), (joint,), (body,))
     near = 0.1 * np.array([1.0, 1e-16, 0.0, -1e-16, -2e-16]) - 0.1
     path = Trajectory(np.arange(5.0), ("rail",), near[:, None])
-    wall = Obstacle(Body("wall", cl.box((0.2, 1.0, 1.0))), world @ moved(0.2))
+    wall = Obstacle(Body("wall", cl.box((0.2, 1.0, 1.0))), world @ at(0.2))
     return Case("touch", (PlacedRobot(robot, path, world),), (wall,))

@@ -29,8 +29,8 @@ from clearance.world.timing import Window
 from clearance.world.trajectory import CornerZone, Deviation, Trajectory
 from tests import cells
 from tests.examples import examples
-from tests.made_cases import l_prism
-from tests.report.records import arm, moved
+from tests.made_cases import at, l_prism
+from tests.report.records import arm
 from tests.world.test_shortfall import off
 
 WITH_MANIFOLD = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
@@ -44,7 +44,7 @@ def slider(name, axis, start, stop, base=(0.0, 0.0, 0.0), n_steps=5) -> Case:
     robot = Robot(name, ("ground", "cube"), (joint,), (Body("cube", cl.box((0.2, 0.2, 0.2))),))
     times = np.arange(float(n_steps))
     path = Trajectory(times, ("rail",), np.linspace(start, stop, n_steps)[:, None])
-    return Case(name, (PlacedRobot(robot, path, moved(*base)),), ())
+    return Case(name, (PlacedRobot(robot, path, at(*base)),), ())
 
 
 def swinging(name, base, n_steps=12, excluded=()) -> Case:
@@ -143,7 +143,7 @@ def greatest_escape(pieces, motion, n_parts):
 @pytest.mark.parametrize("seed", range(2))
 def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
     """Velocities that have nothing to do with the positions: joints swing far beyond their samples."""
-    motion = kinematic_motion(swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6).robots[0])
+    motion = kinematic_motion(swinging("arm", at(0.3, -0.2, 0.1), n_steps=6).robots[0])
     random = np.random.default_rng(seed)
     wild = random.normal(size=motion.positions.shape) * random.uniform(5.0, 20.0)
     on_cubics = dataclasses.replace(motion, velocities=wild)
@@ -184,9 +184,9 @@ def test_refusals():
     with pytest.raises(BadInput, match=r"same spot; give each its own robot\.base"):
         shared_workspace([one, slider("two", (0, 1, 0), -1.0, 1.0)])
     table = Body("table", cl.box((1.0, 1.0, 0.1)))
-    here = dataclasses.replace(one, obstacles=(Obstacle(table, moved(0.0, 2.0)),))
+    here = dataclasses.replace(one, obstacles=(Obstacle(table, at(0.0, 2.0)),))
     there = slider("two", (0, 1, 0), -1.0, 1.0, base=(0.3, 0.0, 0.0))
-    there = dataclasses.replace(there, obstacles=(Obstacle(table, moved(1.0, 2.0)),))
+    there = dataclasses.replace(there, obstacles=(Obstacle(table, at(1.0, 2.0)),))
     with pytest.raises(BadInput, match="'table' stands elsewhere in 'two' than in 'one'"):
         shared_workspace([here, there])
     with pytest.raises(BadDimension, match="within is nan m"):
@@ -275,7 +275,7 @@ def test_a_base_that_moves_takes_its_robot_to_what_it_alone_would_not_reach():
     rail = slider("rail", (1, 0, 0), 0.0, 2.0)
     rider = slider("rider", (0, 1, 0), 0.0, 0.5)
     other = slider("other", (0, 0, 1), -1.0, 1.0, base=(2.0, 0.5, 0.0))
-    mount = {1: Mount("rail/cube", moved(0.0, 0.0, 0.5))}
+    mount = {1: Mount("rail/cube", at(0.0, 0.0, 0.5))}
     found = shared_workspace([together(rail, rider, other, mounts=mount)])
     (pair,) = found.links
     assert (pair.robot_a, pair.robot_b) == ("rider", "other")
@@ -294,7 +294,7 @@ def test_a_part_in_hand_reaches_where_the_hand_does_not(shape):
     """A scan counts as the box about its balls."""
     one = slider("one", (1, 0, 0), 0.0, 1.0)
     two = slider("two", (0, 0, 1), -1.0, 1.0, base=(1.0, 0.5, 0.0))
-    part = Obstacle(Body("part", shape), moved(0.0, 0.5, 0.0))
+    part = Obstacle(Body("part", shape), at(0.0, 0.5, 0.0))
     cell = together(one, two, obstacles=[part])
     assert shared_workspace([cell]).region.is_empty
     found = shared_workspace([replace(cell, carries=(Carry("part", "one/cube", Window(0.0)),))])
@@ -308,7 +308,7 @@ def test_a_part_in_hand_reaches_where_the_hand_does_not(shape):
 @WITH_MANIFOLD
 def test_two_robots_on_each_other_alone_are_refused():
     rail, rider = slider("rail", (1, 0, 0), 0.0, 2.0), slider("rider", (0, 1, 0), 0.0, 0.5)
-    cell = together(rail, rider, mounts={1: Mount("rail/cube", moved(0.0, 0.0, 0.5))})
+    cell = together(rail, rider, mounts={1: Mount("rail/cube", at(0.0, 0.0, 0.5))})
     with pytest.raises(BadInput, match="two robots of which neither stands on the other"):
         shared_workspace([cell])
 
@@ -319,7 +319,7 @@ def test_what_is_mounted_on_a_link_belongs_to_its_robot():
     one = slider("one", (1, 0, 0), -0.5, 0.5)
     two = slider("two", (1, 0, 0), -0.5, 0.5, base=(0.0, 1.0, 0.0))
     bar = cl.Body("bar", cl.box((0.1, 0.8, 0.1)))
-    mounted = cl.Obstacle(bar, mount=Mount("two/cube", moved(0.0, -0.6, 0.0)))
+    mounted = cl.Obstacle(bar, mount=Mount("two/cube", at(0.0, -0.6, 0.0)))
     found = shared_workspace([together(one, two, obstacles=[mounted])])
     (pair,) = found.links
     assert (pair.link_a, pair.link_b) == ("cube", "bar")

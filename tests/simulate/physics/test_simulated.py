@@ -18,7 +18,7 @@ from clearance.world.placed_robot import PlacedRobot
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
-from tests.report.records import moved
+from tests.made_cases import at
 from tests.simulate.physics.test_bullet import cart, tilted_base
 
 PLATE = """<robot name="plate">
@@ -43,13 +43,13 @@ def plate(tmp_path, angles) -> PlacedRobot:
 
 
 def post(**changes) -> Obstacle:
-    return Obstacle(Body("post", cl.box((0.1, 0.1, 0.1))), moved(0.0, 0.0, 3.0), **changes)
+    return Obstacle(Body("post", cl.box((0.1, 0.1, 0.1))), at(0.0, 0.0, 3.0), **changes)
 
 
 def test_each_of_several_robots_moves_by_its_own_table_as_it_would_alone(tmp_path):
     one, two = cart(tmp_path), cart(tmp_path, effort=0.0)
     slow = Trajectory(np.array([0.0, 2.0]), ("rail",), np.array([[0.0], [0.3]]))
-    two = named(two, "two", trajectory=slow, world_from_base=moved(0.0, 2.0))
+    two = named(two, "two", trajectory=slow, world_from_base=at(0.0, 2.0))
     found = simulated_motions(Case("both", (one, two), (post(),)))
     for motion, placed in zip(found, (one, two), strict=True):
         alone = simulated_motion(placed)
@@ -114,7 +114,7 @@ def test_a_table_that_is_followed_faster_is_simulated_faster(tmp_path):
 
 def test_what_is_on_a_robot_has_no_weight_and_that_is_told(tmp_path):
     one = cart(tmp_path)
-    rider = named(one, "rider", mount=Mount("cart/slider", moved(0.0, 1.0)))
+    rider = named(one, "rider", mount=Mount("cart/slider", at(0.0, 1.0)))
     lamp = Obstacle(Body("lamp", cl.box((0.1, 0.1, 0.1))), mount=Mount("rider/slider"))
     case = Case(
         "made", (one, rider), (post(), lamp), carries=(Carry("post", "rider/slider", Window(0.2)),)
@@ -127,7 +127,7 @@ def test_what_is_on_a_robot_has_no_weight_and_that_is_told(tmp_path):
 
 
 def test_a_robot_without_a_trajectory_stands_and_that_is_told(tmp_path):
-    still = named(cart(tmp_path), "still", trajectory=None, world_from_base=moved(0.0, 2.0))
+    still = named(cart(tmp_path), "still", trajectory=None, world_from_base=at(0.0, 2.0))
     _, found = simulated_motions(Case("made", (cart(tmp_path), still), (post(),)))
     assert found.n_steps == 1 and "stands as given and is not simulated" in found.notes[0]
 
@@ -143,7 +143,7 @@ def test_a_robot_whose_file_nobody_gives_is_refused_with_the_way_out(tmp_path):
 @pytest.mark.parametrize("kind", ["robots", "rides", "moves", "carried", "loops"])
 def test_what_cannot_be_simulated_is_refused_in_one_line(tmp_path, kind):
     one = cart(tmp_path)
-    two = named(one, "two", world_from_base=moved(0.0, 2.0))
+    two = named(one, "two", world_from_base=at(0.0, 2.0))
     turned = np.array([[0.0, 0, 0, 1]] * 2)
     table = PoseTable(np.array([0.0, 1.0]), np.zeros((2, 3)), turned)
     door = Obstacle(Body("door", cl.box((0.1, 0.1, 0.1))), moves=table)
@@ -167,7 +167,7 @@ def test_what_cannot_be_simulated_is_refused_in_one_line(tmp_path, kind):
 
 def test_a_whole_run_of_two_robots_and_a_part_in_hand(tmp_path):
     one = cart(tmp_path)
-    two = named(one, "two", world_from_base=moved(0.0, 2.0), timing=Timing(start=0.5))
+    two = named(one, "two", world_from_base=at(0.0, 2.0), timing=Timing(start=0.5))
     case = Case("made", (one, two), (post(),), carries=(Carry("post", "two/slider", Window(0.7)),))
     record = cl.answer(cl.Question(case, motion="simulated", certify=False))
     record = getattr(record, "record", record)
