@@ -2,8 +2,7 @@
 that hold a quaternion, for a joint that turns by yaw, pitch and roll.
 
 A free base is logged as `base/qx` to `base/qw` where its joint `base` goes by `base/yaw`, `base/pitch` and
-`base/roll`. Not for: reading the table (`trajectory_csv`), nor tables of poses (`pose_table_file`), which keep
-their quaternions.
+`base/roll`. Not for: reading the table (`tables`), nor tables of poses, which keep their quaternions.
 """
 
 from __future__ import annotations
@@ -15,13 +14,13 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from clearance.errors import BadMotion, UnknownJoint
-from clearance.formats.motion.pose_table_file import refuse_off_length_one
+from clearance.errors import BadMotion, BadPose, UnknownJoint
 from clearance.formats.table.column_units import UNITS, VELOCITY, Column
 from clearance.formats.table.csv_table import TIME, UNNAMED, TextTable, line_of_row
 from clearance.formats.text.notes import note_on_rounded
 from clearance.formats.text.yaml_text import flow
 from clearance.geometry.quaternions import of_unit_length, yaw_pitch_roll
+from clearance.tolerance import ROUNDED_ROTATION
 from clearance.world.joint_positions import turns
 from clearance.world.mimics import Follower, followers
 from clearance.world.notice import listed
@@ -300,3 +299,21 @@ def by_angles(
         )
     found = [columns[name] for name in joints_by_angles(names, turned)]
     return np.column_stack(found), [*notes, *note_on_rounded(n_rounded)]
+
+
+def refuse_off_length_one(quaternions: np.ndarray, table: TextTable) -> None:
+    """Nothing, if quaternions (n, 4) are of length one, or rounded to three digits or so.
+
+    Raises:
+        BadPose: with the line of the table.
+    """
+    with np.errstate(over="ignore"):
+        lengths = np.linalg.norm(quaternions, axis=1)
+    rows = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROUNDED_ROTATION))
+    if len(rows):
+        row = int(rows[0])
+        raise BadPose(
+            f"the quaternion {quaternions[row].tolist()} has length {lengths[row]:.9g}",
+            where=f"line {line_of_row(table, row)}",
+            valid=f"qx,qy,qz,qw of length 1 within {ROUNDED_ROTATION:g}, the scalar last",
+        )

@@ -1,7 +1,7 @@
 """YAML and JSON dumps of stamped poses to a pose table: PoseStamped, PoseWithCovarianceStamped, Path, transforms
 of one frame, as `ros2 topic echo` and `rostopic echo` write them.
 
-Not for: what a document is (`message.documents`), nor tables (`pose_table_file`).
+Not for: what a document is (`message.documents`), nor tables (`tables`).
 """
 
 from __future__ import annotations

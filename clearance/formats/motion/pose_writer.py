@@ -1,7 +1,7 @@
 """A pose table to a file that `requests` reads back: CSV, or stamped poses in YAML or JSON.
 
 Every number is written so that it comes back bit for bit, quaternions as their file had them; times of messages
-are whole nanoseconds. What would not come back is refused. Not for: reading (`pose_table_file`, `pose_messages`).
+are whole nanoseconds. What would not come back is refused. Not for: reading (`tables`, `pose_messages`).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The table is parsed by numpy in one pass, block by block, so that memory holds its numbers and never
 its text; only when something is wrong is the text gone through again, slowly, to name the line. Not
-for: what the columns are (`trajectory_csv`, `pose_table_file`).
+for: what the columns are (`motion.tables`).
 """
 
 from __future__ import annotations

@@ -1,8 +1,10 @@
-"""CSV to a trajectory: a `time` column [s] and one column a joint, by name, in any order.
+"""CSV to a trajectory: a `time` column [s] and one column a joint, by name, in any order. And to a pose table:
+columns `time` [s], `x,y,z` [m] and `qx,qy,qz,qw`.
 
 A column `<joint>/velocity` [rad/s or m/s], named as ros2_control names its interfaces, gives the joint's velocity;
 all joints have one or none. What is written otherwise (units, separators, no header, no times) is told in a note.
-Not for: which joints the robot has (`case.motion_notes`), nor how a table is parsed (`csv_table`).
+Not for: which joints the robot has (`case.motion_notes`), how a table is parsed (`csv_table`), nor where between
+its rows a body is (`world.pose_table`).
 """
 
 from __future__ import annotations
@@ -13,16 +15,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadMotion, BadShape, BadSyntax, BadTime, MissingKey, nearest_name
+from clearance.errors import (
+    BadMotion,
+    BadPose,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    MissingKey,
+    UnknownKey,
+    nearest_name,
+)
 from clearance.formats.motion.joint_columns import (
     by_angles,
     joints_by_angles,
     left_out,
+    refuse_off_length_one,
     remedy,
     require_joints,
     turned_joints,
 )
-from clearance.formats.motion.requests import ReadTrajectory, TrajectoryRequest
+from clearance.formats.motion.requests import (
+    PoseRequest,
+    PoseSamples,
+    ReadSamples,
+    ReadTrajectory,
+    TrajectoryRequest,
+    samples_of,
+)
 from clearance.formats.schema.timed import Choice
 from clearance.formats.table.column_units import (
     VELOCITY,
@@ -43,10 +62,13 @@ from clearance.formats.table.csv_table import (
     columns_of,
     first_row,
     header_of,
+    line_of_row,
     refuse_standing_time,
     require_time,
 )
 from clearance.formats.table.table_start import as_written, notes_on_writing
+from clearance.formats.text.file_start import POSE_COLUMNS
+from clearance.tolerance import LARGEST
 from clearance.world.trajectory import Trajectory
 
 
@@ -205,4 +227,62 @@ def _refuse_unmatched_velocities(names: list[str]) -> None:
         raise MissingKey(
             f"joint {without[0]!r} has no column {without[0] + VELOCITY!r}, joint {given[0]!r} has one",
             valid="velocities of all joints or of none",
+        )
+
+
+_POSITION, _QUATERNION = POSE_COLUMNS[1:4], POSE_COLUMNS[4:]
+_SLIDES = dict.fromkeys(_POSITION, False)
+"""Which columns are lengths, as `column_units` asks of joints: none turns."""
+
+
+def read_csv_poses(request: PoseRequest) -> ReadSamples:
+    """The samples in a CSV file.
+
+    Raises:
+        BadSyntax, BadShape, MissingKey, UnknownKey, DuplicateName, NotFinite, BadTime, BadPose: with the line.
+        BadInput: a unit that a column cannot have.
+    """
+    table = as_written(request.opened)
+    header = header_of(table, ", ".join(POSE_COLUMNS[1:]))
+    columns = with_time(columns_in(header, _SLIDES, ("rad", request.length or "m")), _SLIDES)
+    names = [column.name for column in columns]
+    require_time(names, ", ".join(POSE_COLUMNS[1:]))
+    _require_columns(names)
+    by_name = {column.name: column for column in columns}
+    for name in _QUATERNION:
+        if by_name[name].unit is not None:
+            fault = f"column {by_name[name].header!r} names a unit"
+            raise BadMotion(fault, valid="a quaternion has none")
+    parts = [[by_name[name] for name in part] for part in ([TIME], _POSITION, _QUATERNION)]
+    times, positions, quaternions = _values(table, header, parts)
+    refuse_standing_time(times[:, 0], table)
+    _refuse_far(positions, table)
+    refuse_off_length_one(quaternions, table)
+    notes = (*notes_on_writing(table), *notes_on_names(header, columns), *note_on_units(columns))
+    return samples_of(PoseSamples(times[:, 0], positions, quaternions), notes)
+
+
+def _require_columns(names: list[str]) -> None:
+    for name in POSE_COLUMNS:
+        if name not in names:
+            raise MissingKey(
+                f"there is no column {name!r} in the header {','.join(names)!r:.80}",
+                valid=f"a table of poses has the columns {','.join(POSE_COLUMNS)}",
+            )
+    for name in names:
+        if name not in POSE_COLUMNS:
+            raise UnknownKey(
+                f"column {name!r} is not of a table of poses",
+                valid=nearest_name(name, POSE_COLUMNS),
+            )
+
+
+def _refuse_far(positions: np.ndarray, table: TextTable) -> None:
+    far = np.abs(positions).max(axis=1)
+    rows = np.flatnonzero(far > LARGEST)
+    if len(rows):
+        raise BadPose(
+            f"a position is {far[rows[0]]:g} m away",
+            where=f"line {line_of_row(table, int(rows[0]))}",
+            valid=f"{LARGEST:g} m or less",
         )
