@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import harness  # first: it sets the number of threads before numpy is loaded
@@ -50,22 +51,12 @@ def main(words: list[str] | None = None) -> list[Row]:
     return rows
 
 
-def enclosure(asked) -> Iterator[Row]:
-    """Of each arm: samples between samples at which a joint is farther off than proven, and how tight that is."""
+def enclosure(asked, carriers=None) -> Iterator[Row]:
+    """Of each arm: samples between samples at which a joint is farther off than proven, and how tight that is;
+    with `carriers` for lines and arcs on what moves meanwhile.
+    """
     for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, random_motions(file, asked.motions), asked)
-
-
-def turning(asked) -> Iterator[Row]:
-    """The same for lines and arcs on a plate that turns meanwhile."""
-    for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, random_motions(file, asked.motions, Plate), asked)
-
-
-def conveyor(asked) -> Iterator[Row]:
-    """The same for lines and arcs on a belt that moves by a table of its own."""
-    for name, file in arm_files(asked.arms).items():
-        yield enclosed(name, random_motions(file, asked.motions, Belt), asked)
+        yield enclosed(name, random_motions(file, asked.motions, carriers), asked)
 
 
 def enclosed(name: str, motions: Iterator[Motion], asked) -> Row:
@@ -228,8 +219,8 @@ def boxes_about(start: np.ndarray, draw: np.random.Generator) -> Iterator[dict]:
 
 PARTS = {
     "enclosure": enclosure,
-    "turning": turning,
-    "conveyor": conveyor,
+    "turning": partial(enclosure, carriers=Plate),
+    "conveyor": partial(enclosure, carriers=Belt),
     "peers": peers,
     "zones": zones,
     "table": table,

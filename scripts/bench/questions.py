@@ -19,7 +19,7 @@ from inputs import Scene, Solid, scenes, solid
 from clearance.crosscheck.triangles import TriangleSoup
 from clearance.world.body import Body
 from scripts.makers.body_pairs import body_pairs
-from scripts.makers.polygon_pairs import FAMILIES
+from scripts.makers.polygon_pairs import FAMILIES, from_least_corner
 
 TRUTHS = Path(__file__).parent / "truths"
 
@@ -74,17 +74,10 @@ def _rows(name: str) -> list[list[str]]:
 
 
 def _polygon_question(family: str, p: np.ndarray, q: np.ndarray, exact: Decimal) -> Question:
-    p, q = _from_least_corner(p), _from_least_corner(q)
+    p, q = from_least_corner(p), from_least_corner(q)
     size = max(np.ptp(p, axis=0).max(), np.ptp(q, axis=0).max())
     a, b = fan("p", p), fan("q", q, stands=True)
     return Question(family, a, b, np.eye(4), np.eye(4), float(size), exact)
-
-
-def _from_least_corner(polygon: np.ndarray) -> np.ndarray:
-    """The polygon read so that all take the same fan of triangles, where rounding has bent it."""
-    doubled = [tuple(x) for x in polygon.tolist()] * 2
-    n = len(polygon)
-    return np.roll(polygon, -min(range(n), key=lambda i: doubled[i : i + n]), axis=0)
 
 
 def fan(name: str, corners: np.ndarray, stands: bool = False) -> Solid:

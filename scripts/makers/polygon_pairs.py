@@ -13,6 +13,13 @@ import numpy as np
 Pairs = tuple[np.ndarray, np.ndarray]
 
 
+def from_least_corner(polygon: np.ndarray) -> np.ndarray:
+    """The polygon read so that all take the same fan of triangles, where rounding has bent it."""
+    doubled = [tuple(x) for x in polygon.tolist()] * 2
+    n = len(polygon)
+    return np.roll(polygon, -min(range(n), key=lambda i: doubled[i : i + n]), axis=0)
+
+
 def rotations(random: np.random.Generator, n: int) -> np.ndarray:
     """(n, 3, 3) rotation matrices, uniformly distributed."""
     w, x, y, z = random.normal(size=(n, 4)).T

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from scripts.makers.body_pairs import BodyPair, body_pairs, placed
-from scripts.makers.polygon_pairs import FAMILIES
+from scripts.makers.polygon_pairs import FAMILIES, from_least_corner
 from tests import oracle
 from tests.made_cases import faces_of
 
@@ -44,13 +44,6 @@ def polygon_rows() -> Iterator[tuple]:
 def polygon_truth(p: np.ndarray, q: np.ndarray) -> str:
     """The distance of two polygons."""
     return digits(oracle.polygon_distance_sq(from_least_corner(p), from_least_corner(q)))
-
-
-def from_least_corner(polygon: np.ndarray) -> np.ndarray:
-    """The polygon read so that all take the same fan of triangles, where rounding has bent it."""
-    doubled = [tuple(x) for x in polygon.tolist()] * 2
-    n = len(polygon)
-    return np.roll(polygon, -min(range(n), key=lambda i: doubled[i : i + n]), axis=0)
 
 
 def body_rows() -> Iterator[tuple]:

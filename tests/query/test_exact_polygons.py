@@ -10,18 +10,12 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance import polygon_distance, polygon_distances
+from scripts.makers.polygon_pairs import from_least_corner
 from tests import oracle
 from tests.examples import examples, share_of
 from tests.oracle.polygons import polygon_distance_sq
 from tests.oracle.rationals import root
 from tests.strategies import FAMILIES, polygon_pairs
-
-
-def from_least_corner(polygon):
-    """The polygon read from its least corner: the fan that is measured (see clearance/query/NOTES.md)."""
-    n = len(polygon)
-    first = min(range(n), key=lambda i: [tuple(polygon[(i + k) % n]) for k in range(n)])
-    return np.roll(polygon, -first, axis=0)
 
 
 def exact_sq(p, q):
