@@ -111,11 +111,11 @@ def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
     if found.gained is not None:
         yield f"  area      {found.lost:.6g}{square} only in A, {found.gained:.6g}{square} only in B"
     for side, drawn in (("A", found.a), ("B", found.b)):
+        yield from (f"  note      {side}: {note}" for note in drawn.notes)
         if drawn.region_fault:
             yield f"  note      no areas: {drawn.region_fault}"
         if drawn.profile is not None:
             yield f"  sweep {side}   exceeds what is swept by at most {scale * drawn.profile.bound:.4g}{unit}"
-            yield from (f"  note      {side}: {note}" for note in drawn.profile.notes)
     for one in found.beyond[:MOST_BEYOND]:
         yield (
             f"  beyond    on {one.outline.upper()}: {scale * one.length:.6g} long, up to "
@@ -232,7 +232,7 @@ def fit(
         found = fitted(sketch, outline, mode, free=names, margin=margin_mm)
     found.sketch.save(out)
     _print_fit(found)
-    for note in () if outline.profile is None else outline.profile.notes:
+    for note in outline.notes:
         click.echo(f"note: {outline.name}: {note}")
     click.echo(f"written {out}")
     if picture is not None:

@@ -2,7 +2,7 @@
 
 LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space, in metres where the
 header names a unit ($INSUNITS), else as the numbers stand. All lie in one plane z = const. Entities that meet end
-to end become one contour. Not for: blocks, choosing layers, writing.
+to end become one contour. Not for: blocks, writing.
 """
 
 from __future__ import annotations
@@ -30,6 +30,10 @@ _METRES = {
 }  # fmt: skip
 """[m] the units of $INSUNITS in the DXF reference; 0 names none."""
 
+OWN_TAG, SWEPT = "clearance", "SWEPT"
+"""The custom property of drawings of ours: first what the outline promises, then its notes; and the layer of the
+whole outline, beside which links may have layers of their own."""
+
 _MOST_DEGREES = 36_000.0
 """An angle of an arc beyond a hundred turns has few digits, and is damage."""
 
@@ -38,10 +42,11 @@ _FRAME = 16
 
 
 class Drawing(NamedTuple):
-    """A curve, and whether the drawing names a unit, so that it is in metres."""
+    """A curve; whether the drawing names a unit, so that it is in metres; and notes on what the curve holds."""
 
     curve: Curve
     in_metres: bool
+    notes: tuple[str, ...] = ()
 
 
 def read_dxf(path: str | PathLike[str]) -> Curve:
@@ -77,17 +82,31 @@ def _in_metres(drawing) -> Drawing:
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _METRES:
         raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16, 21 to 24")
-    for entity in drawing.modelspace():
+    entities, note = _of_layers(list(drawing.modelspace()))
+    for entity in entities:
         _require_visible(entity, drawing.layers)
-    parts = [_curve_of(entity) for entity in drawing.modelspace()]
+    parts = [_curve_of(entity) for entity in entities]
     if not parts:
         raise BadSyntax("a model space without entities", valid=f"at least one of {KINDS}")
     curve = Curve.contours(_chained(parts))
-    _require_one_height(drawing.modelspace(), MEETING * curve.size)
+    _require_one_height(entities, MEETING * curve.size)
     metres = _METRES[unit]
     if metres != 1.0:
         curve = curve.transformed(np.diag([metres, metres, 1.0]))
-    return Drawing(curve, unit != 0)
+    own = [text for tag, text in drawing.header.custom_vars if tag == OWN_TAG]
+    return Drawing(curve, unit != 0, (*own[1:], *note))
+
+
+def _of_layers(entities: list) -> tuple[list, list[str]]:
+    """The entities that are taken: those on the layer of a sweep if there is one; and a note on several."""
+    layers = list(dict.fromkeys(entity.dxf.layer for entity in entities))
+    if len(layers) < 2:
+        return entities, []
+    names = ", ".join(map(repr, layers[:6])) + (", …" if len(layers) > 6 else "")
+    if SWEPT in layers:
+        taken = [entity for entity in entities if entity.dxf.layer == SWEPT]
+        return taken, [f"of the layers {names} only {SWEPT!r} is taken"]
+    return entities, [f"the layers {names} are taken as one outline"]
 
 
 def _require_visible(entity, layers) -> None:

@@ -35,12 +35,14 @@ class DrawnOutline:
         curve: all contours.
         profile: with makers and bounds, where it is a profile of ours.
         in_metres: its file says its unit, so that the curve is in metres; else lengths are as they stand there.
+        notes: what the curve leaves out, or rests on; one line each.
     """
 
     name: str
     curve: Curve
     profile: Profile | None = None
     in_metres: bool = False
+    notes: tuple[str, ...] = ()
 
     @cached_property
     def region(self) -> Region:
@@ -118,14 +120,16 @@ def read_outline(path: str | Path) -> DrawnOutline:
     path = Path(path)
     if path.suffix.lower() == ".dxf":
         drawing = read_drawing(path)
-        return DrawnOutline(path.name, drawing.curve, in_metres=drawing.in_metres)
+        return DrawnOutline(
+            path.name, drawing.curve, in_metres=drawing.in_metres, notes=drawing.notes
+        )
     if path.suffix.lower() not in (".yaml", ".yml"):
         return DrawnOutline(path.name, read_curve(str(path)))
     with at(str(path)):
         document = yaml_file(path, "a profile, sketch, curve file or DXF")
         if is_profile(document):
             found = profile_of(document)
-            return DrawnOutline(path.name, found.curve, found, in_metres=True)
+            return DrawnOutline(path.name, found.curve, found, in_metres=True, notes=found.notes)
         if isinstance(document, dict) and "curves" not in document and "points" in document:
             from clearance.sketch import Sketch
             from clearance.sketch.sketch_file import sketch_of

@@ -23,6 +23,7 @@ from markupsafe import escape
 from clearance.errors import BadInput
 from clearance.extras import importing
 from clearance.files import write_file
+from clearance.planar.dxf import OWN_TAG, SWEPT
 from clearance.profiles.contour import Contour
 from clearance.profiles.profile import Profile
 from clearance.profiles.profile_read import FORMAT
@@ -190,8 +191,8 @@ def _text_of(drawing, profile: Profile) -> str:
     drawing.header["$MEASUREMENT"] = 1
     drawing.header["$LUPREC"] = 8
     for line in (profile.promise, *profile.notes):
-        drawing.header.custom_vars.append("clearance", line)
-    for layer, part in {"SWEPT": profile, **profile.parts}.items():
+        drawing.header.custom_vars.append(OWN_TAG, line)
+    for layer, part in {SWEPT: profile, **profile.parts}.items():
         drawing.layers.add(layer_name(layer))
         _draw(drawing, part, layer_name(layer))
     out = io.StringIO()

@@ -8,7 +8,7 @@ import pytest
 
 from clearance.errors import BadSyntax, ClearanceError, MissingFile
 from clearance.planar.curve import Curve
-from clearance.planar.dxf import read_dxf
+from clearance.planar.dxf import read_drawing, read_dxf
 from clearance.planar.entries import BadCurve
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import minimum_distance
@@ -183,6 +183,25 @@ def test_what_is_hidden_in_a_drawing_is_no_silent_part_of_its_outline(tmp_path, 
     made.saveas(tmp_path / "d.dxf")
     with pytest.raises(BadCurve, match=r"an entity CIRCLE \(handle \w+\) " + why):
         read_dxf(tmp_path / "d.dxf")
+
+
+@pytest.mark.parametrize(
+    ("layers", "n_contours", "notes"),
+    [
+        (("0", "0"), 2, ()),
+        (("cut", "holes"), 2, ("the layers 'cut', 'holes' are taken as one outline",)),
+        (("l1", "SWEPT"), 1, ("of the layers 'l1', 'SWEPT' only 'SWEPT' is taken",)),
+    ],
+)
+def test_several_layers_are_told_and_that_of_a_sweep_is_taken_alone(
+    tmp_path, layers, n_contours, notes
+):
+    made = ezdxf.new()
+    for i, layer in enumerate(layers):
+        made.modelspace().add_circle((3 * i, 0), 1, dxfattribs={"layer": layer})
+    made.saveas(tmp_path / "d.dxf")
+    found = read_drawing(tmp_path / "d.dxf")
+    assert found.curve.contour.max() + 1 == n_contours and found.notes == notes
 
 
 SQUARE = [(0, 0), (1000, 0), (1000, 1000), (0, 1000)]

@@ -10,7 +10,14 @@ import clearance as cl
 from clearance.cli import run
 from clearance.errors import UnknownLink
 from clearance.findings.limit_lines import profile_text
-from clearance.profiles.profile_file import dxf_text, geojson_text, svg_text, yaml_text
+from clearance.profiles.outline_file import read_outline
+from clearance.profiles.profile_file import (
+    dxf_text,
+    geojson_text,
+    svg_text,
+    write_profile,
+    yaml_text,
+)
 from clearance.report.junit_cases import results_of
 from clearance.sketch import Sketch
 from clearance.world.case import ReservedSpace
@@ -94,6 +101,16 @@ def test_a_comparison_and_a_fit_tell_what_their_outline_leaves_out(tmp_path, cap
     fitted = ["--nearest", "--out", str(tmp_path / "fitted.yaml")]
     assert run(["profile", "fit", str(tmp_path / "zone.yaml"), swept, *fitted]) == 0
     assert f"note: swept.yaml: {BARE}" in capsys.readouterr().out
+
+
+def test_a_drawing_of_each_link_is_read_back_as_the_whole_with_its_notes(tmp_path):
+    swept = cl.swept_profile(case_with(hole=True), per_link=True)
+    for suffix in ("dxf", "yaml"):
+        write_profile(swept, tmp_path / f"swept.{suffix}")
+    drawn, whole = (read_outline(tmp_path / f"swept.{suffix}") for suffix in ("dxf", "yaml"))
+    assert cl.hausdorff(drawn.curve, whole.curve).distance < 1e-9
+    assert drawn.notes == (HOLE, "of the layers 'SWEPT', 'l1' only 'SWEPT' is taken")
+    assert whole.notes == (HOLE,)
 
 
 def test_a_link_without_a_shape_is_no_unknown_one(tmp_path):
