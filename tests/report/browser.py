@@ -20,6 +20,10 @@ from typing import Any
 
 import numpy as np
 
+from clearance.record.record import Record
+from clearance.run import Run
+from tests.report.made import write
+
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--mute-audio",
@@ -169,6 +173,17 @@ def chromium() -> Iterator[Page]:
     finally:
         _asked(f"close/{tab['id']}")
         loop.close()
+
+
+@contextmanager
+def opened(made: Record | Run, folder: Path) -> Iterator[Page]:
+    """The page of a report that is written below a folder, drawn; its `report` is where it is."""
+    write(made, folder / "out")
+    with chromium() as page:
+        page.report = (folder / "out" / "report.html").as_uri()
+        page.open(page.report, "window.clearance")
+        page.settle()
+        yield page
 
 
 @functools.cache

@@ -12,7 +12,7 @@ from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at
-from tests.report.browser import Page, chromium, executable
+from tests.report.browser import Page, executable, opened
 from tests.report.cells import box, cell, sliding, with_a_hole
 
 pytestmark = [
@@ -23,12 +23,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory) -> Page:
-    folder = tmp_path_factory.mktemp("cell") / "out"
-    cl.check(cell(), need="pairs").save(folder)
-    with chromium() as page:
-        page.report = (folder / "report.html").as_uri()
-        page.open(page.report, "window.clearance", width=1400, height=900)
-        page.settle()
+    with opened(cl.check(cell(), need="pairs"), tmp_path_factory.mktemp("cell")) as page:
         yield page
 
 
@@ -106,9 +101,7 @@ def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path
     )
     allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
     case = cell((), robots, (box("post", (0.1, 0.1, 2), at(0.6)),), (), allow=allow)
-    cl.check(case).save(tmp_path / "out")
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+    with opened(cl.check(case), tmp_path) as page:
         show(page, 2)
         assert "nothing measured" in readout(page) and "no pair is left" in readout(page)
         low, high = page.run("window.clearance.chart.range")
@@ -118,9 +111,7 @@ def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path
 
 def test_nothing_is_drawn_as_proven_with_tolerances_where_a_recording_is_not_measured(tmp_path):
     budget = Budget(obstacles={"post": ObstacleTolerance(surface=0.001)})
-    cl.check(replace(with_a_hole(), tolerance=budget)).save(tmp_path / "out")
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+    with opened(cl.check(replace(with_a_hole(), tolerance=budget)), tmp_path) as page:
         lines = "[...document.querySelectorAll('path.filled, g > .curve.more')]"
         drawn = page.run(f"{lines}.map((one) => one.getAttribute('d').split('M').length - 1)")
         assert drawn == [2, 2, 2]
@@ -133,10 +124,8 @@ def test_the_curve_has_a_gap_where_a_recording_is_not_measured(tmp_path):
     bounds = run.steps.select(["lower_bound", "upper_bound"]).to_pylist()
     assert [row["lower_bound"] is None for row in bounds] == [i == 3 for i in range(7)]
     assert bounds[3] == {"lower_bound": None, "upper_bound": None}
-    run.save(tmp_path / "out")
-    assert "inf" not in (tmp_path / "out" / "steps.csv").read_text()
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+    with opened(run, tmp_path) as page:
+        assert "inf" not in (tmp_path / "out" / "steps.csv").read_text()
         drawn = page.run("document.querySelector('.curve.status.clear').getAttribute('d')")
         assert drawn.count("M") == 2
         assert run.steps["clearance"][3].as_py() == 0.29999999999999993

@@ -11,7 +11,7 @@ from clearance.report.glb import glb_of
 from clearance.report.picture import png_of
 from clearance.report.still import MOST_POINTS, as_solids, still_of
 from tests.made_cases import flying
-from tests.report.browser import chromium, executable
+from tests.report.browser import executable, opened
 
 STANDING = (0xB9, 0xB4, 0xA8)
 """The colour of obstacles."""
@@ -36,12 +36,9 @@ def below() -> np.ndarray:
 @pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_points(tmp_path):
-    cl.check(scanned()).save(tmp_path / "out")
-    text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    assert "3,600 balls of 20 mm" in text
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
-        page.settle()
+    with opened(cl.check(scanned()), tmp_path) as page:
+        text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+        assert "3,600 balls of 20 mm" in text
         pixels = page.pixels("#pane").astype(int)[..., :3]
         assert page.errors == []
     drawn = (np.abs(pixels - STANDING).max(axis=-1) <= 2).sum()

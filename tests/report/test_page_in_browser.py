@@ -25,7 +25,7 @@ from tests.findings.gates import load_gates
 from tests.findings.test_verdict import made
 from tests.made_cases import at
 from tests.profiles.moving import slab, sliding
-from tests.report.browser import Page, chromium, executable
+from tests.report.browser import Page, chromium, executable, opened
 from tests.report.budgets import with_budget
 from tests.report.made import replay_of, run_of, write
 from tests.report.records import record
@@ -40,11 +40,7 @@ RUN = record(limits=Limits(fail=0.01, warn=0.06))
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory) -> Page:
-    folder = tmp_path_factory.mktemp("report") / "out"
-    write(RUN, folder)
-    with chromium() as page:
-        page.open((folder / "report.html").as_uri(), "window.clearance")
-        page.settle()
+    with opened(RUN, tmp_path_factory.mktemp("report")) as page:
         yield page
 
 
@@ -235,11 +231,8 @@ def test_a_page_without_webgl_says_so_and_keeps_its_tables(tmp_path):
 def crowded(tmp_path_factory) -> Page:
     """43 links among 60 obstacles, every pair at every step, with a moment between two steps; and its run."""
     run = cl.check(hand_among_boxes(), need="pairs")
-    folder = tmp_path_factory.mktemp("crowded") / "out"
-    run.save(folder)
-    with chromium() as page:
+    with opened(run, tmp_path_factory.mktemp("crowded")) as page:
         page.run_of = run
-        page.report = (folder / "report.html").as_uri()
         yield page
 
 
@@ -323,10 +316,9 @@ NAMES = "window.clearance.chart.told.curves.flatMap((one) => one.name || [])"
 
 
 def test_the_band_and_the_bar(tmp_path):
-    write(with_budget(made(Limits(warn=0.02)), 0.0025), tmp_path / "out")
-    with chromium() as page:
+    with opened(with_budget(made(Limits(warn=0.02)), 0.0025), tmp_path) as page:
         for width in (420, 1400):
-            page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance", width=width)
+            page.open(page.report, "window.clearance", width=width)
             page.settle()
             assert page.errors == [] and page.run("document.documentElement.scrollWidth") == width
             for _ in range(2):  # as drawn, and as drawn again
@@ -397,9 +389,7 @@ def test_a_step_of_unknown_clearance_has_no_status_and_no_dots(tmp_path):
     post = Obstacle(Body("post", slab([0.6, -0.05, 0.0], [0.7, 0.05, 0.1])))
     way = sliding(slab([0.0, -0.05, 0.0], [0.1, 0.05, 0.1]), [0.0, 0.3, 0.5, 0.3, 0.1, 0.0])
     run = cl.check(dataclasses.replace(way, obstacles=(post,)), need="minimum")
-    run.save(tmp_path / "out")
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+    with opened(run, tmp_path) as page:
         told = {}
         for step in (2, 5):
             page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")

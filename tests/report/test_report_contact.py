@@ -11,8 +11,8 @@ from clearance.record.record import Record
 from clearance.record.wording import contact_text, least_cm3, volume_cm3
 from clearance.report.topics.contact import sections
 from clearance.simulate.replay import replay as replay_contact
-from tests.report.browser import chromium, executable
-from tests.report.made import content_of, replay_of, summary_of, write
+from tests.report.browser import executable, opened
+from tests.report.made import content_of, replay_of, summary_of
 from tests.report.records import record, with_contacts
 
 
@@ -65,9 +65,7 @@ LINES = """[...document.querySelectorAll('td')].filter((cell) => cell.textConten
 @pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
-    write(run(), tmp_path / "out")
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+    with opened(run(), tmp_path) as page:
         page.run("document.getElementById('readout').style.display = 'none'")
         counts = {}
         for step in (0, run().deepest.step):
@@ -76,7 +74,7 @@ def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
             page.settle()
             counts[step] = int(red(page.pixels("#pane")).sum())
         state = page.run("window.clearance.state()")
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance", width=420)
+        page.open(page.report, "window.clearance", width=420)
         assert set(page.run(LINES)) == {1}
         assert page.errors == []
     assert counts[0] == 0 and counts[run().deepest.step] > 400
