@@ -180,3 +180,11 @@ def thinned(placed: PlacedRobot) -> PlacedRobot:
     velocities = None if asked.velocities is None else asked.velocities[kept]
     table = Trajectory(asked.times[kept], asked.joint_names, asked.positions[kept], velocities)
     return replace(placed, trajectory=table)
+
+
+def test_a_single_pose_below_a_level_is_told_without_a_warning_of_numpy():
+    """A run of one step has no interval whose share a moment could be."""
+    near = Obstacle(Body("post", cl.box((0.1, 0.1, 0.1))), at(0.96, 0.0, 0.5))
+    posed = replace(sweeping([[0.0, 0.0]]), obstacles=(near,))
+    with np.errstate(invalid="raise", divide="raise"):
+        assert cl.check(posed).summary["verdict"] == "near"
