@@ -20,7 +20,7 @@ from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE, ERROR
 from clearance.findings.finding import NOT_PROVEN
 from clearance.record.status import Status
-from clearance.record.wording import count
+from clearance.record.wording import NOISE, count
 from clearance.report.curves import millimetres
 from clearance.report.rendering import render
 
@@ -70,6 +70,7 @@ def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         place: the store's folder; a case whose own page lies in it is linked.
     """
     column, statuses = answer.column, _statuses(answer)
+    reached = np.array(answer.reached, dtype=float)
     bodies, rules, headlines = _Texts(), _Texts(), _Texts()
     return {
         "store": place.name,
@@ -80,7 +81,7 @@ def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "headlines": headlines.texts,
         "shade": [shade or ERROR for shade in column("shade")],
         "touches": [int(measured == Status.CONTACT) for measured in column("measured")],
-        "clearance": millimetres(np.array(answer.reached, dtype=float)),
+        "clearance": millimetres(np.where(reached < 0.0, reached * (1.0 - NOISE), reached)),
         "bound": millimetres(np.array(column("proven"), dtype=float)),
         "time": [None if time is None else round(time, 3) for time in column("time")],
         "steps": column("n_steps"),

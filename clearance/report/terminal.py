@@ -76,6 +76,8 @@ def _headline(model: ReportModel) -> Text:
         after += f" ({limits_text(limits.fail, limits.warn)})"
         named = record.status_of(worst) != "clear"
         after += f": {worst.link} - {worst.obstacle}" if named else ""
+    if verdict.beside and record.status_of(worst) not in _STYLES:
+        after += f"; {verdict.beside[0]}"
     after += f", {verdict.at_level}" if verdict.at_level else ""
     return text.append(f"  {record.case.name}: {after}", style="default not bold")
 

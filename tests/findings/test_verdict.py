@@ -143,6 +143,12 @@ def test_levels_that_no_sample_reaches_are_told_of_the_samples():
     assert f"  {'contact':<12}never" in whole
 
 
+def test_a_profile_that_is_not_kept_stands_on_top_beside_a_contact():
+    one = dataclasses.replace(record(), profiles=(NOT_KEPT,))
+    assert "; floor (outside, xy): NOT KEPT" in printed(one)[0]
+    assert "Violated: floor (outside, xy): NOT KEPT" in repr(header(content_of(one)))
+
+
 def test_the_method_of_the_paper_is_a_warning():
     warnings = cl.check(BOX, method="paper").verdict.warnings
     assert len(warnings) == 1 and "pairs may have been left out" in warnings[0]

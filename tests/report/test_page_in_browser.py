@@ -203,6 +203,8 @@ def test_a_clicked_pair_has_its_own_line_and_its_place_on_the_curve(page):
     assert (state["step"], state["nearest"]) == (pair.step, [pair.link, pair.obstacle])
     assert np.abs(np.subtract(state["dots"], [pair.point_link, pair.point_obstacle])).max() < 1e-9
     assert mm(pair.clearance) in page.run("document.getElementById('readout').textContent")
+    read_out = page.run("document.getElementById('scrub').getAttribute('aria-valuetext')")
+    assert read_out == f"{pair.time:.3f} s, {mm(pair.clearance)} mm"
     mark = page.run("window.clearance.chart.told.marks.at(-1)")
     assert (mark["x"], mark["y"]) == (pair.time, pytest.approx(pair.clearance * 1000.0))
     assert page.run("document.querySelectorAll('.mark.pair').length") == 1

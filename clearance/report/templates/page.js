@@ -66,10 +66,10 @@
   function showFrame(i) {
     frame = Math.max(0, Math.min(n - 1, i));
     byId("scrub").value = frame;
-    byId("scrub").setAttribute("aria-valuetext", `${seconds(times[frame], frame)}, ${measured(frame)}`);
     byId("readout").textContent = "";
     const pair = told(), strong = document.createElement("strong");
     strong.textContent = pair ? `${mm(pair.clearance)} mm` : measured(frame);
+    byId("scrub").setAttribute("aria-valuetext", `${seconds(pair ? pair.time : times[frame], frame)}, ${strong.textContent}`);
     strong.style.color = pair ? colours[pair.status] : colourOf(frame);
     byId("readout").append(strong, ` ${pair ? wordOf(pair.status) : word(frame)}`, document.createElement("br"),
       pair ? nameOf(pair) : between(frame), document.createElement("br"), pair && pair.between ? `${seconds(pair.time, frame)}, ${betweenSteps(pair.step)}`

@@ -154,7 +154,7 @@ def _headline(summary: dict[str, Any], verdict: Verdict) -> list[Content | Cell]
 def _other_lines(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content | Cell]:
     """What a reader must know beside the clearance, right below the verdict."""
     failing = [
-        *(f"Violated: {text}" for text in verdict.broken),
+        *(f"Violated: {text}" for text in verdict.beside),
         *map(capital, verdict.unproven_motion),
         *map(capital, verdict.waiver_faults),
     ]
