@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 
@@ -15,6 +14,7 @@ from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates
+from tests.report.junit_schema import valid_suite
 from tests.report.made import (
     content_of,
     page_of,
@@ -98,7 +98,7 @@ def test_every_answer_says_the_same(name, tmp_path):
     )
     assert summary["basis"] == "samples" and summary["not_checked"] == ["self-collision"]
     write_junit(one, tmp_path / "junit.xml")
-    suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
+    suite = valid_suite(tmp_path / "junit.xml")
     assert (int(suite.get("failures")) == 0) == verdict.passed
     whole = suite.find("testcase[@classname='verdict']")
     assert (whole.find("failure") is None) == verdict.passed

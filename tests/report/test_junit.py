@@ -28,9 +28,7 @@ from tests.report.records import disagreeing, record
 
 def suite_of(tmp_path, **changes) -> ElementTree.Element:
     write_junit(record(**changes), tmp_path / "junit.xml")
-    root = ElementTree.parse(tmp_path / "junit.xml").getroot()
-    assert root.tag == "testsuites"
-    return root.find("testsuite")
+    return valid_suite(tmp_path / "junit.xml")
 
 
 def failed(suite: ElementTree.Element) -> set[str]:
@@ -72,8 +70,7 @@ def test_names_that_xml_has_no_room_for_are_escaped(tmp_path):
         run_of(made).pair_minima[0], link="arm\uffff\x1b[31m", obstacle="post\ud800"
     )
     write_junit(run_of(made, (minimum,)), tmp_path / "junit.xml")
-    suite = ElementTree.parse(tmp_path / "junit.xml").getroot().find("testsuite")
-    names = {case.get("name") for case in suite.findall("testcase")}
+    names = {case.get("name") for case in valid_suite(tmp_path / "junit.xml").iter("testcase")}
     assert "arm\\uffff\\x1b[31m - post\\ud800" in names
 
 
@@ -115,8 +112,8 @@ def test_a_run_is_red_where_it_is_not_passed(need, waive, tmp_path):
     run = answer(Question(case, need=need, today=date(2026, 11, 1)))
     write_junit(run, tmp_path / "junit.xml")
     suite = valid_suite(tmp_path / "junit.xml")
-    failed = {case.get("name") for case in suite if case.find("failure") is not None}
-    assert ("verdict" in failed) == (not run.passed) and bool(failed) == (not run.passed)
+    red = failed(suite)
+    assert ("verdict" in red) == (not run.passed) and bool(red) == (not run.passed)
     skipped = {case.get("name"): case.find("skipped").get("message")
                for case in suite if case.find("skipped") is not None}  # fmt: skip
     waived = {f"box - {f.body_b}" for f in run.findings if f.waived is not None}
@@ -150,11 +147,8 @@ def test_a_rule_that_no_one_pair_leaves_open_has_a_name_and_the_advice_stands_in
     limits = cl.Limits(rules=(cl.Rule(("a/*", "b/*"), name="apart", fail=0.1, warn=0.2),))
     run = cl.check(cl.Case("at", tuple(robots), (), limits, clock=cl.Clock(np.inf)))
     write_run_junit(run.report, tmp_path / "junit.xml")
-    named = [
-        case.get("name")
-        for case in ElementTree.parse(tmp_path / "junit.xml").getroot().iter("testcase")
-        if case.get("classname") == "unproven"
-    ]
+    cases = valid_suite(tmp_path / "junit.xml").iter("testcase")
+    named = [case.get("name") for case in cases if case.get("classname") == "unproven"]
     assert named == ["the motion between the samples [apart]"]
     row = "| violated | apart | any pair | "
     assert sum(line.startswith(row) for line in markdown(run.report).splitlines()) == 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from xml.etree import ElementTree
 
 import numpy as np
 import pyarrow.csv
@@ -28,6 +27,7 @@ from tests.made_cases import at
 from tests.profiles.moving import slab, turning
 from tests.report.budgets import with_budget
 from tests.report.cells import box, with_a_hole
+from tests.report.junit_schema import valid_suite
 from tests.report.made import (
     finding_list_of,
     findings_of,
@@ -79,7 +79,7 @@ def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     assert (summary["verdict"], summary["exit_code"]) == (status, exit_code)
     assert printed(one)[0].startswith(text)
     write_junit(one, tmp_path / "junit.xml")
-    cases = ElementTree.parse(tmp_path / "junit.xml").getroot().iter("testcase")
+    cases = valid_suite(tmp_path / "junit.xml").iter("testcase")
     failing = {case.get("classname") for case in cases if case.find("failure") is not None}
     assert ("verdict" in failing) == bool(exit_code)
     assert ("tolerances" in failing) == (
