@@ -109,11 +109,19 @@ def _uncounted(space: ReservedSpace, swept: Profile) -> Iterator[Notice]:
 
 
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):
-    """How far the swept outline is beyond the sketch, at the worst of many samples, negative; and where."""
+    """How far the swept outline is beyond the sketch, at the worst of many samples, negative; and where.
+
+    Where the sketch, or a hole of it, lies wholly in the sweep, how far it is from the swept outline.
+    """
     along = deviation(swept.curve, sketch.curve, samples=4000)
     wrong = contains(sketch.region, along.point) != around
-    if not wrong.any():  # the sketch lies in the sweep, or the other way round
-        return 0.0, ends
+    if not wrong.any():
+        along = deviation(sketch.curve, swept.curve, samples=4000)
+        within = contains(swept.region, along.point)
+        if not within.any():
+            return 0.0, ends
+        worst = int(np.argmax(np.where(within, along.distance, -1.0)))
+        return -float(along.distance[worst]), np.stack([along.foot[worst], along.point[worst]])
     worst = int(np.argmax(np.where(wrong, along.distance, -1.0)))
     return -float(along.distance[worst]), np.stack([along.point[worst], along.foot[worst]])
 

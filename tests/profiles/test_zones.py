@@ -106,6 +106,16 @@ def test_what_profiles_do_not_count_stands_in_the_headline(padding, tolerance, w
     assert said in found.verdict.text()
 
 
+@pytest.mark.parametrize(
+    ("mode", "spans"), [("inside", [(0.02, 0.03)]), ("outside", [(-0.6, 0.6), (0.02, 0.03)])]
+)
+def test_a_sketch_that_lies_within_the_sweep_is_told_with_how_far(mode, spans):
+    """A pillar that the arm passes over, and a hole of a zone; the arm's axis is nearest to their far corner."""
+    (answer,) = checked(mode, *spans).record.profiles
+    assert not answer.passed and not answer.contained
+    assert answer.gap == pytest.approx(-np.hypot(0.03, 0.03), abs=5e-4)
+
+
 def test_nothing_is_said_where_nothing_is_left_out():
     assert warnings(checked("outside", (-0.55, 0.55))) == []
 
