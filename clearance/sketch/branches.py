@@ -11,12 +11,14 @@ from itertools import combinations
 import numpy as np
 
 from clearance.sketch.equations import Across, FromLine, Lengths, Linear, MiddleOn, are
-from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, run
-from clearance.sketch.graph.graph import POINT, TURN
-from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
+from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, at_unit, run
+from clearance.sketch.graph.graph import IN_GRAPH, POINT, TURN
+from clearance.sketch.mobility import Equations, dependent
+from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem, replanned
 from clearance.sketch.roots import other_solutions
+from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.execute import FAILED, Run, execute
-from clearance.sketch.solve.search import RESTARTS
+from clearance.sketch.solve.search import RESTARTS, solve_cluster
 from clearance.sketch.start import Sides, sides_hold, started
 
 MOST = 10
@@ -24,6 +26,9 @@ MOST = 10
 
 TRIED = 40_000
 """Steps of a plan, over all branches, up to which a closed circuit's branches are tried: a tenth of a second."""
+
+EXCHANGED = 400
+"""Equations of a circuit up to which those are found that its others imply: a hundredth of a second."""
 
 STRAIGHT = (Linear, FromLine, MiddleOn, Across)
 """Equations that keep a point on a straight line: two of them meet in one point."""
@@ -49,18 +54,66 @@ def run_with_sides(
 ) -> ExecutionResult:
     """The outcome of a problem; where a `same_side` does not hold, the nearest one in which all do.
 
-    Where an equation that others imply by the count does not hold, the branch on which it does, if there is one.
+    The same where an equation does not hold that others imply by the count; see `_with_circuits`.
     """
     outcome = run(problem, before, sides, effort)
-    if effort and outcome.broken in problem.plan.dependent:
-        turned = _closing(problem, before, sides, _circuit_choices(problem, outcome.broken))
-        return run(problem, before, sides, effort, turned) if turned else outcome
+    if effort:
+        outcome = _with_circuits(outcome, before, sides, effort)
+    problem = outcome.problem
     if outcome.broken != WRONG_SIDE or effort == 0:
         return outcome
     found = [o for o in _turned(problem, before, sides, outcome) if o.broken == -1]
     if not found:
         found = _by_roots(problem, sides, outcome)
     return min(found, key=lambda o: float(np.linalg.norm(o.x - before)), default=outcome)
+
+
+def _with_circuits(
+    outcome: ExecutionResult, before: np.ndarray, sides: Sides, effort: int
+) -> ExecutionResult:
+    """The outcome; where an equation does not hold that others imply by the count, that of the branch on which it
+    does, or that of a plan without an equation that is implied indeed."""
+    for _ in range(outcome.problem.plan.dependent.size):
+        problem, broken = outcome.problem, outcome.broken
+        if broken not in problem.plan.dependent:
+            break
+        turned = _closing(problem, before, sides, _circuit_choices(problem, broken))
+        if turned:
+            return run(problem, before, sides, effort, turned)
+        other = _otherwise_planned(outcome, before)
+        found = None if other is None else run(other, before, sides, effort)
+        if found is None or not (found.broken < 0 or found.broken in found.problem.plan.dependent):
+            break
+        outcome = found
+    return outcome
+
+
+def _otherwise_planned(outcome: ExecutionResult, before: np.ndarray) -> Problem | None:
+    """The problem planned without those equations of a circuit that its others imply.
+
+    The count takes the circuit's last equation for implied. A theorem may imply another one instead, as parallel
+    sides imply equal lengths. Without the last one the outcome has a freedom then, and may have collapsed. So the
+    derivatives are those at the end of a descent on all equations, if it finds a place. None where no other
+    equation is implied, and where the count does not allow the exchange.
+    """
+    problem, x = at_unit(outcome.problem, outcome.x)
+    plan, broken = problem.plan, outcome.broken
+    rows = np.array(sorted(plan.circuits[plan.dependent.tolist().index(broken)][:-1]))
+    if rows.size > EXCHANGED:
+        return None
+    part = int(problem.row_part[broken])
+    whole = np.flatnonzero((problem.row_part == part) & (problem.fate == IN_GRAPH))
+    columns = Columns(problem.system, problem.vertices_of(part), whole)
+    drawn = started(*at_unit(outcome.problem, before), ())[0]
+    found = solve_cluster(columns, drawn, problem.rule(1))
+    x = x if found is None else found
+    circuit = Equations(problem, part, rows, x, problem.system)
+    implied = rows[dependent(circuit.at(x)[1])].tolist()
+    if not implied:
+        return None
+    last = frozenset([*implied, *plan.dependent.tolist()]) - {broken}
+    other = replanned(outcome.problem, last)
+    return None if broken in other.plan.dependent else other
 
 
 def _circuit_choices(problem: Problem, row: int) -> list[int]:
@@ -100,7 +153,7 @@ def _nearest_choices(problem: Problem, sides: Sides) -> list[int]:
 def _by_roots(problem: Problem, sides: Sides, outcome) -> list:
     """Outcomes at other roots of the small numeric clusters."""
     return [
-        ExecutionResult(x, outcome.fates, -1, residual)
+        ExecutionResult(problem, x, outcome.fates, -1, residual)
         for x, residual in other_solutions(problem, outcome.x)
         if sides_hold(x, sides, problem.size)
     ]

@@ -127,8 +127,8 @@ def _proof(trial: Trials, conflict: list[int]) -> str:
     sides = trial.sketch.sides(set(conflict))
     if part.plan.dependent.size:
         outcome = trial.run(conflict)
-        implied = outcome.broken in part.plan.dependent
-        return COUNT if implied and _rest_holds(part, outcome.x) else ""
+        implied = outcome.broken in outcome.problem.plan.dependent
+        return COUNT if implied and _rest_holds(outcome.problem, outcome.x) else ""
     return BRANCHES if exhausted(part, trial.before, sides) else ""
 
 

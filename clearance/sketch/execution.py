@@ -40,12 +40,21 @@ REVERSED = -3
 
 
 class ExecutionResult:
-    """The outcome of a run: numbers, the steps' fates, the worst row that does not hold (-1: all do), and whether
-    its limit has stopped it. `best` are the numbers of least error, where it was stopped; else its numbers."""
+    """The outcome of a run of a problem: numbers, the steps' fates, the worst row that does not hold (-1: all do).
+
+    `stopped` says whether its limit has stopped it. `best` are then the numbers of least error, else its numbers.
+    """
 
     def __init__(
-        self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float, stopped: bool = False
+        self,
+        problem: Problem,
+        x: np.ndarray,
+        fates: np.ndarray,
+        broken: int,
+        residual: float,
+        stopped: bool = False,
     ) -> None:
+        self.problem = problem
         self.x = x
         self.best = x
         self.fates = fates
@@ -62,7 +71,7 @@ def stopped(problem: Problem, before: np.ndarray, found: np.ndarray | None) -> E
     places = [x[problem.alias] for x in (before, found) if x is not None]
     residual, row, best = min((*problem.residual(x), k) for k, x in enumerate(places))
     fates = np.full(len(problem.plan.steps), SKIPPED)
-    out = ExecutionResult(before.copy(), fates, max(row, 0), residual, stopped=True)
+    out = ExecutionResult(problem, before.copy(), fates, max(row, 0), residual, stopped=True)
     out.best = places[best]
     return out
 
@@ -92,6 +101,7 @@ def run(
     except OutOfTime as stop:
         stop.x = None if stop.x is None else stop.x * lengths
         raise
+    outcome.problem = problem
     outcome.x *= lengths
     outcome.residual *= unit
     return outcome
@@ -149,7 +159,7 @@ def _run_at_unit(
     if problem.contacts is not None and broken == -1 and effort == 2:
         x = _touching(problem, problem.contacts, x, active)[problem.alias]
         residual, broken = _verdict(problem, x)
-    outcome = ExecutionResult(x, fates, broken, residual)
+    outcome = ExecutionResult(problem, x, fates, broken, residual)
     if broken == -1 and sides and not sides_hold(x, sides, size):
         outcome.broken = WRONG_SIDE
     return outcome

@@ -275,15 +275,23 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     return coef
 
 
+def replanned(problem: Problem, last: frozenset[int]) -> Problem:
+    """The problem with another plan: of the equations that follow from others, those of `last` are left out."""
+    s = problem.system
+    ways = _directions_of(s.kind, s.root, s.vertex_of)
+    plan = make_plan(graph_of(s.kind, s.ends, problem.absolute, ways), last)
+    free = _remaining_freedoms(s.kind, s.ends, problem.part, problem.n_parts, plan.dependent)
+    contacts = _contacts(problem.tables, s, problem.row_part, plan.dependent)
+    return replace(problem, plan=plan, free=free, contacts=contacts)
+
+
 def _fresh(tables, same: NumberAliases, merged: Merged, var, coef, value, size, length_scale):
     """The problem with a plan of its own."""
     vertex_of, kind, root = vertices(tables.role, merged.parent, same.weight > 0)
     ground = _grounded(tables, var, merged.fate, vertex_of)
     ends = edges(var, ground, merged.fate, vertex_of)
     start, member = members(vertex_of, tables.role, kind.size)
-    theta_of = np.zeros(kind.size, np.int64)
-    slides = np.flatnonzero(kind == SLIDE)
-    theta_of[slides] = vertex_of[root[slides] - 1]
+    theta_of = _directions_of(kind, root, vertex_of)
     system = System(
         tables.code, var, coef, value, kind, root, merged.parent, merged.scale, merged.shift,
         start, member, vertex_of, ends,
@@ -292,12 +300,24 @@ def _fresh(tables, same: NumberAliases, merged: Merged, var, coef, value, size, 
     part, n_parts, fixing = components(kind, ends, theta_of, ground)
     row_part = _row_parts(var, part, vertex_of)
     free = _remaining_freedoms(kind, ends, part, n_parts, plan.dependent)
-    plain = (tables.scale == 0.0) & (tables.offset == 0.0)
     return Problem(
         tables, *same, system, merged.fate, ground, plan, part, n_parts, fixing,
-        free, row_part, length_scale, size,
-        contacts_of(system, plain, ~np.isin(row_part, row_part[plan.dependent])),
+        free, row_part, length_scale, size, _contacts(tables, system, row_part, plan.dependent),
     )  # fmt: skip
+
+
+def _directions_of(kind, root, vertex_of) -> np.ndarray:
+    """(v,) the class of directions of every class of offsets; 0 for other vertices."""
+    out = np.zeros(kind.size, np.int64)
+    slides = np.flatnonzero(kind == SLIDE)
+    out[slides] = vertex_of[root[slides] - 1]
+    return out
+
+
+def _contacts(tables: Tables, system: System, row_part, dependent) -> Contacts | None:
+    """The points of contact in the parts in which no equation follows from others."""
+    plain = (tables.scale == 0.0) & (tables.offset == 0.0)
+    return contacts_of(system, plain, ~np.isin(row_part, row_part[dependent]))
 
 
 def _grounded(tables: Tables, var, fate, vertex_of) -> np.ndarray:

@@ -61,8 +61,8 @@ class Solver:
         before = np.array(self._lists.numbers)
         outcome = self._run(problem, before)
         if outcome.broken == -1 and _vanished(problem, outcome.x).size:
-            outcome = self._run(replace(problem, weight_of_radii=KEPT), before)
-        return self._finish(problem, before, outcome)
+            outcome = self._run(replace(outcome.problem, weight_of_radii=KEPT), before)
+        return self._finish(before, outcome)
 
     def _run(self, problem: Problem, before: np.ndarray) -> ExecutionResult:
         """The outcome from the numbers before; these again where the time was not enough."""
@@ -108,13 +108,14 @@ class Solver:
         if outcome.broken == -1:
             try:
                 with problem.limit:
-                    self._pull(problem, outcome, problem.alias[point.variable], position)
+                    self._pull(outcome, problem.alias[point.variable], position)
             except OutOfTime:
-                outcome = stopped(problem, before, outcome.x)
-        return self._finish(problem, before, outcome)
+                outcome = stopped(outcome.problem, before, outcome.x)
+        return self._finish(before, outcome)
 
-    def _pull(self, problem: Problem, outcome: ExecutionResult, i: int, position) -> None:
+    def _pull(self, outcome: ExecutionResult, i: int, position) -> None:
         """Moves a solution so that the point at variable i comes nearest to a position, in place."""
+        problem = outcome.problem
         target, weight = outcome.x.copy(), problem.weight.copy()
         target[i : i + 2] = np.array(position) - self.sketch.origin
         weight[i : i + 2] = DRAGGED
@@ -125,8 +126,9 @@ class Solver:
             outcome.residual, _ = problem.residual(moved)
 
     def _finish(
-        self, problem: Problem, before: np.ndarray, outcome: ExecutionResult
+        self, before: np.ndarray, outcome: ExecutionResult
     ) -> tuple[Problem, np.ndarray, ExecutionResult]:
+        problem = self.problem = replace(outcome.problem, weight_of_radii=1.0)
         if outcome.broken == -1:
             _check_degenerate(self.sketch, problem, outcome.x)
             self._lists.numbers[:] = outcome.x.tolist()

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from clearance.sketch import Sketch
 
 
@@ -38,6 +40,68 @@ def rectangle_and_its_diagonal():
 def rectangle_and_a_wrong_diagonal():
     s, p, _ = rectangle(4.0, 3.0)
     s.distance(p[0], p[2], 5.5, name="diagonal")
+    return s
+
+
+def rectangle_of_equal_sides(width=1.5, top=None):
+    """Level and upright sides: opposite ones are as long as each other, though no count of equations sees it."""
+    s = Sketch()
+    p, e = ring(s, [(0, 0), (1.1, 0), (1, 1.2), (0, 1)])
+    s.fix(p[0]), s.horizontal(e[0]), s.horizontal(e[2]), s.vertical(e[1]), s.vertical(e[3])
+    s.equal_length(e[0], e[2], name="alike")
+    s.distance(p[0], p[1], width, name="w"), s.distance(p[1], p[2], 2.0, name="h")
+    if top:
+        s.distance(p[2], p[3], top, name="top")
+    return s
+
+
+def rectangle_of_equal_sides_and_a_wrong_one():
+    return rectangle_of_equal_sides(top=1.6)
+
+
+def square_of_equal_sides():
+    s = Sketch()
+    p, e = ring(s, [(0, 0), (1.1, 0), (1, 1.2), (0, 1)])
+    s.fix(p[0]), s.horizontal(e[0]), s.horizontal(e[2]), s.vertical(e[1]), s.vertical(e[3])
+    for i in range(3):
+        s.equal_length(e[i], e[i + 1])
+    s.distance(p[0], p[1], 1.5, name="w")
+    return s
+
+
+def parallelogram_of_equal_sides():
+    s = Sketch()
+    p, e = ring(s, [(0, 0), (1.1, 0), (1.4, 1.1), (0.3, 1)])
+    s.fix(p[0]), s.horizontal(e[0]), s.parallel(e[0], e[2]), s.parallel(e[1], e[3])
+    s.equal_length(e[0], e[2], name="alike")
+    s.distance(p[0], p[1], 1.0, name="w"), s.distance(p[1], p[2], 1.0, name="h")
+    s.angle(e[0], e[3], 1.2, name="lean")
+    return s
+
+
+def rectangle_said_twice(seed):
+    """A rectangle of given sides, and up to three more constraints that hold there, all in an order by chance."""
+    random = np.random.default_rng(seed)
+    (w, h), s = random.uniform(0.5, 3.0, 2), Sketch()
+    size = random.uniform(0.5, 3.0, 2)
+    rough = random.uniform(-0.15, 0.15, (4, 2))
+    p, e = ring(s, np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * size + rough)
+    square = random.integers(0, 2)
+    angles = [(s.perpendicular, e[i], e[i + 1]) for i in range(3)] + [(s.horizontal, e[0])]
+    sides = [(s.horizontal if i % 2 == 0 else s.vertical, e[i]) for i in range(4)]
+    said = [*(angles if square else sides), (s.distance, *p[:2], w), (s.distance, *p[1:3], h)]
+    more = [
+        (s.equal_length, e[0], e[2]),
+        (s.equal_length, e[1], e[3]),
+        (s.distance, p[0], p[2], float(np.hypot(w, h))),
+        (s.distance, p[2], p[3], w),
+        (s.distance, p[0], e[2], h),
+        (s.parallel, e[1], e[3]),
+    ]
+    said += [more[k] for k in random.choice(6, random.integers(1, 4), replace=False)]
+    for k in random.permutation(len(said)):
+        add, *given = said[k]
+        add(*given)
     return s
 
 

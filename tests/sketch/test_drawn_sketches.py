@@ -14,6 +14,10 @@ from tests.sketch.patterns import again
 TRUTH = {
     outlines.rectangle_and_its_diagonal: ("over", 0),
     outlines.rectangle_and_a_wrong_diagonal: ("inconsistent", None),
+    outlines.rectangle_of_equal_sides: ("over", 0),
+    outlines.rectangle_of_equal_sides_and_a_wrong_one: ("inconsistent", None),
+    outlines.square_of_equal_sides: ("over", 0),
+    outlines.parallelogram_of_equal_sides: ("over", 0),
     outlines.triangle_of_three_angles: ("over", 0),
     outlines.triangle_that_cannot_close: ("inconsistent", None),
     outlines.triangle_with_its_medians_through_a_point: ("over", 0),
@@ -50,6 +54,23 @@ def test_verdict_and_freedom(drawn):
         assert again(s, [name]).solve().freedom == freedom
     if status == "over":
         assert result.redundant
+
+
+def test_equal_sides_of_a_rectangle_are_implied_and_not_its_height():
+    s = outlines.rectangle_of_equal_sides()
+    assert s.solve().redundant == ["alike"]
+    s.set("h", 3.0)
+    result = s.solve()
+    assert (result.status, result.redundant) == ("over", ["alike"])
+    corners = [p.position for p in outlines.of_kind(s, "point")]
+    np.testing.assert_allclose(corners, [(0, 0), (1.5, 0), (1.5, 3), (0, 3)], atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_rectangle_said_twice_is_solved_in_any_order(seed):
+    """Without the constraint that the count takes for implied, the others may leave a freedom, and collapse."""
+    result = outlines.rectangle_said_twice(seed).solve()
+    assert result.status == "over" and result.freedom == 0, result.reason
 
 
 def check_conflict(s, names):

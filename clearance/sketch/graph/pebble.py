@@ -78,11 +78,14 @@ def match(nodes_of: Mapping[int, list[int]], capacity: Iterable[int]) -> dict[in
     return {edge: node for node, mine in enumerate(game.paid) for edge in mine}
 
 
-def play(graph: ConstraintGraph, live: bytearray) -> tuple[list[int], list[list[int]]]:
+def play(
+    graph: ConstraintGraph, live: bytearray, last: frozenset[int] = frozenset()
+) -> tuple[list[int], list[list[int]]]:
     """(the live edges that depend on others, the circuit of each with itself last).
 
-    Edges that are held by the ground come first: a dimension is the better suspect. What only refers to directions
-    hangs on the known direction, a vertex of its own that an edge ties to the ground.
+    Edges that are held by the ground come first: a dimension is the better suspect. Those of `last` come last.
+    Edges that only refer to directions hang on the known direction, a vertex of its own that an edge ties to the
+    ground.
     """
     n, tie = len(graph.kind), len(graph.ends)
     ends: dict[int, tuple[int, ...]] = {tie: (0, n)}
@@ -90,7 +93,7 @@ def play(graph: ConstraintGraph, live: bytearray) -> tuple[list[int], list[list[
     game.paid[n][tie] = None
     dependent, circuits = [], []
     rows = [row for row in range(tie) if live[row]]
-    for row in sorted(rows, key=lambda row: graph.absolute[row] != 1):
+    for row in sorted(rows, key=lambda row: (row in last, graph.absolute[row] != 1)):
         ground = 0 if graph.absolute[row] == 1 else n
         ends[row] = mine = tuple(v or ground for v in graph.ends[row])
         total = sum(game.pebbles[v] for v in mine)

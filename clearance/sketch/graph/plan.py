@@ -35,19 +35,19 @@ from clearance.sketch.graph.peel import peel
 from clearance.sketch.graph.rules import RULED, MergeOrder, merge_order
 
 
-def make_plan(graph: ConstraintGraph) -> ConstructionPlan:
+def make_plan(graph: ConstraintGraph, last: frozenset[int] = frozenset()) -> ConstructionPlan:
     """The plan of a constraint graph; see `ConstructionPlan`.
 
-    Dependent edges are omitted; if there are some, vertices that hung on them are peeled as well.
+    Dependent edges are omitted, those of `last` before others; vertices that hung on them are peeled as well.
     """
     n = len(graph.kind)
     live, removed = bytearray(map(bool, graph.ends)), bytearray(n)
-    last = peel(graph, live, removed)
+    outer = peel(graph, live, removed)
     before: list[PlanStep] = []
     dependent: list[int] = []
     circuits: list[list[int]] = []
     if any(live):
-        dependent, circuits = play(graph, live)
+        dependent, circuits = play(graph, live, last)
         for row in dependent:
             live[row] = 0
         before = peel(graph, live, removed) if dependent else []
@@ -55,7 +55,7 @@ def make_plan(graph: ConstraintGraph) -> ConstructionPlan:
     body_of, fixed = [-1] * n, np.zeros(0, bool)
     if any(live):
         core, body_of, fixed = _Core(graph, live, removed).planned()
-    steps = (*core, *reversed(before), *reversed(last))
+    steps = (*core, *reversed(before), *reversed(outer))
     return ConstructionPlan(
         steps, np.array(body_of), fixed, np.array(dependent, np.int64), circuits
     )
