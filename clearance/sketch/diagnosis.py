@@ -16,7 +16,7 @@ import numpy as np
 
 from clearance.sketch.branches import exhausted
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.equations import Linear, PointPoint, are, places
+from clearance.sketch.equations import FromCircle, Linear, PointPoint, are, places
 from clearance.sketch.execution import REVERSED
 from clearance.sketch.graph.graph import CONTRADICTED, MERGED
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
@@ -46,6 +46,24 @@ class Diagnosis:
         self.proof = proof
         self.names = [trial.sketch._lists.constraints[i].name for i in conflict]
         self.searched = [trial.sketch._lists.constraints[i].name for i in searched or conflict]
+
+    @property
+    def kept_side(self) -> str:
+        """The side on which two circles of the conflict touch, where the drawing has said it; else empty."""
+        tables, ordered = self._trial.tables, self._trial.sketch._lists.constraints
+        for row in np.flatnonzero(np.isin(tables.owner, self._conflict)).tolist():
+            one = ordered[tables.owner[row]]
+            if one.kind != "tangent" or one.options or not are(tables.code[row], FromCircle):
+                continue
+            k, m = (e.name for e in one.entities)
+            inside = bool(tables.coef[row, 0] != tables.coef[row, 1])
+            side = (
+                f"one of {k} and {m} inside the other"
+                if inside
+                else f"{k} and {m} outside each other"
+            )
+            return f"{one.name} keeps {side}, as drawn; inside={not inside} asks for the other side"
+        return ""
 
     @cached_property
     def repairs(self) -> list[Repair]:

@@ -6,13 +6,14 @@ of the conflict share the change by least squares.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from clearance.sketch.constraints import measured
 from clearance.sketch.equations import Rows
-from clearance.sketch.problem import Tables, joined
+from clearance.sketch.problem import DEPENDENT, Tables, joined, problem_of
+from clearance.sketch.solver import is_degenerate
 from clearance.sketch.trials import Trials
 
 SHARED = 300
@@ -40,18 +41,30 @@ def repairs_of(trial: Trials, conflict: list[int]) -> list[Repair]:
     ordered, size = trial.sketch._lists.constraints, trial.problem.size
     dimensions = [i for i in conflict if ordered[i].given is not None]
     whole = [int(k) for k in np.unique(trial.tables.owner)]
-    found = []
+    tried = []
     for i in dimensions:
         outcome = trial.run([k for k in whole if k != i])
         if outcome.broken != -1:  # there are more conflicts than this one
             outcome = trial.run([k for k in conflict if k != i])
         if outcome.broken == -1:
-            number = measured(ordered[i], outcome.x.tolist())
-            found.append(_repair(ordered, size, {i: number}))
+            tried.append((outcome.x, {i: measured(ordered[i], outcome.x.tolist())}))
     shared = _shared(trial, conflict, dimensions)
     if shared is not None and len(dimensions) > 1:
-        found.append(_repair(ordered, size, shared))
+        tried.append(shared)
+    found = [_repair(ordered, size, n) for x, n in tried if _holds(trial, conflict, n, x)]
     return sorted(found, key=lambda r: (r.size, len(r.changes)))
+
+
+def _holds(trial: Trials, conflict: list[int], numbers: dict[int, float], x: np.ndarray) -> bool:
+    """Whether the conflict with other numbers holds at x (n,), where every line and circle has an extent.
+
+    A dimension has no sign. So it may not say what was measured: a radius below 0, a point on a line's other side.
+    """
+    changed = trial.tables.numbers.copy()
+    changed[list(numbers)] = list(numbers.values())
+    problem = problem_of(replace(trial.tables, numbers=changed), x, trial.problem)
+    off = problem.errors(x)[np.isin(trial.tables.owner, conflict)].max(initial=0.0)
+    return bool(off <= DEPENDENT * problem.size) and not is_degenerate(problem, x)
 
 
 def _repair(ordered, size: float, numbers: dict[int, float]) -> Repair:
@@ -60,8 +73,10 @@ def _repair(ordered, size: float, numbers: dict[int, float]) -> Repair:
     return Repair({ordered[i].name: float(v) for i, v in numbers.items()}, float(np.sqrt(total)))
 
 
-def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[int, float] | None:
-    """The least change of all dimensions at once, with all other constraints; None if not found."""
+def _shared(
+    trial: Trials, conflict: list[int], dimensions: list[int]
+) -> tuple[np.ndarray, dict[int, float]] | None:
+    """The place (n,) and numbers of the least change of all dimensions at once; None if not found."""
     from scipy.optimize import least_squares
 
     tables = _smallest(trial, conflict)
@@ -88,7 +103,8 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     exact = trial.run_from(x[alias], [k for k in np.unique(tables.owner) if k not in dimensions])
     if exact.broken != -1:
         return None
-    return {i: measured(trial.sketch._lists.constraints[i], exact.x.tolist()) for i in dimensions}
+    ordered, numbers = trial.sketch._lists.constraints, exact.x.tolist()
+    return exact.x, {i: measured(ordered[i], numbers) for i in dimensions}
 
 
 def _smallest(trial: Trials, conflict: list[int]) -> Tables | None:

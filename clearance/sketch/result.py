@@ -163,7 +163,8 @@ class SketchResult:
         names = self.conflicts or self.searched
         shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
         if self._diagnosis.proof:
-            return f"{shown} cannot hold together: {self._diagnosis.proof}"
+            said = (self._diagnosis.proof, self._diagnosis.kept_side)
+            return f"{shown} cannot hold together: {'; '.join(filter(None, said))}"
         if self.stopped:
             what = f"{shown} do not hold" if names else "all holds, but not with the least movement"
             seconds = self._problem.limit.seconds

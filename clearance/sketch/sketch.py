@@ -152,7 +152,7 @@ class Sketch(Relations):
     def tangent(
         self, a: Given, b: Given, *, inside: bool | None = None, name: Name = None
     ) -> Constraint:
-        """A line touches a circle, or two circles touch (by default as drawn: inside or outside)."""
+        """A line touches a circle, or two circles touch. Solving keeps the side that was drawn."""
         return self.add("tangent", a, b, inside=inside, name=name)
 
     def angle(

@@ -145,9 +145,7 @@ def _check_degenerate(sketch, problem: Problem, x: np.ndarray) -> None:
     if small.size:
         name = _name_at(sketch, int(small[0]))
         raise DegenerateSketch(f"{name} would have the radius 0", valid="a radius above 0")
-    least = RESIDUAL * problem.size
-    line, a, b = problem.tables.line_ends.T
-    short = line[(a >= 0) & (np.hypot(x[a] - x[b], x[a + 1] - x[b + 1]) <= least)]
+    short = _closed_lines(problem, x)
     if short.size:
         raise DegenerateSketch(
             f"the two points of {_name_at(sketch, int(short[0]))} would coincide",
@@ -158,6 +156,18 @@ def _check_degenerate(sketch, problem: Problem, x: np.ndarray) -> None:
 def _vanished(problem: Problem, x: np.ndarray) -> np.ndarray:
     """The variables of radii that are not above 0 at a solution (n,)."""
     return np.flatnonzero((problem.tables.role == RADIUS) & ~(x > RESIDUAL * problem.size))
+
+
+def _closed_lines(problem: Problem, x: np.ndarray) -> np.ndarray:
+    """The variables of lines whose two points are one at a solution (n,)."""
+    line, a, b = problem.tables.line_ends.T
+    length = np.hypot(x[a] - x[b], x[a + 1] - x[b + 1])
+    return line[(a >= 0) & (length <= RESIDUAL * problem.size)]
+
+
+def is_degenerate(problem: Problem, x: np.ndarray) -> bool:
+    """Whether a line or circle has no extent at a solution (n,)."""
+    return bool(_vanished(problem, x).size or _closed_lines(problem, x).size)
 
 
 def _name_at(sketch, variable: int) -> str:

@@ -83,6 +83,45 @@ def test_a_construction_without_place_is_proved_by_its_branches():
     assert s.solve().solved
 
 
+def touching_circles(apart, at=2.2):
+    s = Sketch()
+    o, q = s.point(0, 0, name="o"), s.point(at, 0, name="q")
+    k, m = s.circle(o, 1.0, name="k"), s.circle(q, 1.0, name="m")
+    s.fix(o), s.radius(k, 1.0, name="r"), s.radius(m, 0.5, name="r2")
+    s.tangent(k, m, name="touch"), s.distance(o, q, apart, name="d")
+    return s
+
+
+def test_every_repair_repairs_and_leaves_every_circle_a_size():
+    """Circles that touch from outside, with centres nearer than one radius: the other one would be below 0."""
+    s = touching_circles(0.5)
+    result = s.solve()
+    assert result.status == "inconsistent" and result.repairs
+    for repair in result.repairs:
+        assert repair.size > 1e-6 and min(repair.changes.values()) > 1e-6, repair
+        assert again(s, changes=repair.changes).solve().solved, repair
+
+
+@pytest.mark.parametrize("height", [0.5, 0.0])
+def test_no_repair_puts_a_point_on_the_other_side_of_its_line(height):
+    """A point drawn above a line and fixed below it: the distance to it has no sign that would say so."""
+    s = Sketch()
+    line, p = s.line((0, 0), (1, 0), name="line"), s.point(0.3, 0.4, name="p")
+    floor, q = s.line((0, -1), (1, -1), name="floor"), s.point(0.3, -1.5, name="q")
+    s.fix(line), s.fix(floor), s.coincident(p, q), s.distance(q, floor, 0.5, name="low")
+    s.distance(p, line, height + 0.5, name="up")
+    for repair in s.solve().repairs:
+        assert again(s, changes=repair.changes).solve().solved, repair
+
+
+def test_the_reason_says_on_which_side_circles_touch():
+    result = touching_circles(0.5).solve()
+    assert "touch keeps k and m outside each other, as drawn; inside=True" in result.reason
+    result = touching_circles(1.5, at=0.4).solve()
+    assert "touch keeps one of k and m inside the other, as drawn; inside=False" in result.reason
+    assert "touch keeps" not in long_sided_triangle(3.0)[0].solve().reason
+
+
 def test_sides_that_no_branch_satisfies_are_a_conflict():
     s = Sketch()
     a, b = s.point(0, 0, name="a"), s.point(4, 0, name="b")
