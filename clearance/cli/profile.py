@@ -268,7 +268,10 @@ def _print_fit(found) -> None:
     unit = "distance" if found.mode == "nearest" else "area"
     for name, rate in list(found.active.items())[:6]:
         click.echo(f"held by {name}: {unit} changes by {rate:+.4g} a unit of it")
-    click.echo(f"touches at {len(found.touching)} places; best of {found.n_starts} starts")
+    starts = f"best of {found.n_starts} starts, {found.n_agreeing} of them came to it"
+    click.echo(f"touches at {len(found.touching)} places; {starts}")
+    if 2 * found.n_agreeing < found.n_starts:
+        click.echo("most starts ended elsewhere: another drawing to start from may fit better")
 
 
 @profile.command()

@@ -53,7 +53,7 @@ class Fit:
         ends: (2, 2) [m] where it is attained what counts: the Hausdorff distance (nearest) or the least gap, on
             the outline and on the sketch.
         touching: (k, 2) points at which the fit touches.
-        n_starts: how many starts were tried.
+        n_starts: how many starts were tried. n_agreeing: how many of them came to this sketch's distance or area.
     """
 
     mode: str
@@ -70,6 +70,7 @@ class Fit:
     ends: np.ndarray
     touching: np.ndarray
     n_starts: int
+    n_agreeing: int
     curve: Curve = field(repr=False)
 
     def unit_of(self, name: str) -> tuple[str, float]:
@@ -130,10 +131,10 @@ def fit(
         )
     target = FitTarget(outline, shape, drawn, mode, margin)
     search = (NearestFit if mode == "nearest" else BoundedFit)(shape, target, drawn)
-    best, tried = _best(search, starts_of(shape, outline, mode, starts))
+    best, scores = _best(search, starts_of(shape, outline, mode, starts))
     if best is None:
-        raise _no_fit(search, mode, margin, tried)
-    return _answer(sketch, shape, search, best, tried)
+        raise _no_fit(search, mode, margin, len(scores))
+    return _answer(sketch, shape, search, best, scores)
 
 
 def _no_fit(search: NearestFit | BoundedFit, mode: str, margin: float, tried: int) -> NoFit:
@@ -162,18 +163,20 @@ def _drawn(profile: Profile | DrawnOutline | Curve) -> DrawnOutline:
 
 def _best(
     search: NearestFit | BoundedFit, starts: list[np.ndarray]
-) -> tuple[FitCandidate | None, int]:
-    best, tried = None, 0
+) -> tuple[FitCandidate | None, list[float]]:
+    """The best candidate, and the score of every start that was tried: infinite where it led to none as good as
+    those before."""
+    best, scores = None, list[float]()
     for start in starts:
-        tried += 1
         found = search.run(start, np.inf if best is None else best.score)
+        scores.append(np.inf if found is None else found.score)
         if found is None:
             continue
         if best is None or search.target.better(found, best):
             best = found
         if search.target.mode == "nearest" and best.score <= 1e-10 * search.shape.size:
             break  # nothing is nearer than this
-    return best, tried
+    return best, scores
 
 
 def _answer(
@@ -181,12 +184,13 @@ def _answer(
     shape: SketchShape,
     search: NearestFit | BoundedFit,
     best: FitCandidate,
-    tried: int,
+    scores: list[float],
 ) -> Fit:
     here, target = best.placed, search.target
     if target.mode != "nearest":
         here.require_apart("the fitted sketch")
     n = len(shape.free)
+    alike = 1e-6 * (shape.size if target.mode == "nearest" else abs(best.score))
     place = here.numbers[n:]
     distance = hausdorff(here.curve, target.outline.curve)
     seen = distance if target.mode == "nearest" else target.clearance(here)[1]
@@ -204,7 +208,8 @@ def _answer(
         sensitivity=sensitivities(shape, target, best),
         ends=np.stack([seen.point_b, seen.point_a]),
         touching=touching(shape, target, best),
-        n_starts=tried,
+        n_starts=len(scores),
+        n_agreeing=int(np.sum(np.array(scores) <= best.score + alike)),
         curve=here.curve,
     )
 

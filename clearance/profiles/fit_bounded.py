@@ -67,12 +67,14 @@ class BoundedFit(FitSearch):
         it was still growing, far beyond the outline.
         """
         target, size = self.target, self.shape.size
+        most = 0.5 * max(1.0, target.pieces.size / size)  # a sketch drawn far too small can grow
         price, given = 10.0 * max(size, target.pieces.size), np.vstack([target.given, extra])
         gaps = target.gaps(here.pieces, samples, given)
         rows, chosen, change = self._rows(here, gaps)
-        for _ in range(STEPS):
+        for _ in range(2 * STEPS):
             merit = target.score(here) + price * max(0.0, wanted - float(gaps.distance.min()))
-            bounds = self.bounds(here, reach)
+            within = np.where(self.shape.angular, min(reach, 0.5), reach)
+            bounds = self.bounds(here, within)
             goal = AreaGoal(change, wanted, price)
             found = least_area(rows, goal, size, reach, self.shape.scale, *bounds)
             if found.value <= 1e-10 * size**2 or reach < 1e-10:
@@ -86,7 +88,7 @@ class BoundedFit(FitSearch):
                 here, gaps = moved, fresh
                 rows, chosen, change = self._rows(here, gaps)
                 share = gained / found.value
-                reach = min(0.5, reach * (2.0 if share > 0.7 else 1.0 if share > 0.2 else 0.4))
+                reach = min(most, reach * (2.0 if share > 0.7 else 1.0 if share > 0.2 else 0.4))
             else:
                 reach *= 0.25
         else:
@@ -111,7 +113,7 @@ class BoundedFit(FitSearch):
         outline = self.target.pieces
         piece, share = outline.spread(2)
         points = outline.point(piece, share)
-        gaps = self.target.gaps(here.pieces, self.samples, points).distance[-len(points) :]
+        gaps = self.target.gaps_of_given(here.pieces, self.samples, points)
         least = np.argsort(gaps, kind="stable")[:MOST_NEAR]
         near = np.unique(piece[least[gaps[least] <= wanted + 2e-3 * self.shape.size]])
         dense = np.tile(np.linspace(0.0, 1.0, 24), len(near))

@@ -30,6 +30,7 @@ class Gaps(NamedTuple):
         distance: (k,) with its sign. point: (k, 2) where.
         normal: (k, 2) how the distance changes when the shape's own place moves.
         piece, share: (k,) the shape's own place.
+        at_corner: (k,) whether the foot is where two pieces of the other curve meet.
     """
 
     distance: np.ndarray
@@ -37,6 +38,7 @@ class Gaps(NamedTuple):
     normal: np.ndarray
     piece: np.ndarray
     share: np.ndarray
+    at_corner: np.ndarray
 
     def at(self, chosen: np.ndarray) -> Gaps:
         """Only the chosen ones."""
@@ -45,6 +47,10 @@ class Gaps(NamedTuple):
     def signed(self, sign: float) -> Gaps:
         """The other side counted positive where `sign` is -1."""
         return self._replace(distance=sign * self.distance, normal=sign * self.normal)
+
+    def without(self, omitted: np.ndarray, far: float) -> Gaps:
+        """The same, those `omitted` (k,) put so `far` that they do not matter."""
+        return self._replace(distance=self.distance + far * omitted)
 
 
 class FitSlope(NamedTuple):
@@ -95,14 +101,20 @@ def sides_of(pieces: ContourPieces, region: Region) -> np.ndarray:
 def gaps_of_shape(outline: ContourPieces, sides: np.ndarray, here: ContourPieces, samples) -> Gaps:
     """Gaps of the shape's places `samples` (pieces, shares), positive inside the outline."""
     own = here.point(*samples)
-    distance, normal, _ = _measured(outline, sides, own)
-    return Gaps(distance, own, normal, *samples)
+    distance, normal, (_, foot) = _measured(outline, sides, own)
+    piece, share = samples
+    return Gaps(distance, own, normal, piece, share, at_corner(foot))
 
 
 def gaps_of_outline(here: ContourPieces, sides: np.ndarray, given: np.ndarray) -> Gaps:
     """Gaps of the outline's points `given` (k, 2), positive inside the shape."""
-    distance, normal, place = _measured(here, sides, given)
-    return Gaps(distance, given, -normal, *place)
+    distance, normal, (piece, share) = _measured(here, sides, given)
+    return Gaps(distance, given, -normal, piece, share, at_corner(share))
+
+
+def at_corner(share: np.ndarray) -> np.ndarray:
+    """Whether places on pieces are ends of theirs."""
+    return np.abs(share - 0.5) >= 0.5 - 1e-9
 
 
 def joined_gaps(*parts: Gaps) -> Gaps:

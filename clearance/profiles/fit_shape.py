@@ -84,6 +84,8 @@ class SketchShape:
         self.size = drawn.size
         lengths = [1.0 if kind == "angle" else self.size for kind in self.kinds]
         self.scale = np.array(lengths + [self.size] * (2 * self.slides) + [1.0] * self.turns)
+        angular = [kind == "angle" for kind in self.kinds]
+        self.angular = np.array(angular + [False] * (2 * self.slides) + [True] * self.turns)
 
     @property
     def fixed(self) -> list[str]:

@@ -16,6 +16,7 @@ from clearance.planar.minimum import Minimum
 from clearance.profiles.fit_rows import (
     FitRows,
     Gaps,
+    at_corner,
     gaps_of_outline,
     gaps_of_shape,
     joined_gaps,
@@ -104,11 +105,26 @@ class FitTarget:
         return joined_gaps(*self._pair(here, samples, given))
 
     def gaps(self, here: ContourPieces, samples: Places, given: np.ndarray) -> Gaps:
-        """The same, positive where the shape is on its right side: to be at least the margin."""
+        """The same, positive where the shape is on its right side: to be at least the margin.
+
+        A place between corners of its own curve does not count where its foot is a corner: that corner's own foot
+        is nearer. To first order such a place could not pass the corner of an edge along which it lies.
+        """
+        own, theirs = self._signed(here, samples, given)
+        far = 1e3 * (here.size + self.pieces.size)
+        own = own.without(own.at_corner & ~at_corner(samples[1]), far)
+        between = ~at_corner(self.pieces.feet(given)[1])
+        return joined_gaps(own, theirs.without(theirs.at_corner & between, far))
+
+    def gaps_of_given(self, here: ContourPieces, samples: Places, given: np.ndarray) -> np.ndarray:
+        """The distances of the outline's points alone, all of them."""
+        return self._signed(here, samples, given)[1].distance
+
+    def _signed(self, here: ContourPieces, samples: Places, given: np.ndarray) -> tuple[Gaps, Gaps]:
         own, theirs = self._pair(here, samples, given)
         one = 1.0 if self.within else -1.0
         two = 1.0 if self.mode == "outside" else -1.0
-        return joined_gaps(own.signed(one), theirs.signed(two))
+        return own.signed(one), theirs.signed(two)
 
     def _pair(self, here: ContourPieces, samples: Places, given: np.ndarray) -> tuple[Gaps, Gaps]:
         return (
@@ -147,7 +163,7 @@ class FitSearch:
         here = self.shape.at(numbers)
         return None if here is None or here.crosses_itself else here
 
-    def bounds(self, here: PlacedShape, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    def bounds(self, here: PlacedShape, reach: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(n,) each: least and greatest step, in units of the shape's scale, within `reach`."""
         shape, numbers = self.shape, here.numbers
         low, high = range_of_numbers(shape.kinds, numbers, shape.size)

@@ -64,6 +64,36 @@ def test_an_outline_made_from_a_sketch_gives_its_dimensions_back(name):
     assert cl.hausdorff(found.sketch.curves(), found.curve).distance <= 1e-9
 
 
+@pytest.mark.parametrize(
+    "drawn", [(0.25, 0.15, 0.0), (1.0, 0.1, 0.0), (1.0, 1.0, 5.0), (2.0, 1.3, -1.0)]
+)
+def test_the_least_rectangle_about_a_rectangle_is_that_rectangle(drawn):
+    """An edge that lies along the outline's shrinks past its corner, from every start that leads anywhere."""
+    outline = cl.Curve.polyline([[0, 0], [0.1, 0], [0.1, 0.05], [0, 0.05]], closed=True)
+    width, depth, at = drawn
+    found = cl.fit(moved_rectangle(width, depth, at), outline, "outside")
+    assert list(found.dimensions.values()) == pytest.approx([0.1, 0.05], rel=1e-6)
+    assert found.area == pytest.approx(0.005, rel=1e-6) and found.clearance > 0.0
+    assert 2 * found.n_agreeing > found.n_starts
+
+
+@pytest.mark.parametrize("size", [0.001, 0.01])
+def test_a_rectangle_drawn_small_in_a_hole_grows_to_its_margin(size):
+    hole = [[0.02, 0.01], [0.12, 0.01], [0.12, 0.06], [0.02, 0.06]]
+    frame = [[-0.1, -0.1], [0.2, -0.1], [0.2, 0.15], [-0.1, 0.15]]
+    outline = cl.Curve.contours([cl.Curve.polyline(one, closed=True) for one in (frame, hole)])
+    found = cl.fit(moved_rectangle(size, size, 0.03), outline, "inside", margin=0.005)
+    assert found.area == pytest.approx(0.09 * 0.04, rel=1e-6) and found.clearance >= 0.005
+    assert found.n_agreeing == found.n_starts
+
+
+def moved_rectangle(width, depth, at):
+    s = rectangle(width, depth)
+    shape = SketchShape(s, None)
+    shape.start[2:] += at
+    return shape.placed_sketch(shape.start, s)
+
+
 @pytest.mark.slow
 def test_the_least_rectangle_about_a_turned_ellipse_like_outline_touches_four_sides():
     outline = cl.Curve.polyline(
