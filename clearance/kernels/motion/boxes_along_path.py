@@ -22,6 +22,8 @@ from clearance.kernels.arithmetic.vec3 import (
     row,
     sub,
 )
+from clearance.kernels.features.bounds import lower_bound_boxes
+from clearance.kernels.mesh.surface import Box
 from clearance.kernels.motion.kinematics import Links, place_each
 
 ROUNDING = 1e-4
@@ -48,18 +50,12 @@ def _pose(boxes, body, poses, step):
     return rigid(boxes.standing[body] if link < 0 else poses[step, link])
 
 
-class _Box(NamedTuple):
-    """A box in the frame of its body: its middle and half its edges."""
-
-    middle: Vec3
-    half: Vec3
-
-
 @inline
 def _box(bounds):
     d = sub(row(bounds, 1), row(bounds, 0))
     half = Vec3(0.5 * d.x, 0.5 * d.y, 0.5 * d.z)
-    return _Box(add(row(bounds, 0), half), half)
+    x, y, z = Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.0, 0.0, 1.0)
+    return Box(x, y, z, add(row(bounds, 0), half), half)
 
 
 @inline
@@ -67,9 +63,9 @@ def _place_balls(boxes, poses, step, middles, radii, rounding):
     """Fills the ball round each box at a step, its radius with what rounding may be, and that alone."""
     for body in range(len(radii)):
         box, frame = _box(boxes.bounds[body]), _pose(boxes, body, poses, step)
-        middle = move(frame, box.middle)
+        middle = move(frame, box.centre)
         middles[body, 0], middles[body, 1], middles[body, 2] = middle.x, middle.y, middle.z
-        rounding[body] = ROUNDING * (size(frame.t) + size(box.middle) + size(box.half))
+        rounding[body] = ROUNDING * (size(frame.t) + size(box.centre) + size(box.half))
         radii[body] = math.sqrt(dot(box.half, box.half)) + rounding[body]
 
 
@@ -78,25 +74,6 @@ def _balls_overlap(middles, radii, a, b):
     """False only if two balls have a gap: most pairs are far from each other."""
     reach = radii[a] + radii[b]
     return gap_sq(row(middles, a), row(middles, b)) <= reach * reach
-
-
-@inline(force=True)
-def _separation(m, box, other):
-    """[m] the greatest gap along the axes of a box to another one, `m` from the frame of the other."""
-    away, half, of_other = sub(move(m, other.middle), box.middle), box.half, other.half
-    x = abs(m.xx) * of_other.x + abs(m.xy) * of_other.y + abs(m.xz) * of_other.z
-    y = abs(m.yx) * of_other.x + abs(m.yy) * of_other.y + abs(m.yz) * of_other.z
-    z = abs(m.zx) * of_other.x + abs(m.zy) * of_other.y + abs(m.zz) * of_other.z
-    by_x, by_y, by_z = abs(away.x) - half.x - x, abs(away.y) - half.y - y, abs(away.z) - half.z - z
-    return max(by_x, max(by_y, by_z))
-
-
-@inline
-def _boxes_overlap(box_a, box_b, frame_a, frame_b, rounding):
-    """False only if two boxes have a gap along an axis of either, beyond rounding."""
-    if _separation(relative(frame_a, frame_b), box_a, box_b) > rounding:
-        return False
-    return not (_separation(relative(frame_b, frame_a), box_b, box_a) > rounding)
 
 
 @kernel
@@ -117,9 +94,9 @@ def steps_together(boxes: CarriedBoxes, pairs: Integers2, poses: Floats4, spans:
             a, b = pairs[pair, 0], pairs[pair, 1]
             if not _balls_overlap(middles, radii, a, b):
                 continue
-            frame_a, frame_b = _pose(boxes, a, poses, step), _pose(boxes, b, poses, step)
+            m = relative(_pose(boxes, a, poses, step), _pose(boxes, b, poses, step))
             box_a, box_b = _box(boxes.bounds[a]), _box(boxes.bounds[b])
-            if _boxes_overlap(box_a, box_b, frame_a, frame_b, rounding[a] + rounding[b]):
+            if not lower_bound_boxes(box_a, box_b, m, rounding[a] + rounding[b]) > 0.0:
                 if spans[pair, 1] == 0:
                     spans[pair, 0] = step
                 spans[pair, 1] = step + 1
