@@ -9,8 +9,7 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.decorators import inline
-from clearance.kernels.arithmetic.lanes import WIDTH
-from clearance.kernels.arithmetic.vec3 import Vec3, dot, move_back, row
+from clearance.kernels.arithmetic.vec3 import Vec3, move_back
 from clearance.kernels.features.bounds import (
     direction_between,
     direction_outward,
@@ -19,7 +18,6 @@ from clearance.kernels.features.bounds import (
 )
 from clearance.kernels.features.face_pair import may_meet, nearest_of_faces, nothing_yet
 from clearance.kernels.features.meeting import meeting
-from clearance.kernels.mesh.corners import corners_at, greatest_in, least_in
 from clearance.kernels.search.descent import (
     NodeQueue,
     cut_of,
@@ -33,12 +31,11 @@ from clearance.kernels.search.displacement import (
     direction_of_search,
     errors_of_point_along,
     is_nearly_still,
-    movement_of_point,
     movement_of_point_along,
-    movement_of_point_in_search,
     prepare_along,
 )
 from clearance.kernels.search.front import LENGTH, forget_front, update_front
+from clearance.kernels.search.moving_faces import bound_along, bound_in_search, movement_of_both
 from clearance.kernels.search.node_pairs import Views, views_along
 from clearance.kernels.search.pieces import bound_of_pieces
 
@@ -220,70 +217,6 @@ def _towards(search, direction, length, faces, displacement):
     )  # fmt: skip
 
 
-class _Faces(NamedTuple):
-    """Bounds on two whole faces along one direction [m]: under the displacement, and without it."""
-
-    bound: float
-    separation: float
-
-
-@inline(force=True)
-def _along(faces, direction, displacement):
-    """Two faces along the prepared direction."""
-    a, b, slack = faces.surface_a, faces.surface_b, displacement.slack
-    u, v = direction.u, direction.v
-    far = beyond = -math.inf
-    end = a.face_starts[faces.a + 1]
-    for c in range(a.face_starts[faces.a], end, WIDTH):
-        x = corners_at(a, c, end)
-        height = dot(u, x)
-        far = max(far, greatest_in(height + movement_of_point_along(displacement, x, 0, u)))
-        beyond = max(beyond, greatest_in(height))
-    first = before = math.inf
-    end = b.face_starts[faces.b + 1]
-    for c in range(b.face_starts[faces.b], end, WIDTH):
-        x = corners_at(b, c, end)
-        height = dot(v, x)
-        first = min(first, least_in(height - movement_of_point_along(displacement, x, 1, v)))
-        before = min(before, least_in(height))
-    return _Faces(
-        first + direction.offset - far - slack, before + direction.offset - beyond - slack
-    )
-
-
-@inline(force=True)
-def _in_search(faces, direction, displacement):
-    """[m] a bound on two faces along the direction of the search."""
-    a, b = faces.surface_a, faces.surface_b
-    u, v = direction.u, direction.v
-    far, near = -math.inf, math.inf
-    end = a.face_starts[faces.a + 1]
-    for c in range(a.face_starts[faces.a], end, WIDTH):
-        x = corners_at(a, c, end)
-        far = max(far, greatest_in(dot(u, x) + movement_of_point_in_search(displacement, x, 0, u)))
-    end = b.face_starts[faces.b + 1]
-    for c in range(b.face_starts[faces.b], end, WIDTH):
-        x = corners_at(b, c, end)
-        near = min(near, least_in(dot(v, x) - movement_of_point_in_search(displacement, x, 1, v)))
-    return near + direction.offset - far - displacement.slack
-
-
-@inline
-def _movement_of_face(surface, face, side, displacement):
-    moved = 0.0
-    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
-        x = row(surface.vertices, surface.face_vertices[c])
-        moved = max(moved, movement_of_point(displacement, x, side))
-    return moved
-
-
-@inline
-def _movement_of_both(faces, displacement):
-    """[m] the most by which two faces come nearer."""
-    moved = _movement_of_face(faces.surface_a, faces.a, 0, displacement)
-    return moved + _movement_of_face(faces.surface_b, faces.b, 1, displacement)
-
-
 class _Effect(NamedTuple):
     """The loss at two points [m]: by errors, and by motion alone."""
 
@@ -319,12 +252,12 @@ def _bound_outward(search, faces, known, displacement):
     if separation <= known:  # a displacement only lowers it
         return known, is_near
     prepare_along(displacement, direction)
-    return max(known, _along(faces, direction, displacement).bound), is_near
+    return max(known, bound_along(faces, direction, displacement)), is_near
 
 
 @with_faces.register
 def _(search: ProofSearch, faces, bound, cut, displacement, goal, n_waiting, scratch):
-    bound = max(bound, _in_search(faces, search.views.a.direction, displacement))
+    bound = max(bound, bound_in_search(faces, search.views.a.direction, displacement))
     is_near = False
     if bound <= cut and search.n_faces >= FIRST_FACES:
         bound, is_near = _bound_outward(search, faces, bound, displacement)
@@ -350,23 +283,24 @@ def _measured(search, faces, bound, displacement, goal, scratch):
     near = nearest_of_faces(a, faces.a, b, faces.b, m, margin, nothing_yet(math.inf)).best
     direction = direction_between(near.p, near.q, m)
     prepare_along(displacement, direction)
-    whole = _along(faces, direction, displacement)
+    separation = lower_bound_faces_along_direction(a, faces.a, b, faces.b, direction)
+    separation -= displacement.slack
     length = math.sqrt(near.gap_sq)
-    if whole.separation <= 0.0 and goal.ends_in_contact and _meet(faces, margin, scratch):
+    if separation <= 0.0 and goal.ends_in_contact and _meet(faces, margin, scratch):
         search = _towards(search, direction, length, faces, displacement)
         return _with_bound(search, 0.0, IN_CONTACT, 1, 0, goal)
-    if whole.separation <= 0.0 and not goal.ends_in_contact:  # they may touch
-        moved = _movement_of_both(faces, displacement)
+    if separation <= 0.0 and not goal.ends_in_contact:  # they may touch
+        moved = movement_of_both(faces, displacement)
         search = _with_value(search, -moved, moved, goal)
         return _with_bound(search, max(bound, -moved), GOING_ON, 1, 0, goal)
-    bound = max(bound, whole.bound)
+    bound = max(bound, bound_along(faces, direction, displacement))
     point = _effect_at(near.p, near.q, direction, m, displacement, goal)
     value = length + margin - point.loss
     if length < search.nearest:
         search = _towards(search, direction, length, faces, displacement)
     search = _with_value(search, value, point.loss, goal)
     if bound < search.target:
-        bound = max(bound, whole.separation - _movement_of_both(faces, displacement))
+        bound = max(bound, separation - movement_of_both(faces, displacement))
     wanted, allowed = search.target, _near_by(point.loss, goal)
     if goal.is_step:
         wanted = min(wanted, search.enough)
