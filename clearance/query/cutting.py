@@ -19,26 +19,19 @@ from clearance.kernels.polytope.cut import (
     FIRST_BODY,
     FREE,
     FULL,
-    LAID_BODY,
     N_FREE,
     N_ROWS,
     VISITED,
-    Cut,
     begin,
     cut_by_planes,
 )
 from clearance.kernels.polytope.faces import face_rings, trivalent_moments
-from clearance.kernels.polytope.patch import lay_patch, mark_patch
 
 ON_PLANE = 8 * 2.0**-53
 """[-] How far from a plane counts as on it, relative to the greatest coordinate about the inner point."""
 
 ACROSS_ALL = np.array([0.53, 0.61, 0.59]) / np.linalg.norm([0.53, 0.61, 0.59])
 """[-] Normal of the plane that parts two halves: no face or edge of bodies as people place them lies in it."""
-
-PATCHED_FROM = 2000
-"""Faces from which on the second body's inner surface is put in as a whole: a third less time at 10000 faces,
-none gained at 2000."""
 
 ROWS_A_VERTEX = 4
 """Rows at first for each vertex of the body that is cut; doubled when they are full."""
@@ -102,7 +95,7 @@ class Cutting:
         self.task = task
         self._reserve(ROWS_A_VERTEX * n)
         begin(self.spots, self.mesh, task.rows, i_first, form.corner, form.mesh, task.origin)
-        self.state = np.array([0, 0, n, i_first, i_first], dtype=np.int64)
+        self.state = np.array([0, 0, n, i_first], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
 
     def _reserve(self, n_rows: int) -> None:
@@ -116,11 +109,6 @@ class Cutting:
         self.mesh = block[4 * n_rows : 8 * n_rows].view(np.int32).reshape(-1, 8)
         self.work = block[8 * n_rows : 10 * n_rows].view(np.int32).reshape(4, -1)
         self.rim = block[10 * n_rows :].view(np.int32).reshape(-1, 4)
-
-    @property
-    def arrays(self) -> Cut:
-        """The polytope as an argument of a kernel that is called seldom: 3 us more than its three arrays."""
-        return Cut(self.spots, self.mesh, self.state, self.work, self.rim, self.table)
 
     def _grown(self) -> None:
         spots, mesh, work, used = self.spots, self.mesh, self.work, self.state[N_ROWS]
@@ -158,26 +146,6 @@ class Cutting:
             raise BrokenRim
         return status == CUT
 
-    def patched_by(self, i_first: int, i_body: int) -> bool:
-        """As `by` for the first cut of body `i_first`: what of the other's surface lies inside is put in whole.
-
-        Raises:
-            Broken: see there.
-        """
-        task, other = self.task, self.task.bodies[i_body]
-        base = task.bases[i_body]
-        inside, in_patch = np.zeros((2, len(other.vertices)), dtype=bool)
-        mark_patch(task.bodies[i_first].packed, other.packed, base, self.table, inside, in_patch)
-        if not self.by(i_body):
-            return False
-        form = other.trivalent
-        rows = np.empty(len(form.corner), dtype=np.int32)
-        laid = lay_patch(
-            self.arrays, other.packed, form.corner, form.mesh, in_patch, rows, task.origin, base
-        )
-        self.state[LAID_BODY] = i_body if laid else i_first
-        return self.by(i_body)
-
     def places(self) -> np.ndarray:
         """(n, 3) [m] its vertices about the origin."""
         used = self.state[N_ROWS]
@@ -189,19 +157,16 @@ class Cutting:
 
     def moments(self) -> np.ndarray:
         """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate [m], about the origin."""
-        task, (*_, first, laid) = self.task, self.state.tolist()
-        first_areas, laid_areas = task.bodies[first].face_areas, task.bodies[laid].face_areas
+        task, areas = self.task, self.task.bodies[self.state[FIRST_BODY]].face_areas
         return np.array(
-            trivalent_moments(
-                self.block, self.state, self.table, task.rows, first_areas, laid_areas, task.origin
-            )
+            trivalent_moments(self.block, self.state, self.table, task.rows, areas, task.origin)
         )
 
 
 def by_edges(block: np.ndarray, state: np.ndarray, table: np.ndarray) -> np.ndarray:
     """As `Cutting.moments`, for a polytope that was made of no body."""
-    no_body, none = np.zeros((state[FIRST_BODY:].max() + 1, 5), dtype=np.int64), np.empty((0, 4))
-    return np.array(trivalent_moments(block, state, table, no_body, none, none, none.ravel()))
+    no_body, none = np.zeros((state[FIRST_BODY] + 1, 5), dtype=np.int64), np.empty((0, 4))
+    return np.array(trivalent_moments(block, state, table, no_body, none, none.ravel()))
 
 
 def cut_down(task: CuttingTask, side: float = 0.0) -> Cutting | None:
@@ -217,11 +182,7 @@ def cut_down(task: CuttingTask, side: float = 0.0) -> Cutting | None:
     cutting = Cutting(task, members[0])
     if side:
         cutting.halve(side)
-    rest = members[1:]
-    if rest and not side and task.bodies[rest[0]].n_faces > PATCHED_FROM:
-        if not cutting.patched_by(members[0], rest.pop(0)):
-            return None
-    return cutting if cutting.by(*rest) else None
+    return cutting if cutting.by(*members[1:]) else None
 
 
 def cut_whole(task: CuttingTask) -> Cutting:

@@ -107,7 +107,7 @@ def _cut_box(planes: np.ndarray):
     spots = block[: 4 * rows].reshape(-1, 4)
     mesh = block[4 * rows : 8 * rows].view(np.int32).reshape(-1, 8)
     spots[:8, :3], mesh[:8] = _box()
-    state, table = np.array([0, 0, 8, 0, 0]), np.zeros((6 + len(planes), 3), dtype=np.int32)
+    state, table = np.array([0, 0, 8, 0]), np.zeros((6 + len(planes), 3), dtype=np.int32)
     if cut_by_planes(block, state, table, planes, 6, ON_PLANE) != CUT:
         return None
     moments = by_edges(block, state, table)

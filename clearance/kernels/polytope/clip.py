@@ -29,7 +29,6 @@ from clearance.kernels.polytope.body import (
 from clearance.kernels.polytope.cut import (
     CUT,
     FULL,
-    LATENT,
     LATER,
     MARK,
     N_FREE,
@@ -98,7 +97,7 @@ def other_face(cut, cutter, face, v, tolerance):
     while i < n_queue:
         f = work[QUEUE, i]
         if (
-            table[base + f, USED] % 2 == 0
+            table[base + f, USED] == 0
             and over(spots, v, plane_about(numbers, f, origin)) > tolerance
         ):
             return f
@@ -156,9 +155,9 @@ def climb(spots, mesh, start, plane, noise, state, work):
 
 @inline
 def is_copy(spots, mesh, v, base):
-    """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
+    """True if the row before is alive, at the same place, and was found inside this body."""
     u = v - 1
-    if mesh[u, 0] < 0 or (mesh[u, VISITED] != base + 1 and mesh[u, VISITED] != -1):
+    if mesh[u, 0] < 0 or mesh[u, VISITED] != base + 1:
         return False
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
@@ -186,7 +185,7 @@ def face_to_cut_by(cut, cutter, v, place, tolerance):
     if (gauge - 1.0) * body.numbers[GREATEST_WIDTH] <= tolerance:
         return -1
     above = over(cut.spots, v, plane_about(body.numbers, face, cutter.origin))
-    if cut.table[cutter.base + face, USED] % 2 == 1 or above <= tolerance:
+    if cut.table[cutter.base + face, USED] == 1 or above <= tolerance:
         return other_face(cut, cutter, face, v, tolerance)
     return face
 
@@ -218,14 +217,10 @@ def cut_from(cut, cutter, start, turn, n_later, limits):
             continue
         mesh[v, VISITED] = base + 1
         if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
-            mesh[v, VISITED] = mesh[v - 1, VISITED]
             continue
         place = place_about_centroid(cutter, spots, v)
         face = face_to_cut_by(cut, cutter, v, place, tolerance)
         if face < 0:
-            continue
-        if table[base + face, USED] == LATENT:
-            mesh[v, VISITED] = -1
             continue
         plane = plane_about(body.numbers, face, cutter.origin)
         if turn == 0 and over(spots, v, plane) <= limits.noise:

@@ -20,10 +20,9 @@ from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import N_FACES, PackedBody, face_edges, place_of
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
-N_FREE, STAMP, N_ROWS, FIRST_BODY, LAID_BODY = range(5)
+N_FREE, STAMP, N_ROWS, FIRST_BODY = range(4)
 ACROSS, PLANES, MARK, VISITED = 0, 3, 6, 7
 FIRST, SEEN, USED = 0, 1, 2
-LATENT, WHOLE = 2, 3
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
 NEW, OUTSIDE, SLOT, AFTER = 0, 1, 2, 3
 
@@ -36,12 +35,11 @@ class Cut(NamedTuple):
         mesh: (c, 8) int32, a row a vertex: `ACROSS` + k the vertex at the other end of the edge that leaves plane
             k (-1 first: a free row), `PLANES` + k the planes in order, `MARK` a stamp, `VISITED` the last body it
             was held against.
-        state: (5,) free rows, last stamp, rows used, the body that is cut, the one whose patch was laid.
+        state: (4,) free rows, last stamp, rows used, the body that is cut.
         work: (4, c) int32 scratch, but `work[FREE]` holds the free rows.
         rim: (c, 4) int32, the last cut's new vertices: `NEW` itself, `OUTSIDE` its neighbour there, `SLOT` that
             one's slot, `AFTER` the plane that follows.
-        table: (p, 3) int32, a row a plane: `FIRST` scratch, `SEEN` a stamp, `USED` 1 once it has cut, `LATENT` if
-            it is to come in with a patch (`polytope.patch`), `WHOLE` once it has.
+        table: (p, 3) int32, a row a plane: `FIRST` scratch, `SEEN` a stamp, `USED` 1 once it has cut.
     """
 
     spots: Floats2

@@ -23,13 +23,10 @@ from clearance.kernels.polytope.body import (
 from clearance.kernels.polytope.cut import (
     FIRST,
     FIRST_BODY,
-    LAID_BODY,
     N_ROWS,
     PLANES,
     SEEN,
     STAMP,
-    USED,
-    WHOLE,
     cut_in,
 )
 
@@ -148,7 +145,6 @@ def trivalent_moments(
     table: Shorts2,
     rows: Integers2,
     areas: Floats2,
-    areas_laid: Floats2,
     origin: Floats,
 ) -> tuple[float, float, float, float, float]:
     """Volume [m^3], volume times centroid (3) [m^4], greatest coordinate, about the origin of a `Cut`.
@@ -158,12 +154,12 @@ def trivalent_moments(
 
     Args:
         block, state, table: of `polytope.cut.cut_in`. rows: (m, 5) all bodies, of `polytope.bodies`.
-        areas, areas_laid: `face_areas` of the body that was cut and of the one whose patch was laid; (0, 4): all
-            faces are taken by their edges. origin: (3,) of the places in the bodies' frame.
+        areas: `face_areas` of the body that was cut; (0, 4): all faces are taken by their edges.
+        origin: (3,) of the places in the bodies' frame.
     """
     cut = cut_in(block, state, table)
     places, mesh = cut.spots, cut.mesh
-    i_first, i_laid = state[FIRST_BODY], state[LAID_BODY]
+    i_first = state[FIRST_BODY]
     base = rows[i_first, FIRST_PLANE]
     state[STAMP] += 2
     stamp = state[STAMP]
@@ -180,8 +176,6 @@ def trivalent_moments(
                 table[name, SEEN] = stamp
                 if whole and name >= base and name < base + len(areas):
                     part = whole_face(rows, i_first, areas, name, origin)
-                elif whole and table[name, USED] == WHOLE and len(areas_laid) > 0:
-                    part = whole_face(rows, i_laid, areas_laid, name, origin)
                 else:
                     table[name, FIRST] = u
                     continue
