@@ -38,6 +38,17 @@ def gaps_of_balls(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
     return np.linalg.norm(middles[0] - middles[1], axis=1) - radii.sum()
 
 
+def gaps_along_centres(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """(n,) [m] how far two boxes are from each other along the line of their middles."""
+    middles = [poses[:, i, :3, :3] @ bounds[i].mean(axis=0) + poses[:, i, :3, 3] for i in (0, 1)]
+    away = middles[1] - middles[0]
+    length = np.linalg.norm(away, axis=1)
+    along = away / length[:, None]
+    seen = [np.einsum("nij,ni->nj", poses[:, i, :3, :3], along) for i in (0, 1)]
+    reach = [np.abs(seen[i]) @ (bounds[i, 1] - bounds[i, 0]) / 2 for i in (0, 1)]
+    return length - reach[0] - reach[1]
+
+
 PACES = st.sampled_from([0.0, 1e-4, 0.01, 0.1, 0.5, 2.0])
 
 
@@ -61,6 +72,7 @@ def test_where_boxes_are_omitted_they_are_beside_each_other_and_else_never(
         [
             gaps_along_axes(bounds[0], bounds[1], seen),
             gaps_along_axes(bounds[1], bounds[0], np.linalg.inv(seen)),
+            gaps_along_centres(bounds, poses),
             gaps_of_balls(bounds, poses),
         ],
         axis=0,
