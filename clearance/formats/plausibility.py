@@ -7,6 +7,7 @@ Not for: what the case itself shows (`world.plausibility`), and values that cann
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -37,7 +38,12 @@ LARGE_ZONE = 1.0
 """[m] Corners of programs are rounded within 1 to 200 mm."""
 
 TOO_WIDE = 10.0
-"""[-] A slide's limit, or a speed, so many times the robot's own: degrees are 57 times radians."""
+"""[-] A slide's limit is so many of its own ranges out, or a speed so many times the robot's own: degrees are 57
+times radians.
+"""
+
+MANY_TURNS = 6.0 * math.pi
+"""[rad] Limits of joints that turn endlessly are a few turns at most; 30 degrees are 4.8 turns of radians."""
 
 IN_DEGREES = "angles are in radians, is this degrees (90° are 1.5708 rad)?"
 IN_MILLIMETRES = "lengths are in metres, is this millimetres?"
@@ -158,19 +164,35 @@ class LimitBound(NamedTuple):
 def limit_notices(bounds: Iterable[LimitBound], shown: str) -> list[Notice]:
     """A notice on limits that are wider than the robot's own, so that they limit nothing, as in another unit."""
     odd = [
-        f"{kind} of {joint.name} is {given:g} beside the robot's own {own:g}"
-        for kind, joint, given, own, is_wider in bounds
-        if is_wider
-        if (
-            _looks_like_degrees(abs(given))
-            if kind == "position" and turns(joint)
-            else abs(given) > TOO_WIDE * abs(own)
-        )
+        f"{one.kind} of {one.joint.name} is {one.given:g}{_beside(one.own)}"
+        for one in bounds
+        if (one.is_wider or math.isinf(one.own)) and _is_far_out(one)
     ]
     meant = (
         "limits are in radians or metres, and these limit nothing; is this degrees or millimetres?"
     )
     return [units(f"{shown}: {one}") for one in _asked(odd, meant)]
+
+
+def _beside(own: float) -> str:
+    return "" if math.isinf(own) else f" beside the robot's own {own:g}"
+
+
+def _is_far_out(bound: LimitBound) -> bool:
+    """True for what rounding, full turns and a margin do not explain, nor that no limit is meant."""
+    given, own = abs(bound.given), bound.own
+    if bound.kind == "velocity":
+        return given > TOO_WIDE * own and not _stands_for_none(given)
+    span = bound.joint.upper - bound.joint.lower
+    beyond = given if math.isinf(own) else abs(bound.given - own)
+    if turns(bound.joint):
+        return beyond > min(span, MANY_TURNS) and _looks_like_degrees(given)
+    return beyond > TOO_WIDE * span
+
+
+def _stands_for_none(speed: float) -> bool:
+    """True for 100, 1000 and so on, which files write for a speed without a limit."""
+    return speed >= 100.0 and math.log10(speed).is_integer()
 
 
 def _looks_like_degrees(angle: float) -> bool:

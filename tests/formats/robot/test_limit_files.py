@@ -92,7 +92,50 @@ def test_limits_in_another_unit_are_suspect_where_the_robots_own_stay(tmp_path, 
     assert all(one.startswith("CHECK UNITS: limits.yaml: ") and odd in one for one in told)
 
 
-@pytest.mark.parametrize(("speed", "is_odd"), [(60.0, True), (3.0, False)])
+@pytest.mark.parametrize(
+    ("own", "limits", "odd"),
+    [
+        ((-3.839724354, 3.839724354), "min_position: -3.84, max_position: 3.84", ""),
+        ((-3.839724354, 3.839724354), "min_position: -4.36, max_position: 4.36", ""),
+        ((0.5445, 4.5169), "min_position: 0.54, max_position: 4.52", ""),
+        ((-6.2832, 6.2832), "min_position: -6.3, max_position: 6.3", ""),
+        ((-3.839724354, 3.839724354), "min_position: -3.8, max_position: 15", "is 15 beside the robot's own 3.8"),
+        ((-0.1, 0.1), "min_position: -5, max_position: 0.1", "is -5 beside the robot's own -0.1"),
+        (None, "min_position: -12.57, max_position: 12.57", ""),
+        (None, "min_position: -90, max_position: 90", "position of shoulder is -90, position of shoulder is 90; "),
+    ],
+)  # fmt: skip
+def test_limits_a_little_beyond_the_robots_own_are_no_suspicion(tmp_path, own, limits, odd):
+    """Rounded up, in full turns, or in degrees; the last joints have no limits of their own."""
+    if own is None:
+        urdf = TWO_JOINTS.replace('type="revolute"', 'type="continuous"', 1)
+    else:
+        urdf = TWO_JOINTS.replace('lower="-1" upper="1"', 'lower="{}" upper="{}"'.format(*own), 1)
+    assert urdf != TWO_JOINTS
+    given = f"joint_limits:\n  shoulder: {{has_position_limits: true, {limits}}}\n"
+    told = texts(load(tmp_path, given, urdf=urdf), Severity.SUSPECT)
+    assert len(told) == bool(odd)
+    assert all(odd in one for one in told)
+
+
+@pytest.mark.parametrize(
+    ("limits", "odd"),
+    [
+        ("min_position: -0.0001, max_position: 0.1", ""),
+        ("min_position: -0.02, max_position: 0.5", ""),
+        ("min_position: 0, max_position: 100", "position of lift is 100 beside the robot's own 0.1"),
+    ],
+)  # fmt: skip
+def test_limits_of_a_slide_are_held_against_its_range(tmp_path, limits, odd):
+    given = f"joint_limits:\n  lift: {{has_position_limits: true, {limits}}}\n"
+    told = texts(load(tmp_path, given), Severity.SUSPECT)
+    assert len(told) == bool(odd)
+    assert all(odd in one for one in told)
+
+
+@pytest.mark.parametrize(
+    ("speed", "is_odd"), [(60.0, True), (3.0, False), (100.0, False), (1e6, False)]
+)
 def test_speeds_in_degrees_are_suspect_where_the_robots_own_stay(tmp_path, speed, is_odd):
     limits = f"joint_limits: {{shoulder: {{has_velocity_limits: true, max_velocity: {speed}}}}}\n"
     urdf = TWO_JOINTS.replace('upper="1.0"', 'upper="1.0" velocity="2.0"', 1)
