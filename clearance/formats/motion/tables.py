@@ -150,16 +150,21 @@ def _columns(header: list[str], request: TrajectoryRequest) -> list[Column]:
     return with_time(columns_in(header, request.turns, choice.unit_pair), request.turns)
 
 
+_PART_OF_SECOND = re.compile(r"(?:nano|n|micro|u|milli|m)s(?:ec(?:ond)?s?)?$")
+
+
 def _refuse_half_times(header: Sequence[str], columns: Sequence[Column]) -> None:
-    """Nothing, unless whole seconds and their nanoseconds are two columns, and no other one is the time."""
+    """Nothing, unless whole seconds and the rest of them are two columns, and no other one is the time."""
     times = {one.header for one in columns if one.name == TIME}
-    for rest in header:
-        stem = re.sub(r"n(ano)?secs?$", "", rest)
-        for whole in (f"{stem}sec", f"{stem}secs"):
-            if stem != rest and whole in header and times <= {whole, rest}:
+    plain = {re.sub(r"\s*[\[(].*", "", one).lower(): one for one in header}
+    for name, rest in plain.items():
+        stem = _PART_OF_SECOND.sub("", name)
+        wholes = [plain.get(stem + ending) for ending in ("sec", "secs", "second", "seconds")]
+        for whole in wholes if stem != name else ():
+            if whole is not None and times <= {whole, rest}:
                 raise BadTime(
                     f"columns {whole!r} and {rest!r} are a time together",
-                    valid="a column time [s] in their place: seconds + nanoseconds / 1e9",
+                    valid="a column time [s] in their place: their sum, as seconds + nanoseconds / 1e9",
                 )
 
 

@@ -100,6 +100,12 @@ TAKEN = "{time: timestamp, shoulder: actual_q_0, lift: actual_q_1}"
         ("sec,nanosec", "time: sec"),
         ("header.stamp.secs,header.stamp.nsecs", "time: header.stamp.secs"),
         ("stamp/sec,stamp/nanosec", "time: stamp/nanosec"),
+        ("seconds,nanoseconds", ""),
+        ("seconds,nanoseconds", "time: seconds"),
+        ("seconds,nanos", "time: seconds"),
+        ("Sec,Nanosec", "time: Sec"),
+        ("sec [s],nanosec [ns]", ""),
+        ("sec,usec", "time: sec"),
     ],
 )
 def test_half_of_a_time_is_no_time(tmp_path, header, columns):
