@@ -37,6 +37,9 @@ MOST_ROWS = 700
 SAMPLES = 16
 """Places on each piece of the shape."""
 
+ALONG = 0.2
+"""[-] Sine of the angle to a piece below which a direction is along it."""
+
 STEPS = 30
 """Linear programs that one search may solve."""
 
@@ -107,14 +110,17 @@ class FitTarget:
     def gaps(self, here: ContourPieces, samples: Places, given: np.ndarray) -> Gaps:
         """The same, positive where the shape is on its right side: to be at least the margin.
 
-        A place between corners of its own curve does not count where its foot is a corner: that corner's own foot
-        is nearer. To first order such a place could not pass the corner of an edge along which it lies.
+        A place between corners does not count where its foot is a corner along its own edge: that corner's own
+        foot is nearer. To first order such a place could not pass the corner, and the edge could not shrink.
         """
         own, theirs = self._signed(here, samples, given)
         far = 1e3 * (here.size + self.pieces.size)
-        own = own.without(own.at_corner & ~at_corner(samples[1]), far)
-        between = ~at_corner(self.pieces.feet(given)[1])
-        return joined_gaps(own, theirs.without(theirs.at_corner & between, far))
+        piece, share, _ = self.pieces.feet(given)
+        own = own.without(own.at_corner & slides_past(own, here, *samples), far)
+        theirs = theirs.without(
+            theirs.at_corner & slides_past(theirs, self.pieces, piece, share), far
+        )
+        return joined_gaps(own, theirs)
 
     def gaps_of_given(self, here: ContourPieces, samples: Places, given: np.ndarray) -> np.ndarray:
         """The distances of the outline's points alone, all of them."""
@@ -148,6 +154,14 @@ class FitTarget:
             return one.score < two.score
         far = [hausdorff(f.placed.curve, self.outline.curve).distance for f in (one, two)]
         return far[0] < far[1] * (1.0 - 1e-9)
+
+
+def slides_past(
+    gaps: Gaps, curve: ContourPieces, piece: np.ndarray, share: np.ndarray
+) -> np.ndarray:
+    """(k,) whether the places of a curve lie between corners, and their feet along their pieces."""
+    across = np.abs((gaps.normal * curve.left(piece, share)).sum(axis=1))
+    return ~at_corner(share) & (across < ALONG)
 
 
 class FitSearch:
