@@ -21,7 +21,7 @@ from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.pairs import names_of
 from clearance.world.phase import Phase
 from clearance.world.plausible_sizes import FAR_OFF, far_off_notice
-from clearance.world.rules import Rule, Waiver
+from clearance.world.rules import Rule, Waiver, matches
 
 ROUNDED = 1e-4
 """[m] Coordinates that a sketch's file rounds may be off by as much."""
@@ -84,9 +84,9 @@ def _why_idle(case: Case, plan: SectionPlan, rule: Rule) -> Iterator[str]:
 
 
 def _waivers_of_all(case: Case, plan: SectionPlan) -> Iterator[Notice]:
-    """A warning on each waiver that names neither a body nor a rule, and is of all pairs that are measured."""
+    """A warning on each waiver that names no body, and is of all pairs that are measured, by whatever rule."""
     for waiver in case.waivers:
-        by_pattern = all({*one} & {*"*?["} for one in waiver.between) and not waiver.rule.strip("*")
+        by_pattern = all({*one} & {*"*?["} for one in waiver.between)
         if by_pattern and waiver.is_of_case(case.name) and _is_of_all(waiver, case, plan):
             level = f"down to {waiver.at_least * 1000:g} mm"
             text = f"{waiver} is for every pair: it waives later faults too, {level}"
@@ -94,7 +94,10 @@ def _waivers_of_all(case: Case, plan: SectionPlan) -> Iterator[Notice]:
 
 
 def _is_of_all(waiver: Waiver, case: Case, plan: SectionPlan) -> bool:
-    return all(waiver.matches(names_of(case, one), names_of(case, two)) for one, two in plan.pairs)
+    rules = [case.limits.rule_names[i] for i in plan.rules]
+    return all(matches(rule, waiver.rule) for rule in rules) and all(
+        waiver.matches(names_of(case, one), names_of(case, two)) for one, two in plan.pairs
+    )
 
 
 def _profiles_without(case: Case) -> Iterator[Notice]:

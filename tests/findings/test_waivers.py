@@ -295,8 +295,19 @@ def test_a_waiver_of_every_pair_is_warned_of_and_one_of_some_pairs_is_not(tmp_pa
         ),
         waiver("*"): (),
     }
-    of_rule = dataclasses.replace(every, rule="default")
-    assert checked(tmp_path, NEAR_A, of_rule).verdict.warnings == ()
+    gate_rule = Rule(("box", A), name="gate", fail=0.0045)
+    two_rules = Limits(FAIL, rules=(gate_rule,))
+    gates = {**NEAR_A, B: (0.5, 0.2)}
+    for rule, limits, is_told in (
+        ("?*", None, True),
+        ("default", None, True),
+        ("*t*", two_rules, True),
+        ("default", two_rules, False),
+        ("gate", two_rules, False),
+    ):
+        of_rule = dataclasses.replace(every, rule=rule)
+        told_of = checked(tmp_path, gates, of_rule, limits=limits).verdict.warnings
+        assert any("is for every pair" in one for one in told_of) is is_told
     for between, is_told in ((("b*", "gate_?"), True), (("b*", "gate_[a]"), False)):
         one = dataclasses.replace(every, between=between)
         gates = {**NEAR_A, B: (0.5, 0.2)}
