@@ -104,9 +104,7 @@ def _notes(model: MjcfModel, colliding: list[MjcfGeom]) -> list[str]:
 
 def _notices(model: MjcfModel, colliding: list[MjcfGeom]) -> Iterator[Notice]:
     """Warnings on bodies that could move, and that a geom that collides is on."""
-    bearing = {geom.body for geom in colliding}
-    for i in range(len(model.bodies) - 1, 0, -1):  # parents come first
-        bearing |= {model.bodies[i].parent} if i in bearing else set()
+    bearing = model.bearing(geom.body for geom in colliding)
     mocap = [i for i, body in enumerate(model.bodies) if body.is_mocap]
     moving = {"bodies on joints": [joint.body for joint in model.joints], "mocap bodies": mocap}
     for what, indices in moving.items():

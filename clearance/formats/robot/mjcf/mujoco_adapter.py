@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -141,6 +141,13 @@ class MjcfModel:
     filters_parents: bool
     keys: tuple[MjcfKey, ...]
     reference: np.ndarray
+
+    def bearing(self, bodies: Iterable[int]) -> set[int]:
+        """The places of some bodies, and of all that they are on."""
+        found = {*bodies}
+        for i in range(len(self.bodies) - 1, 0, -1):  # parents come first
+            found |= {self.bodies[i].parent} if i in found else set()
+        return found
 
 
 _PURPOSE = "reading MJCF"

@@ -102,7 +102,8 @@ def _notices(
             f"equalities that close loops are not followed ({counts}): the trajectory, or joints, must "
             "give every joint of the loop its value"
         )
-    moving = [repr(one.name) for one in model.bodies if one.is_mocap and measured.get(one.name)]
+    bearing = model.bearing(i for i, one in enumerate(model.bodies) if measured.get(one.name))
+    moving = [repr(model.bodies[i].name) for i in sorted(bearing) if model.bodies[i].is_mocap]
     found += naming("mocap bodies stand where the file has them", moving)
     return [Notice(Severity.WARNING, "geometry", text) for text in found]
 
