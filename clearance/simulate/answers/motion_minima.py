@@ -97,10 +97,12 @@ class _RuleMinima:
         self, asked: dict[int, float], known: dict[int, PairMinimum]
     ) -> dict[int, PairMinimum]:
         """The least of some pairs up to a clearance [m] each, without those that stay above it; `known`: their
-        least at the steps."""
+        least at the steps. The certificate of the rule holds for each."""
         found = least_between(self.rule, asked) if asked else {}
+        certificate = self.rule.certificate
+        of_all = -np.inf if certificate is None else float(certificate.lower_bound.min())
         return {
-            pair: _lesser(known.get(pair), moment, proven)
+            pair: _lesser(known.get(pair), moment, max(proven, of_all))
             for pair, (proven, moment) in found.items()
             if pair in known or moment is not None
         }

@@ -82,6 +82,13 @@ def test_what_is_proven_of_each_pair_is_never_above_many_samples():
         assert one.proven <= least[one.link, one.obstacle] <= one.clearance + 1e-12
 
 
+def test_no_pair_is_proven_less_than_its_rule():
+    """Far pairs are proven to a hundredth of their clearance, the rule to a tenth of a millimetre."""
+    run = cl.check(replace(sweeping(TWICE, 0.47), limits=cl.Limits(fail=0.0)))
+    least = run.record.certificate.lower_bound.min()
+    assert all(one.proven >= least for one in run.session.motion_minima())
+
+
 def test_where_pairs_are_too_many_those_that_are_far_are_of_the_samples(monkeypatch):
     monkeypatch.setattr(room, "MOST_INTERVALS", 0)
     minima = cl.check(two_posts()).session.motion_minima()
