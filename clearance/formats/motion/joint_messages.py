@@ -45,12 +45,14 @@ class JointMessage(NamedTuple):
         place: the keys that lead to it. trajectory: its keys and values.
         around: the messages that hold it, from the outermost in, each with the keys that lead to it.
         left_out: the keys that lead to other segments of the same message, where one is chosen.
+        n_others: how many trajectories the file holds beside it and them.
     """
 
     place: str
     trajectory: Fields
     around: tuple[tuple[str, Fields], ...] = ()
     left_out: tuple[str, ...] = ()
+    n_others: int = 0
 
     @property
     def n_points(self) -> int:
@@ -113,8 +115,8 @@ def chosen(messages: Sequence[JointMessage], which: int | None) -> JointMessage:
             valid=f"a number from 1 to {len(messages)}",
         )
     one = messages[which - 1]
-    others = (other for other in messages if other is not one and _are_segments(one, other))
-    return one._replace(left_out=tuple(other.place for other in others))
+    others = [other.place for other in messages if other is not one and _are_segments(one, other)]
+    return one._replace(left_out=tuple(others), n_others=len(messages) - 1 - len(others))
 
 
 def _are_segments(one: JointMessage, other: JointMessage) -> bool:

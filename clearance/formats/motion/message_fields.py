@@ -136,7 +136,9 @@ def with_unread(
     grave = tuple(
         path for path in unread if path in message.left_out or _GRAVE & {*path.split(".")}
     )
-    notes = naming("fields beside the points, not read", unread, 8)
+    notes = [*naming("fields beside the points, not read", unread, 8)]
+    if message.n_others:
+        notes.append(f"trajectories in other messages, not read: {message.n_others}")
     return replace(trajectory, unread=grave), notes
 
 

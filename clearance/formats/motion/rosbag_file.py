@@ -8,7 +8,7 @@ JointState what the robot did. Not for: the points of a message (`joint_points`)
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import islice
@@ -32,8 +32,10 @@ from clearance.world.notice import listed
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
 
+_COMMANDS = "trajectory_msgs/msg/JointTrajectory"
+
 _PLANNED = (
-    "trajectory_msgs/msg/JointTrajectory",
+    _COMMANDS,
     "moveit_msgs/msg/RobotTrajectory",
     "moveit_msgs/msg/DisplayTrajectory",
     "control_msgs/msg/FollowJointTrajectoryActionGoal",
@@ -79,15 +81,15 @@ def read_bag(
         if kind == _STATES:
             choice.refuse_others({"topic", "gaps"}, "recorded joint states")
             read = trajectory_of_states(_states(reader, topic), turns, choice.gaps, wrapping)
-            others = _other_joints(reader, topic, {*read.trajectory.joint_names}, turns)
-            return read._replace(trajectory=replace(read.trajectory, unread=tuple(others)))
+            return _with_others(read, reader, topic, turns)
         choice.refuse_others({"topic", "which"}, "messages in a bag")
         plain = ((time, _plain(one)) for time, one in _messages(reader, topic))
         goals = [*_goals_once(plain)]
         message = chosen(messages_in([one for _, one in goals], sys.maxsize), choice.which)
         whole = message.around[0][1] if message.around else message.trajectory
         received = 0 if kind in _PLANS else next(time for time, one in goals if one is whole)
-        return trajectory_of_message(message, sys.maxsize, received=received)
+        read = trajectory_of_message(message, sys.maxsize, received=received)
+        return _with_others(read, reader, topic, turns, (_COMMANDS,))
 
 
 @contextmanager
@@ -179,16 +181,28 @@ def _states(reader: AnyReader, topic: str) -> list[JointState]:
     return states
 
 
-def _other_joints(
-    reader: AnyReader, topic: str, read: Collection[str], turns: Collection[str]
-) -> Iterator[str]:
-    """Joints that other topics of joint states tell of and the one that is read does not, by their topics."""
-    topics = {one.topic for one in reader.connections if one.msgtype == _STATES}
+def _with_others(
+    read: ReadTrajectory,
+    reader: AnyReader,
+    topic: str,
+    turns: Collection[str],
+    kinds: Sequence[str] = (_STATES, _COMMANDS),
+) -> ReadTrajectory:
+    """What was read of a topic, with joints that other topics of some kinds tell of and it does not."""
+    trajectory, known = read.trajectory, {*read.trajectory.joint_names}
+    unread = [*trajectory.unread]
+    topics = {one.topic for one in reader.connections if one.msgtype in kinds}
     for other in sorted(topics - {topic}):
-        first = islice(_messages(reader, other), FIRST_MESSAGES)
-        told = dict.fromkeys(name for _, message in first for name in message.name)
-        if lacking := [name for name in told if name not in read and (name in turns or not turns)]:
-            yield f"{listed(lacking, 4)} of topic {other}"
+        names = dict.fromkeys(name for name in _names_in(reader, other) if name not in known)
+        if lacking := [name for name in names if name in turns or not turns]:
+            unread.append(f"{listed(lacking, 4)} of topic {other}")
+    return read._replace(trajectory=replace(trajectory, unread=tuple(unread)))
+
+
+def _names_in(reader: AnyReader, topic: str) -> Iterator[str]:
+    """The joints that the first messages of a topic tell of."""
+    for _, message in islice(_messages(reader, topic), FIRST_MESSAGES):
+        yield from message.joint_names if hasattr(message, "joint_names") else message.name
 
 
 def _goals_once(messages: Iterable[tuple[int, Any]]) -> Iterator[tuple[int, Any]]:

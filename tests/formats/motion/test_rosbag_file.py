@@ -149,11 +149,14 @@ def test_joints_of_a_topic_that_is_not_chosen_stand_in_the_headline(tmp_path, co
     topics = {"/arm": [state(i, [0.1 * i], ["shoulder"]) for i in range(3)]}
     topics["/same"] = topics["/arm"]
     topics["/lift"] = [state(0, [0.02, 1.0], ["lift", "elsewhere"])]
+    topics["/plan"] = [MOVE]
     bag = write_bag(tmp_path, container, topics)
-    assert read(bag, topic="/arm").trajectory.unread == ("lift, elsewhere of topic /lift",)
+    unread = ("lift, elsewhere of topic /lift", "lift of topic /plan")
+    assert read(bag, topic="/arm").trajectory.unread == unread
+    assert read(bag, topic="/plan").trajectory.unread == ()
     named = changed("file: path.csv", f"file: {bag.relative_to(tmp_path)}, topic: /arm")
     warned = check(write_case(tmp_path, named, urdf=TWO_JOINTS)).verdict.warnings
-    assert any("not read: lift of topic /lift" in one for one in warned)
+    assert any("not read: lift of topic /lift, lift of topic /plan" in one for one in warned)
 
 
 def test_states_that_do_not_follow_each_other_are_refused(tmp_path):

@@ -248,7 +248,9 @@ def test_segments_that_are_not_chosen_stand_in_the_headline(tmp_path):
         "not read: trajectory[0].joint_trajectory, trajectory[2].joint_trajectory"
     )
     plans = [{"trajectory": segments[0]}, {"trajectory": segments[1]}]
-    assert read(plans, 2).trajectory.unread == ()
+    trajectory, notes = read(plans, 2)
+    assert trajectory.unread == ()
+    assert "path.json: trajectories in other messages, not read: 1" in notes
 
 
 @pytest.mark.parametrize(
