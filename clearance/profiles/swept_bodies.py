@@ -133,7 +133,9 @@ def notes_on_sweep(run: TimedCase, swept: Sequence[SweptBody]) -> Iterator[str]:
         yield from (f"{NOT_SWEPT}: {one.text}{whose}" for one in without)
     open_kinds = (Severity.SUSPECT, Severity.UNPROVEN)
     for one in run.notices:
-        if one.severity in open_kinds and not one.accepted_by(case.accept):
+        if (one.severity in open_kinds or one.kind == "equality") and not one.accepted_by(
+            case.accept
+        ):
             yield f"{IN_DOUBT}: {one.line}"
 
 

@@ -70,6 +70,14 @@ def test_suspect_input_stands_in_every_file_of_the_outline_unless_it_is_accepted
     assert all(("CHECK UNITS" in text) is not accepted for text in texts(swept))
 
 
+def test_a_body_that_may_stand_elsewhere_is_swept_in_doubt():
+    """It is in the outline, where its file has it."""
+    notice = Notice(Severity.WARNING, "equality", "mocap bodies stand where the file has them: 'a'")
+    swept = cl.swept_profile(case_with(notices=(notice,)))
+    assert swept.notes == (f"in doubt: {notice.line}",) and swept.left_out == ()
+    assert "if what its notes doubt is right" in swept.content
+
+
 @pytest.mark.parametrize("suffix", ["yaml", "svg", "dxf", "geojson"])
 def test_a_link_that_is_only_shown_stands_in_the_file_and_quiet_or_not_in_the_output(
     suffix, tmp_path, capsys

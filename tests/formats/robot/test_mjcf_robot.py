@@ -76,8 +76,8 @@ def test_a_mocap_body_with_a_shape_is_warned_of(tmp_path):
     target = '<body name="target" mocap="true"/>'
     for on_cart in (BALL, f'<body name="top">{BALL}</body>'):
         cart = f'<body name="cart" mocap="true">{on_cart}</body>'
-        told = [notice.text for notice in load_mjcf(tmp_path, mjcf(target + cart)).notices]
-        assert told == ["mocap bodies stand where the file has them: 'cart'"]
+        (told,) = load_mjcf(tmp_path, mjcf(target + cart)).notices
+        assert told.line == "mocap bodies stand where the file has them: 'cart' [CL222]"
 
 
 SRDF = ", srdf: toy.srdf"

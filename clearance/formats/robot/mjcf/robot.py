@@ -105,7 +105,7 @@ def _notices(
     bearing = model.bearing(i for i, one in enumerate(model.bodies) if measured.get(one.name))
     moving = [repr(model.bodies[i].name) for i in sorted(bearing) if model.bodies[i].is_mocap]
     found += naming("mocap bodies stand where the file has them", moving)
-    return [Notice(Severity.WARNING, "geometry", text) for text in found]
+    return [Notice(Severity.WARNING, "equality", text) for text in found]
 
 
 def _kinds(model: MjcfModel) -> dict[str, frozenset[str]]:
