@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, Robot
+from clearance.world.robot import Joint, JointKind, Robot
 
 NEAR_BASE = 1e-4
 """[m] and [-] How far a robot's base may be from where a file has it, whose numbers may be rounded."""
@@ -71,18 +72,19 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
     text = f"{len(resting)} of {len(joints)} joints {are} at 0: {listed(names, 4)}; "
     text += f"joints on both sides of {names[0]} are given, " if between else ""
     text += f"is {'a column' if moved else 'its trajectory'} missing? "
-    text += "robot: {joints: {NAME: …}} says where they are"
+    text += f"{_in_case(placed, before, 'NAME: …')} says where they are"
     return [*found, Notice(Severity.WARNING, "rest", text, placed.robot.name)]
 
 
 def _rest_otherwise(placed: PlacedRobot, told: Mapping[str, float], before: str) -> list[Notice]:
     """A warning on joints that rest elsewhere than the message of the trajectory starts with."""
-    rest = {
-        joint.name: placed.fixed_positions.get(joint.name, 0.0)
-        for joint in placed.robot.moving_joints
-        if joint.name in told
-    }
-    odd = [name for name, position in rest.items() if abs(position - told[name]) > NEAR_REST]
+    joints = [joint for joint in placed.robot.moving_joints if joint.name in told]
+    rest = {joint.name: placed.fixed_positions.get(joint.name, 0.0) for joint in joints}
+    odd = [
+        joint.name
+        for joint in joints
+        if _apart(joint, rest[joint.name], told[joint.name]) > NEAR_REST
+    ]
     if not odd:
         return []
     shown = listed(
@@ -91,8 +93,20 @@ def _rest_otherwise(placed: PlacedRobot, told: Mapping[str, float], before: str)
     taken = ", ".join(f"{name}: {told[name]:g}" for name in odd)
     about = placed.robot.name
     text = f"robot {about!r} rests otherwise than its message starts: {shown}"
-    remedy = f"robot: {{joints: {{{taken}}}}} has them as there"
+    remedy = f"{_in_case(placed, before, taken)} has them as there"
     return [Notice(Severity.WARNING, "rest", f"{text}; {remedy}", about)]
+
+
+def _apart(joint: Joint, one: float, other: float) -> float:
+    """[rad] or [m] between two positions; whole turns of a continuous joint are none."""
+    is_endless = joint.kind is JointKind.CONTINUOUS
+    return abs(math.remainder(one - other, 2.0 * math.pi) if is_endless else one - other)
+
+
+def _in_case(placed: PlacedRobot, before: str, joints: str) -> str:
+    """The lines of a case that give a robot's joints; with several robots, `before` stands before their names."""
+    given = f"joints: {{{joints}}}"
+    return f"robots: [{{name: {placed.robot.name}, {given}}}]" if before else f"robot: {{{given}}}"
 
 
 def _between(robot: Robot, resting: list[Joint], moved: set[str]) -> list[Joint]:

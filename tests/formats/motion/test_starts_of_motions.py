@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -214,6 +215,29 @@ def test_joints_that_rest_otherwise_than_a_message_has_them_stand_in_the_headlin
     found = [one for one in notices_of(load(tmp_path, MOVE, robot=joints)) if one.kind == "rest"]
     assert len(found) == bool(told)
     assert all(told in one.text and "joints: {lift: 0.04}" in one.text for one in found)
+
+
+@pytest.mark.parametrize(("rests", "is_told"), [(0.0, False), (-0.1, True)])
+def test_whole_turns_are_no_other_rest_of_a_continuous_joint(tmp_path, rests, is_told):
+    endless = TWO_JOINTS.replace(
+        'name="shoulder" type="revolute"', 'name="shoulder" type="continuous"'
+    )
+    start = state({"lift": 0.0, "shoulder": 6.283185307})
+    move = displayed(plan(point(0.0, 0.0), point(1.0, 0.02), names=("lift",)), start)
+    case = load(tmp_path, move, robot=f", joints: {{shoulder: {rests}}}", urdf=endless)
+    assert [one.kind for one in notices_of(case) if one.kind == "rest"] == ["rest"] * is_told
+
+
+def test_the_remedy_of_a_rest_among_several_robots_names_the_robot(tmp_path):
+    """Such a case has `robots`, whose rows have names."""
+    case = load(tmp_path, MOVE)
+    other = replace(case.robots[0], robot=replace(case.robots[0].robot, name="second"))
+    told = [one.text for one in notices_of(replace(case, robots=(*case.robots, other)))]
+    assert any(
+        one.endswith("; robots: [{name: arm, joints: {lift: 0.04}}] has them as there")
+        for one in told
+    )
+    assert any("robots: [{name: second, joints: {lift: 0.04}}]" in one for one in told)
 
 
 def test_a_new_case_has_joints_at_rest_where_the_message_has_them(tmp_path):
