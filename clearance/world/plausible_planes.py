@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import NothingToMeasure
 from clearance.world.case import Case
 from clearance.world.extents import (
     PLANE_SIZE,
@@ -18,52 +20,83 @@ from clearance.world.extents import (
     reach_of,
 )
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.whereabouts import Place, bases_of, obstacle_place
+from clearance.world.pairs import OBSTACLE, BodyIndex, measured_pairs
+from clearance.world.whereabouts import Place, bases_of, ground_of, obstacle_place
 
 END = 0.5 * PLANE_SIZE[0]
 """[m] From the middle of a box that stands for a plane."""
+
+DEPTHS = PLANE_SIZE[2], 1.0
+"""[m] Such a box is as deep; those in scenes that earlier releases have converted are 1 m deep."""
+
+
+class Mover(NamedTuple):
+    """A robot or an obstacle that moves.
+
+    Attributes:
+        thing: which, as `BodyIndex.thing`. origins: (n, 4) [m] in the world, between which its own frame gets.
+        reach: [m] no point of it, or of a part that it holds, is farther from them.
+    """
+
+    name: str
+    thing: tuple[bool, int]
+    origins: np.ndarray
+    reach: float
 
 
 def notices_on_planes(case: Case) -> Iterator[Notice]:
     """A warning on each plane that a robot, a moving obstacle, or a part in a hand may get past the end of."""
     without = replace(case, carries=())  # a part may get as far as what carries it, and its length
-    for name, plane in _planes(without):
-        from_plane = np.linalg.inv(plane.pose)
+    for plane, name, place in _planes(without):
+        plane_from_world = np.linalg.inv(place.pose)
         found = []
-        for who, place, reach in _movers(without, _longest_part(case)):
-            local = np.abs(from_plane @ place.pose[:, 3])[:2].max()
-            farthest = float(local) + reach + place.travel + plane.travel
-            if farthest > END and who != name:
-                found.append((farthest, f"{who} may get {metres(farthest)} m from there"))
+        for mover in _movers(without, _longest_part(case)):
+            local = np.abs(mover.origins @ plane_from_world.T)[:, :2].max()
+            farthest = float(local) + mover.reach + place.travel
+            if farthest > END and _is_measured(case, plane, mover.thing):
+                found.append((farthest, f"{mover.name} may get {metres(farthest)} m from there"))
         if found:
             who = listed([text for _, text in greatest(found)])
             ends = f"stands for a plane without end, and ends {metres(END)} m from its middle"
             yield Notice(Severity.WARNING, "plane", f"{name} {ends}: {who}")
 
 
-def _planes(case: Case) -> Iterator[tuple[str, Place]]:
+def _planes(case: Case) -> Iterator[tuple[BodyIndex, str, Place]]:
     """The boxes that stand for planes."""
-    for placed, base in zip(case.robots, bases_of(case), strict=True):
-        for body in placed.robot.bodies:
+    for i, (placed, base) in enumerate(zip(case.robots, bases_of(case), strict=True)):
+        for k, body in enumerate(placed.robot.bodies):
             if body.name == own_floor(placed) and length_of(body) >= PLANE_SIZE[0]:
-                yield f"link {case.prefix_of(placed) + body.name!r}", base
+                yield BodyIndex(i, k), f"link {case.prefix_of(placed) + body.name!r}", base
     for i, obstacle in enumerate(case.obstacles):
         sides = np.ptp(obstacle.body.shape.bounds, axis=0)
-        if np.allclose(sides[:2], PLANE_SIZE[:2]):
-            yield f"obstacle {obstacle.name!r}", obstacle_place(case, i)
+        if any(np.allclose(sides, (*PLANE_SIZE[:2], depth)) for depth in DEPTHS):
+            yield BodyIndex(OBSTACLE, i), f"obstacle {obstacle.name!r}", obstacle_place(case, i)
 
 
-def _movers(case: Case, held: float) -> Iterator[tuple[str, Place, float]]:
-    """What moves, and how far [m] it, and a part that it holds, gets from its place."""
-    for placed, base in zip(case.robots, bases_of(case), strict=True):
-        yield f"robot {placed.robot.name!r}", base, reach_of(placed) + held
+def _movers(case: Case, held: float) -> Iterator[Mover]:
+    """All that moves; with a part of a length [m] in its hand."""
+    for i, (placed, base) in enumerate(zip(case.robots, bases_of(case), strict=True)):
+        reach = reach_of(placed) + held + base.travel
+        yield Mover(f"robot {placed.robot.name!r}", (False, i), base.pose[None, :, 3], reach)
     for i, one in enumerate(case.obstacles):
         if not one.stands:
-            yield (
-                f"obstacle {one.name!r}",
-                obstacle_place(case, i),
-                farthest_corner(one.body) + held,
-            )
+            ground = ground_of(case, i)
+            places = np.zeros((1, 3)) if one.moves is None else one.moves.positions
+            origins = np.column_stack([places, np.ones(len(places))]) @ ground.pose.T
+            reach = farthest_corner(one.body) + held + ground.travel
+            yield Mover(f"obstacle {one.name!r}", (True, i), origins, reach)
+
+
+def _is_measured(case: Case, plane: BodyIndex, thing: tuple[bool, int]) -> bool:
+    """True if a body of a robot, or an obstacle, is measured against a plane, as far as hands are empty."""
+    if case.carries:
+        return plane.thing != thing  # a part in a hand may be
+    try:
+        pairs, _ = measured_pairs(case)
+    except NothingToMeasure:
+        return False
+    others = [pair.a if pair.b == plane else pair.b for pair in pairs if plane in pair]
+    return any(other.thing == thing for other in others)
 
 
 def _longest_part(case: Case) -> float:

@@ -41,6 +41,17 @@ def robot_place(case: Case, i_robot: int) -> Place:
 
 def obstacle_place(case: Case, i_obstacle: int, at_first: bool = False) -> Place:
     """About where an obstacle is; with `at_first` until a robot picks it up."""
+    moves, below = case.obstacles[i_obstacle].moves, ground_of(case, i_obstacle, at_first)
+    if moves is None:
+        return below
+    positions, middle = moves.positions, np.eye(4)
+    middle[:3, 3] = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
+    travelled = float(np.linalg.norm(positions - middle[:3, 3], axis=1).max())
+    return Place(below.pose @ middle, below.travel + travelled)
+
+
+def ground_of(case: Case, i_obstacle: int, at_first: bool = False) -> Place:
+    """About where the frame is in which an obstacle has its own poses over time, or else its own place."""
     obstacle = case.obstacles[i_obstacle]
     below = Place(obstacle.world_from_body, 0.0)
     if obstacle.mount is not None:
@@ -48,13 +59,7 @@ def obstacle_place(case: Case, i_obstacle: int, at_first: bool = False) -> Place
     own = [carry for carry in case.carries if carry.part == obstacle.name]
     first = min(own, key=lambda one: one.window.start, default=None)
     stays = first is None or (at_first and not owner_of(case, Mount(first.by))[0])
-    travel = below.travel if stays else np.inf
-    if obstacle.moves is None:
-        return Place(below.pose, travel)
-    positions, middle = obstacle.moves.positions, np.eye(4)
-    middle[:3, 3] = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
-    travelled = float(np.linalg.norm(positions - middle[:3, 3], axis=1).max())
-    return Place(below.pose @ middle, travel + travelled)
+    return Place(below.pose, below.travel if stays else np.inf)
 
 
 def _mounted(case: Case, mount: Mount) -> Place:

@@ -22,6 +22,7 @@ from clearance.world.plausibility import notices_of
 from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.rules import Allowance
 from clearance.world.self_pairs import limbs
 from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
@@ -566,6 +567,38 @@ def test_an_obstacle_that_moves_past_the_end_of_a_plane_is_warned_of():
     assert told.endswith("m from its middle: obstacle 'cart' may get 30.9 m from there")
     near = replace(cart, moves=replace(moves, positions=places / 2))
     assert _told_of_planes(replace(case_of(), obstacles=(floor, near))) == []
+
+
+GROUND = Obstacle(Body("floor", box((40.0, 40.0, 20.0)), "box"), at(0.0, 0.0, -10.0))
+
+
+def test_an_obstacle_that_only_circles_near_the_edge_of_a_plane_is_not_warned_of():
+    """Its corners get 12.9 m from the middle of the plane, where a ball about all its places ends at 24.9 m."""
+    places = np.array([[-12.0, 0.0, 1.0], [0.0, 12.0, 1.0], [12.0, 0.0, 1.0]])
+    moves = PoseTable(np.arange(3.0), places, np.array([[0.0, 0.0, 0.0, 1.0]] * 3))
+    cart = Obstacle(Body("cart", box((1.0, 1.0, 1.0)), "box"), moves=moves)
+    assert _told_of_planes(replace(case_of(), obstacles=(GROUND, cart))) == []
+    turned = replace(GROUND, world_from_body=at(0.0, -8.0, -10.0))
+    (told,) = _told_of_planes(replace(case_of(), obstacles=(turned, cart)))
+    assert "obstacle 'cart' may get 20.9 m from there" in told
+
+
+def test_a_box_as_wide_as_a_plane_of_another_depth_is_a_box():
+    """Readers of planes make them 20 m deep, and those of 0.2 made them 1 m deep."""
+    far = replace(case_of().robots[0], world_from_base=at(25.0, 0.0, 0.5))
+    hall = replace(GROUND, body=Body("floor", box((40.0, 40.0, 0.2)), "box"))
+    told = [_told_of_planes(Case("made", (far,), (one,))) for one in (GROUND, hall)]
+    assert [len(one) for one in told] == [1, 0]
+
+
+def test_nothing_gets_past_the_end_of_a_plane_that_it_is_not_measured_against():
+    far = replace(case_of().robots[0], world_from_base=at(25.0, 0.0, 0.5))
+    case, pair = Case("made", (far,), (GROUND,)), ("*", "floor")
+    shapeless = replace(case, robots=(replace(far, exclude_links=("base", "upper")),))
+    now_and_then = replace(case, allow=(Allowance(pair, Window(0.5)),))
+    assert [len(_told_of_planes(one)) for one in (case, now_and_then)] == [1, 1]
+    always = replace(case, allow=(Allowance(pair),))
+    assert [_told_of_planes(one) for one in (shapeless, always)] == [[], []]
 
 
 def test_a_part_that_a_hand_takes_past_the_end_of_a_plane_is_warned_of():
