@@ -45,6 +45,7 @@ class JointMessage(NamedTuple):
         place: the keys that lead to it. trajectory: its keys and values.
         around: the messages that hold it, from the outermost in, each with the keys that lead to it.
         left_out: the keys that lead to other segments of the same message, where one is chosen.
+        moved: the joints of those segments.
         n_others: how many trajectories the file holds beside it and them.
     """
 
@@ -52,6 +53,7 @@ class JointMessage(NamedTuple):
     trajectory: Fields
     around: tuple[tuple[str, Fields], ...] = ()
     left_out: tuple[str, ...] = ()
+    moved: tuple[str, ...] = ()
     n_others: int = 0
 
     @property
@@ -115,8 +117,17 @@ def chosen(messages: Sequence[JointMessage], which: int | None) -> JointMessage:
             valid=f"a number from 1 to {len(messages)}",
         )
     one = messages[which - 1]
-    others = [other.place for other in messages if other is not one and _are_segments(one, other)]
-    return one._replace(left_out=tuple(others), n_others=len(messages) - 1 - len(others))
+    others = [other for other in messages if other is not one and _are_segments(one, other)]
+    return one._replace(
+        left_out=tuple(other.place for other in others),
+        moved=tuple(name for other in others for name in _names_in(other)),
+        n_others=len(messages) - 1 - len(others),
+    )
+
+
+def _names_in(message: JointMessage) -> list[str]:
+    names = message.trajectory["joint_names"]
+    return [one for one in names if isinstance(one, str)] if isinstance(names, list) else []
 
 
 def _are_segments(one: JointMessage, other: JointMessage) -> bool:

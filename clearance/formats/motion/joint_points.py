@@ -105,7 +105,7 @@ def trajectory_of_message(
     start = start_of(message)
     with at(where):
         trajectory = _assembled(names, points)
-    trajectory, on_start = with_start(trajectory, start)
+    trajectory, on_start = with_start(trajectory, start, message)
     trajectory, on_unread = with_unread(trajectory, message, start)
     if stamp := nanoseconds_in(header_of(given).get("stamp")) or received:
         trajectory = replace(trajectory, began=stamp / NANO, is_message=True)

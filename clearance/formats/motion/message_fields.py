@@ -59,15 +59,27 @@ def start_of(message: JointMessage) -> StartState | None:
     for place, holder in reversed(message.around):
         if re.search(r"\[[1-9]", message.place[len(place) :]):
             return None  # a later segment begins where the one before ends
-        for key in _STARTS:
-            path = f"{place}.{key}".lstrip(".")
-            joints = holder[key].get("joint_state") if isinstance(holder.get(key), Fields) else None
-            if isinstance(joints, Fields) and joints.get("name"):
-                with at(f"{path}.joint_state"):
-                    require_fields(joints, "header", "name", "position", "velocity", "effort")
-                    return StartState(
-                        path, _by_name(joints, "position"), _by_name(joints, "velocity")
-                    )
+        if (start := _start_in(place, holder)) is not None:
+            return start
+    return None
+
+
+def _resting_in(message: JointMessage) -> dict[str, float]:
+    """Where joints are all the time [rad] or [m] that the start of a message has and no other segment moves."""
+    starts = (_start_in(place, holder) for place, holder in reversed(message.around))
+    start = next((one for one in starts if one is not None), None)
+    positions = {} if start is None else start.positions
+    return {name: at_ for name, at_ in positions.items() if name not in message.moved}
+
+
+def _start_in(place: str, holder: Fields) -> StartState | None:
+    for key in _STARTS:
+        path = f"{place}.{key}".lstrip(".")
+        joints = holder[key].get("joint_state") if isinstance(holder.get(key), Fields) else None
+        if isinstance(joints, Fields) and joints.get("name"):
+            with at(f"{path}.joint_state"):
+                require_fields(joints, "header", "name", "position", "velocity", "effort")
+                return StartState(path, _by_name(joints, "position"), _by_name(joints, "velocity"))
     return None
 
 
@@ -82,16 +94,16 @@ def _by_name(joints: Fields, key: str) -> dict[str, float]:
 
 
 def with_start(
-    trajectory: Trajectory, start: StartState | None
+    trajectory: Trajectory, start: StartState | None, message: JointMessage
 ) -> tuple[Trajectory, tuple[str, ...]]:
     """The trajectory with a sample at 0 s added, if points begin later and the message has a start; and notes."""
-    first = float(trajectory.times[0])
+    first, names = float(trajectory.times[0]), trajectory.joint_names
+    at_start = _resting_in(message) if start is None else start.positions
+    elsewhere = tuple((name, at_) for name, at_ in at_start.items() if name not in names)
+    trajectory = replace(trajectory, elsewhere=elsewhere)
     if start is None:
         without = f"the first point is at {first:g} s; how the robot gets there is not in the file"
         return _with_way_in(trajectory), (without,) if first > 0.0 else ()
-    names = trajectory.joint_names
-    elsewhere = tuple((name, at_) for name, at_ in start.positions.items() if name not in names)
-    trajectory = replace(trajectory, elsewhere=elsewhere)
     others = [f"{name}: {at_:g}" for name, at_ in elsewhere]
     notes = [
         f"{start.place} also has joints that the trajectory does not move {{{listed(others, 8)}}}: "

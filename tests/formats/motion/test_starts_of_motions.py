@@ -240,6 +240,17 @@ def test_the_remedy_of_a_rest_among_several_robots_names_the_robot(tmp_path):
     assert any("robots: [{name: second, joints: {lift: 0.04}}]" in one for one in told)
 
 
+@pytest.mark.parametrize("is_moved", [False, True])
+def test_a_later_segment_has_joints_at_rest_where_none_has_moved_them(tmp_path, is_moved):
+    both = plan(point(0.0, 0.1, 0.04), point(1.0, 0.2, 0.0), names=("shoulder", "lift"))
+    before = both if is_moved else plan(point(0.0, 0.1), point(1.0, 0.2))
+    after = plan(point(0.0, 0.2), point(1.0, 0.3))
+    segments = [{"joint_trajectory": one} for one in (before, after)]
+    case = load(tmp_path, {"trajectory": segments, "trajectory_start": START}, ", which: 2")
+    told = [one.text for one in notices_of(case) if one.kind == "rest"]
+    assert any("joint 'lift' at 0, and there at 0.04" in one for one in told) is not is_moved
+
+
 def test_a_new_case_has_joints_at_rest_where_the_message_has_them(tmp_path):
     load(tmp_path, MOVE)
     (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
