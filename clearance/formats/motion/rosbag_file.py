@@ -55,8 +55,8 @@ _STATES = "sensor_msgs/msg/JointState"
 MOST_MESSAGES = 1_000_000
 """Of one topic; some 70 s."""
 
-FIRST_MESSAGES = 100
-"""Of a topic that is not chosen; drivers that tell of different joints take turns."""
+FIRST_MESSAGES = 10_000
+"""Of a topic that is not chosen, some 0.7 s; drivers that tell of different joints take turns, or begin later."""
 
 
 def read_bag(

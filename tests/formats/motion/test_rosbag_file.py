@@ -148,10 +148,11 @@ def test_joints_of_a_topic_that_is_not_chosen_stand_in_the_headline(tmp_path, co
     """The case may say otherwise of them than the robot did; joints of other robots are not meant."""
     topics = {"/arm": [state(i, [0.1 * i], ["shoulder"]) for i in range(3)]}
     topics["/same"] = topics["/arm"]
-    topics["/lift"] = [state(0, [0.02, 1.0], ["lift", "elsewhere"])]
+    others = [state(i, [1.0], ["elsewhere"]) for i in range(150)]  # before the lift's driver starts
+    topics["/lift"] = [*others, state(150, [0.02], ["lift"])]
     topics["/plan"] = [MOVE]
     bag = write_bag(tmp_path, container, topics)
-    unread = ("lift, elsewhere of topic /lift", "lift of topic /plan")
+    unread = ("elsewhere, lift of topic /lift", "lift of topic /plan")
     assert read(bag, topic="/arm").trajectory.unread == unread
     assert read(bag, topic="/plan").trajectory.unread == ()
     named = changed("file: path.csv", f"file: {bag.relative_to(tmp_path)}, topic: /arm")
