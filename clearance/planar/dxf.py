@@ -82,7 +82,9 @@ def _in_metres(drawing) -> Drawing:
     unit = drawing.header.get("$INSUNITS", 0)
     if unit not in _METRES:
         raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16, 21 to 24")
-    entities, note = _of_layers(list(drawing.modelspace()))
+    own = [text for tag, text in drawing.header.custom_vars if tag == OWN_TAG]
+    own = own if drawing.layers.has_entry(SWEPT) else []  # another program may use the word
+    entities, note = _of_layers(list(drawing.modelspace()), bool(own))
     for entity in entities:
         _require_visible(entity, drawing.layers)
     parts = [_curve_of(entity) for entity in entities]
@@ -93,17 +95,16 @@ def _in_metres(drawing) -> Drawing:
     metres = _METRES[unit]
     if metres != 1.0:
         curve = curve.transformed(np.diag([metres, metres, 1.0]))
-    own = [text for tag, text in drawing.header.custom_vars if tag == OWN_TAG]
     return Drawing(curve, unit != 0, (*own[1:], *note))
 
 
-def _of_layers(entities: list) -> tuple[list, list[str]]:
-    """The entities that are taken: those on the layer of a sweep if there is one; and a note on several."""
+def _of_layers(entities: list, is_own: bool) -> tuple[list, list[str]]:
+    """The entities that are taken: in a drawing of ours those on the layer of the sweep; and a note on several."""
     layers = list(dict.fromkeys(entity.dxf.layer for entity in entities))
     if len(layers) < 2:
         return entities, []
     names = ", ".join(map(repr, layers[:6])) + (", …" if len(layers) > 6 else "")
-    if SWEPT in layers:
+    if is_own and SWEPT in layers:
         taken = [entity for entity in entities if entity.dxf.layer == SWEPT]
         return taken, [f"of the layers {names} only {SWEPT!r} is taken"]
     return entities, [f"the layers {names} are taken as one outline"]

@@ -186,19 +186,25 @@ def test_what_is_hidden_in_a_drawing_is_no_silent_part_of_its_outline(tmp_path, 
 
 
 @pytest.mark.parametrize(
-    ("layers", "n_contours", "notes"),
+    ("layers", "own", "n_contours", "notes"),
     [
-        (("0", "0"), 2, ()),
-        (("cut", "holes"), 2, ("the layers 'cut', 'holes' are taken as one outline",)),
-        (("l1", "SWEPT"), 1, ("of the layers 'l1', 'SWEPT' only 'SWEPT' is taken",)),
+        (("0", "0"), (), 2, ()),
+        (("cut", "holes"), (), 2, ("the layers 'cut', 'holes' are taken as one outline",)),
+        (("l1", "SWEPT"), ("all", "but"), 1, ("but", "of the layers 'l1', 'SWEPT' only 'SWEPT' is taken")),
+        (("WALLS", "SWEPT"), (), 2, ("the layers 'WALLS', 'SWEPT' are taken as one outline",)),
+        (("0", "0"), ("5 mm all round", "checked by JD"), 2, ()),
     ],
-)
-def test_several_layers_are_told_and_that_of_a_sweep_is_taken_alone(
-    tmp_path, layers, n_contours, notes
+)  # fmt: skip
+def test_several_layers_are_told_and_in_a_drawing_of_ours_that_of_the_sweep_is_taken_alone(
+    tmp_path, layers, own, n_contours, notes
 ):
     made = ezdxf.new()
     for i, layer in enumerate(layers):
+        if not made.layers.has_entry(layer):
+            made.layers.add(layer)
         made.modelspace().add_circle((3 * i, 0), 1, dxfattribs={"layer": layer})
+    for text in own:
+        made.header.custom_vars.append("clearance", text)
     made.saveas(tmp_path / "d.dxf")
     found = read_drawing(tmp_path / "d.dxf")
     assert found.curve.contour.max() + 1 == n_contours and found.notes == notes
