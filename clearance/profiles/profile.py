@@ -40,7 +40,7 @@ MOVING = f"{NOT_SWEPT}, though moving by themselves:"
 """The start of a note: obstacles that no link carries and that nobody asked for."""
 
 IN_DOUBT = "in doubt"
-"""The start of a note: suspect input that the case does not accept, or motion that is not proven."""
+"""The start of a note: suspect input that the case does not accept, motion not proven, or joints nobody gives."""
 
 
 @dataclass(frozen=True, eq=False)

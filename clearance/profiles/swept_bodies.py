@@ -133,9 +133,11 @@ def notes_on_sweep(run: TimedCase, swept: Sequence[SweptBody]) -> Iterator[str]:
         yield from (f"{NOT_SWEPT}: {one.text}{whose}" for one in without)
     open_kinds = (Severity.SUSPECT, Severity.UNPROVEN)
     for one in run.notices:
-        if (one.severity in open_kinds or one.kind == "equality") and not one.accepted_by(
-            case.accept
-        ):
+        if one.accepted_by(case.accept):
+            continue
+        if one.kind == "columns":
+            yield f"{NOT_SWEPT}: {one.line}"
+        elif one.severity in open_kinds or one.kind in ("equality", "rest"):
             yield f"{IN_DOUBT}: {one.line}"
 
 

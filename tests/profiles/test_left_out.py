@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import clearance as cl
@@ -22,9 +23,10 @@ from clearance.report.junit_cases import results_of
 from clearance.sketch import Sketch
 from clearance.world.case import ReservedSpace
 from clearance.world.notice import NOT_MEASURED, Notice, Severity
+from clearance.world.robot import JointKind
 from clearance.world.trajectory import Hole
 from tests.formats.making import ARM, CASE, write_case
-from tests.profiles.moving import turning
+from tests.profiles.moving import Z, joint, moved, turning
 from tests.profiles.test_zones import ARM as SLAB
 from tests.profiles.test_zones import POST, squares
 from tests.report.made import page_of, summary_of
@@ -76,6 +78,24 @@ def test_a_body_that_may_stand_elsewhere_is_swept_in_doubt():
     swept = cl.swept_profile(case_with(notices=(notice,)))
     assert swept.notes == (f"in doubt: {notice.line}",) and swept.left_out == ()
     assert "if what its notes doubt is right" in swept.content
+
+
+@pytest.mark.parametrize("accept", [(), ("columns", "rest")])
+def test_motion_of_a_file_that_is_not_read_and_joints_that_nobody_gives_stand_in_the_outline(
+    accept,
+):
+    joints = [joint(i, JointKind.REVOLUTE, Z) for i in range(2)]
+    case = replace(moved(joints, {2: SLAB}, [[0.0, 0.0], [0.5, 0.0]]), accept=accept)
+    (placed,) = case.robots
+    asked = replace(placed.trajectory, joint_names=("j0",), positions=np.array([[0.0], [0.5]]))
+    asked = replace(asked, unread=("trajectory[1]",), elsewhere=(("j1", 0.4),))
+    swept = cl.swept_profile(replace(case, robots=(replace(placed, trajectory=asked),)))
+    starts = ("not swept: columns or fields that look like motion", "in doubt: robot 'robot' rests")
+    assert len(swept.notes) == (0 if accept else 2)
+    assert all(any(note.startswith(one) for one in starts) for note in swept.notes)
+    whole = "all that is swept"
+    part = f"{whole} but for what its notes leave out, if what its notes doubt is right"
+    assert swept.content == (whole if accept else part)
 
 
 @pytest.mark.parametrize("suffix", ["yaml", "svg", "dxf", "geojson"])
