@@ -5,6 +5,7 @@ Not for: reading it.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
@@ -19,7 +20,7 @@ from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
 from clearance.world.notice import Notice, Severity, listed, naming
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.plausible_rest import misplaced
+from clearance.world.plausible_rest import misplaced, rests_otherwise
 from clearance.world.pose_table import WORLD_FRAMES
 from clearance.world.robot import JointKind
 from clearance.world.rules import Allowance, matches, pattern_of
@@ -41,6 +42,7 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
     found = (
         *_on_frame(case, content.frame),
         *_on_bases(case, content),
+        *_on_joints(case, content),
         *_on_frames_of_poses(case),
         *_on_padding_left_out(case, content),
     )
@@ -104,6 +106,20 @@ def _on_bases(case: Case, content: SceneContent) -> Iterator[Notice]:
     for joint, pose in content.bases.items():
         standing = (placed.world_from_base for placed in case.robots if placed.mount is None)
         yield from misplaced("the scene's file", joint, pose, standing)
+
+
+def _on_joints(case: Case, content: SceneContent) -> Iterator[Notice]:
+    """A warning on joints that rest elsewhere than the scene's file has them; names of two robots say nothing."""
+    owners = Counter(one.name for placed in case.robots for one in placed.robot.moving_joints)
+    for placed in case.robots:
+        asked = placed.trajectory
+        known = set() if asked is None else {*asked.joint_names, *dict(asked.elsewhere)}
+        told = {
+            name: position
+            for name, position in content.joints.items()
+            if owners[name] == 1 and name not in known
+        }
+        yield from rests_otherwise(placed, told, case.prefix_of(placed), "the scene's file says")
 
 
 def _on_frames_of_poses(case: Case) -> Iterator[Notice]:

@@ -62,7 +62,7 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
     moved = set() if asked is None else {*asked.joint_names}
     given = moved | {*placed.fixed_positions}
     told = {} if asked is None else dict(asked.elsewhere)
-    found = _rest_otherwise(placed, told, before)
+    found = rests_otherwise(placed, told, before, "its message starts")
     resting = [joint for joint in joints if joint.name not in given and joint.name not in told]
     if not resting:
         return found
@@ -76,8 +76,15 @@ def notices_on_rest(placed: PlacedRobot, before: str = "") -> list[Notice]:
     return [*found, Notice(Severity.WARNING, "rest", text, placed.robot.name)]
 
 
-def _rest_otherwise(placed: PlacedRobot, told: Mapping[str, float], before: str) -> list[Notice]:
-    """A warning on joints that rest elsewhere than the message of the trajectory starts with."""
+def rests_otherwise(
+    placed: PlacedRobot, told: Mapping[str, float], before: str, said_by: str
+) -> list[Notice]:
+    """A warning on joints that rest elsewhere than a file has them.
+
+    Args:
+        told: [rad or m] where, by joints, which no trajectory moves. before: what stands before their names.
+        said_by: the file, in words.
+    """
     joints = [joint for joint in placed.robot.moving_joints if joint.name in told]
     rest = {joint.name: placed.fixed_positions.get(joint.name, 0.0) for joint in joints}
     odd = [
@@ -92,7 +99,7 @@ def _rest_otherwise(placed: PlacedRobot, told: Mapping[str, float], before: str)
     )
     taken = ", ".join(f"{name}: {told[name]:g}" for name in odd)
     about = placed.robot.name
-    text = f"robot {about!r} rests otherwise than its message starts: {shown}"
+    text = f"robot {about!r} rests otherwise than {said_by}: {shown}"
     remedy = f"{_in_case(placed, before, taken)} has them as there"
     return [Notice(Severity.WARNING, "rest", f"{text}; {remedy}", about)]
 

@@ -78,7 +78,8 @@ class SceneContent:
         not_by_default: names that no pair with `ANY` is of.
         link_padding: [m] by link. attached: obstacles that links carry.
         frame: what its poses are given in, if its file says so; it is taken for the world.
-        bases: (4, 4) [m] where its file says that a robot stands, by the joint that moves it.
+        bases: (4, 4) [m] where its file says that a robot stands, by the joint that moves it. joints: [rad or m]
+            where it has the other joints.
     """
 
     scene: object
@@ -90,6 +91,7 @@ class SceneContent:
     attached: tuple[AttachedPart, ...] = ()
     frame: str = ""
     bases: dict[str, np.ndarray] = field(default_factory=dict)
+    joints: dict[str, float] = field(default_factory=dict)
 
 
 def mesh_row(file: str, scale: list[float]) -> dict[str, dict]:

@@ -11,7 +11,7 @@ from clearance.world.notice import Severity
 from clearance.world.pairs import measured_pairs
 from clearance.world.rules import matches
 from tests.formats.making import CUBE, cube_stl
-from tests.formats.making_case import CASE, load_small
+from tests.formats.making_case import CASE, TWO_JOINTS, load_small
 from tests.formats.making_glb import cube_document, glb
 from tests.formats.making_moveit import (
     FIRST,
@@ -108,6 +108,27 @@ def test_a_robot_that_stands_elsewhere_in_the_scene_than_in_the_case_is_suspect(
     case = load_small(tmp_path, given, cell__yaml=message)
     told = [one.severity for one in case.notices if one.kind == "frame" and "'vj'" in one.text]
     assert told == [Severity.SUSPECT] * is_told
+
+
+@pytest.mark.parametrize(
+    ("joints", "state", "told"),
+    [
+        ("", "name: [lift, shoulder], position: [0.03, 9]", "joint 'lift' at 0, and there at 0.03; "),
+        (", joints: {lift: 0.01}", "name: [lift], position: [0.03]", "at 0.01, and there at 0.03; "),
+        (", joints: {lift: 0.03}", "name: [lift, ghost], position: [0.03, 1]", ""),
+        (", joints: {lift: 0.03}", "name: [lift], position: [.inf]", ""),
+    ],
+)  # fmt: skip
+def test_joints_that_rest_elsewhere_than_the_scene_has_them_stand_in_the_headline(
+    tmp_path, joints, state, told
+):
+    """The shoulder is moved by a trajectory."""
+    given = NAMED.replace("arm.urdf", f"arm.urdf{joints}")
+    message = f"robot_state: {{joint_state: {{{state}}}}}\nworld: {{collision_objects: [{BALL % 'world'}]}}\n"
+    found = load_small(tmp_path, given, urdf=TWO_JOINTS, cell__yaml=message).notices
+    texts = [one.text for one in found if one.kind == "rest"]
+    assert len(texts) == bool(told)
+    assert all(told in one and "rests otherwise than the scene's file says" in one for one in texts)
 
 
 def test_what_the_case_carries_is_left_to_it(tmp_path):

@@ -8,6 +8,7 @@ before a default.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -103,6 +104,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         attached=tuple(carried),
         frame=frames.assumed_frame,
         bases=bases,
+        joints=_joints(message(state, "joint_state")),
     )
 
 
@@ -271,6 +273,14 @@ def _bases(given: Message, poses: Poses) -> dict[str, np.ndarray]:
             with at(where):
                 found[name] = poses.read(row, "translation", "rotation")
     return {name: pose for name, pose in found.items() if not np.array_equal(pose, np.eye(4))}
+
+
+def _joints(given: Message) -> dict[str, float]:
+    """[rad or m] by joint: where the robot's state has it, as far as that is a number."""
+    with at("robot_state.joint_state"):
+        named = zip(_names(given, "name"), items(given, "position"), strict=False)
+        finite = ((name, one) for name, one in named if type(one) in (int, float))
+        return {name: float(one) for name, one in finite if math.isfinite(one)}
 
 
 def _unknown_scene(raw: Message, shown: str) -> Iterator[Notice]:
