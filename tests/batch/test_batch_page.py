@@ -50,7 +50,7 @@ def test_what_fails_stands_first(page):
     assert set(shown(page, 1)) == {"error"}
     page.run("document.getElementById('view').scrollTop = 32 * 1700")
     page.settle()
-    assert set(shown(page, 1)) == {"contact"} and set(shown(page, 2)) == {"100.001 deep"}
+    assert set(shown(page, 1)) == {"contact"} and set(shown(page, 2)) == {"100.000 deep"}
     page.run("document.getElementById('view').scrollTop = 0")
     page.settle()
 
@@ -84,7 +84,7 @@ def test_only_what_is_in_view_is_drawn(page):
 def test_it_sorts_by_a_column(page):
     page.run("document.querySelector('[data-key=clearance]').click()")
     page.settle()
-    assert set(shown(page, 2)) == {"100.001 deep"}  # in contact: the deepest first
+    assert set(shown(page, 2)) == {"100.000 deep"}  # in contact: the deepest first
     assert set(shown(page, 1)) == {"contact"}
     page.run("document.querySelector('[data-key=clearance]').click()")
     page.settle()
