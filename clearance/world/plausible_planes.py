@@ -46,7 +46,8 @@ class Mover(NamedTuple):
 
 def notices_on_planes(case: Case) -> Iterator[Notice]:
     """A warning on each plane that a robot, a moving obstacle, or a part in a hand may get past the end of."""
-    without = replace(case, carries=())  # a part may get as far as what carries it, and its length
+    # a part may get as far as what carries it, and its length
+    without = replace(case, carries=()) if case.carries else case
     for plane, name, place in _planes(without):
         plane_from_world = np.linalg.inv(place.pose)
         found = []
@@ -69,7 +70,7 @@ def _planes(case: Case) -> Iterator[tuple[BodyIndex, str, Place]]:
                 yield BodyIndex(i, k), f"link {case.prefix_of(placed) + body.name!r}", base
     for i, obstacle in enumerate(case.obstacles):
         sides = np.ptp(obstacle.body.shape.bounds, axis=0)
-        if any(np.allclose(sides, (*PLANE_SIZE[:2], depth)) for depth in DEPTHS):
+        if sides[0] > END and any(np.allclose(sides, (*PLANE_SIZE[:2], one)) for one in DEPTHS):
             yield BodyIndex(OBSTACLE, i), f"obstacle {obstacle.name!r}", obstacle_place(case, i)
 
 
