@@ -20,7 +20,7 @@ from clearance.formats.schema.program import JointMove, PathMove
 from clearance.formats.schema.program_file import Axis, ProgramFile
 from clearance.geometry.shapes import SHAPES
 from clearance.world.joint_positions import turns
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import IN_MILLIMETRES, Notice, listed, units
 from clearance.world.robot import Joint
 
 LARGE_RADIUS = 5.0
@@ -46,15 +46,9 @@ MANY_TURNS = 6.0 * math.pi
 """[rad] Limits of joints that turn endlessly are a few turns at most; 30 degrees are 4.8 turns of radians."""
 
 IN_DEGREES = "angles are in radians, is this degrees (90° are 1.5708 rad)?"
-IN_MILLIMETRES = "lengths are in metres, is this millimetres?"
 
 ROUND_ANGLE = 0.02
 """[rad] How near a multiple of pi/4 an angle is that is meant as one, written with few digits: 3.15, 4.7, 6.3."""
-
-
-def units(text: str) -> Notice:
-    """Suspect input of kind "units"."""
-    return Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}")
 
 
 def obstacle_notices(obstacles: Sequence[Obstacle]) -> list[Notice]:

@@ -27,7 +27,7 @@ from clearance.profiles.swept_bodies import TimedCase
 from clearance.record.record import ProfileAnswer
 from clearance.world.case import Case, ReservedSpace
 from clearance.world.extents import metres, reach_of
-from clearance.world.notice import Notice, Severity
+from clearance.world.notice import IN_MILLIMETRES, Notice, Severity, units
 from clearance.world.plausible_sizes import FAR, FAR_OFF, far_off_notice
 from clearance.world.timeline import Timeline
 
@@ -171,5 +171,4 @@ def _length(curve: Curve) -> float:
 
 
 def _suspect(text: str, reach: float) -> Notice:
-    asks = "lengths are in metres, is this millimetres?"
-    return Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text} {metres(reach)} m; {asks}")
+    return units(f"{text} {metres(reach)} m; {IN_MILLIMETRES}")

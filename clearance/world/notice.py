@@ -33,6 +33,9 @@ a missing package, holes in recordings (then bridged straight), tables that neve
 that could go either way (then as written), goals without a start (then single poses), simulated robots that
 are pushed, do not arrive or are far off their trajectory, and pairs left out by an SRDF made for other shapes."""
 
+IN_MILLIMETRES = "lengths are in metres, is this millimetres?"
+"""What a notice on units asks of a length."""
+
 WRAP, START = "wrap", "start"
 
 WARNED_TOO = ("units", "limits", "gaps", "clocks", START, "simulated", "never")
@@ -99,6 +102,11 @@ class Notice:
     def line(self) -> str:
         """The text with its code, as a user sees it."""
         return coded(self.text, self.code)
+
+
+def units(text: str) -> Notice:
+    """Suspect input of kind "units"."""
+    return Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}")
 
 
 def worst_first(notices: Iterable[Notice]) -> tuple[Notice, ...]:

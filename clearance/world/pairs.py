@@ -48,7 +48,7 @@ class BodyIndex(NamedTuple):
 
     @property
     def thing(self) -> tuple[bool, int]:
-        """What it is of: an obstacle (True, i) or a robot (False, i)."""
+        """Its obstacle as (True, i), or its robot as (False, i)."""
         return self.is_obstacle, self.i_body if self.is_obstacle else self.i_robot
 
     def shape_in(self, case: Case) -> Polyhedron:

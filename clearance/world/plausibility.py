@@ -17,7 +17,7 @@ from clearance.world.case import Case
 from clearance.world.collision_matrix import NEVER
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_speeds import notices_on_speed
-from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.notice import Notice, Severity, listed, units, worst_first
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.plausible_clocks import notices_on_clocks
 from clearance.world.plausible_motion import (
@@ -112,8 +112,8 @@ def _notices_on_limits(case: Case) -> list[Notice]:
     large = [f"{key} is {value:g} m" for key, value in given.items() if value > LARGE_LIMIT]
     found = _in_millimetres(large, "limits are")
     if small:
-        text = f"CHECK UNITS: {' and '.join(small[:2])}; is this metres, given to an option in millimetres?"
-        found.append(Notice(Severity.SUSPECT, "units", text))
+        asked = "is this metres, given to an option in millimetres?"
+        found.append(units(f"{' and '.join(small[:2])}; {asked}"))
     return found
 
 
@@ -134,8 +134,7 @@ def _in_millimetres(large: list[str], what: str) -> list[Notice]:
     if not large:
         return []
     names = " and ".join(large) if len(large) < 3 else listed(large)
-    text = f"CHECK UNITS: {names}; {what} in metres, is this millimetres?"
-    return [Notice(Severity.SUSPECT, "units", text)]
+    return [units(f"{names}; {what} in metres, is this millimetres?")]
 
 
 def _never_measured(case: Case) -> Iterator[Notice]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.world.case import Case
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import Notice, Severity, listed, units
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, greatest_speeds
 from clearance.world.plausible_tables import changes, greatest_speeds_in
 from clearance.world.timing import Timing, time_text
@@ -106,7 +106,7 @@ def _never_together(tables: Sequence[_Table]) -> Iterator[Notice]:
                 "begins: `start` and times are in seconds, is this milliseconds?"
             )
             if wait > far:
-                yield Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}")
+                yield units(text)
             else:
                 yield Notice(Severity.WARNING, "units", text)
 
@@ -121,11 +121,11 @@ def _a_thousand_times_as_long(tables: Sequence[_Table]) -> Iterator[Notice]:
         if table.is_slow and not table.creeps and table.length > LONGER * usual.length > 0.0:
             slide, turn = table.speeds()
             text = (
-                f"CHECK UNITS: {table.name} takes {table.length:g} s, and moves no faster than "
+                f"{table.name} takes {table.length:g} s, and moves no faster than "
                 f"{slide * 1000:.3g} mm/s and {turn:.3g} rad/s, while {usual.name} takes "
                 f"{usual.length:g} s; times are in seconds, is this milliseconds?"
             )
-            yield Notice(Severity.SUSPECT, "units", text)
+            yield units(text)
 
 
 def _times_lacking(case: Case) -> Iterator[Notice]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.world.joint_positions import JointExtent, joint_extents, turns
-from clearance.world.notice import START, Notice, Severity, listed
+from clearance.world.notice import IN_MILLIMETRES, START, Notice, Severity, listed, units
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint
 from clearance.world.timing import time_text
@@ -120,7 +120,7 @@ def largest_usual(joint: Joint) -> float:
 
 
 def _suspect(texts: Sequence[str]) -> list[Notice]:
-    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
+    return [units(text) for text in texts]
 
 
 _IN_DEGREES = (
@@ -140,7 +140,7 @@ def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
     texts = []
     for large, unit, hint in (
         (angles, "rad", f"angles are in radians, is this degrees? {_IN_DEGREES}"),
-        (lengths, "m", "lengths are in metres, is this millimetres?"),
+        (lengths, "m", IN_MILLIMETRES),
     ):
         large.sort(key=lambda item: -item[0])
         goes = listed([f"joint {name!r} goes to {greatest:g} {unit}" for greatest, name in large])

@@ -23,7 +23,7 @@ from clearance.world.extents import (
     slides_of,
 )
 from clearance.world.forest import owner_of, resolved_mount
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import IN_MILLIMETRES, Notice, Severity, listed, units
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 from clearance.world.robot_in_cell import robots_below
@@ -59,8 +59,7 @@ def _notices(case: Case, slides: tuple) -> tuple[Notice, ...]:
     if not texts:  # a robot that is odd itself is no measure for others
         reaches = [reach_of(placed) for placed in case.robots]
         texts = [*_odd_obstacles(case, reaches), *odd_places(case)]
-    found = (Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts)
-    return tuple(found) or tuple(_far_off(case))
+    return tuple(map(units, texts)) or tuple(_far_off(case))
 
 
 def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:
@@ -78,7 +77,7 @@ def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:
     odd = [
         f"{what} stands {metres(away)} m away" for away, what in greatest(far) if away > FAR_ORIGIN
     ]
-    return [f"{listed(odd)} from its link's frame; {_IN_METRES}"] if odd else []
+    return [f"{listed(odd)} from its link's frame; {IN_MILLIMETRES}"] if odd else []
 
 
 def _odd_links(placed: PlacedRobot, before: str) -> list[str]:
@@ -108,8 +107,7 @@ def _lengths_in_words(
     ]
 
 
-_IN_METRES = "lengths are in metres, is this millimetres?"
-_TOO_LARGE = f"{_IN_METRES[:-1]} (a mesh file in millimetres needs scale 0.001)?"
+_TOO_LARGE = f"{IN_MILLIMETRES[:-1]} (a mesh file in millimetres needs scale 0.001)?"
 _TOO_SMALL = (
     "lengths are in metres, is it a thousand times too small (a mesh file in metres has scale 1)?"
 )
@@ -188,7 +186,7 @@ def _odd_bases(case: Case, bases: Sequence[Place], gaps: Sequence[Sequence[float
         if min(away, default=0.0) > farthest:
             far.append((min(away), f"robot {case.robots[i].robot.name!r} stands"))
     stand = [f"{text} {metres(gap)} m away from all else" for gap, text in greatest(far)]
-    return [f"{listed(stand)}; {_IN_METRES}"] if far else []
+    return [f"{listed(stand)}; {IN_MILLIMETRES}"] if far else []
 
 
 def _apart(one: Place, other: Place) -> float:
@@ -298,9 +296,9 @@ def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> l
     whose = _whose_base(case)
     if len(far) == len(case.obstacles) and base > FAR:
         gap_text = f"{metres(far[-1][0])} m from the nearest obstacle"
-        return [f"{whose} stands {metres(base)} m away, {gap_text}; {_IN_METRES}"]
+        return [f"{whose} stands {metres(base)} m away, {gap_text}; {IN_MILLIMETRES}"]
     stand = [f"obstacle {name!r} stands {metres(gap)} m away from {whose}" for gap, name in far]
-    return [f"{listed(stand)}; {_IN_METRES}"]
+    return [f"{listed(stand)}; {IN_MILLIMETRES}"]
 
 
 def _gap(obstacle: Obstacle, place: Place, base: Place, of_units: bool) -> float:

@@ -10,7 +10,7 @@ from clearance.codes import codes
 from clearance.world.case import Case
 from clearance.world.extents import metres
 from clearance.world.joint_speeds import STEP_SLIDE, STEP_TURN
-from clearance.world.notice import START, WRAP, Notice, Severity, listed
+from clearance.world.notice import IN_MILLIMETRES, START, WRAP, Notice, Severity, listed, units
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import time_text
@@ -34,7 +34,7 @@ def notices_on_tables(case: Case) -> list[Notice]:
             backs += _back_to_start(f"obstacle {obstacle.name!r}", obstacle.moves)
             texts += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
             halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
-    notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
+    notices = [units(text) for text in texts]
     notices += [Notice(Severity.SUSPECT, WRAP, text) for text in halves]
     if backs:
         text = f"tables that begin again (after: loop) elsewhere than they end: {listed(backs, 4)}"
@@ -75,7 +75,7 @@ def _half_turns(what: str, table: PoseTable) -> list[str]:
 def _odd(what: str, table: PoseTable) -> list[str]:
     travel = float(np.linalg.norm(np.ptp(table.positions, axis=0)))
     if travel > LARGE_TRAVEL:
-        return [f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?"]
+        return [f"{what} moves {metres(travel)} m; {IN_MILLIMETRES}"]
     if len(table) < 2:
         return []
     if _creeps(table):

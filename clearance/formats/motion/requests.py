@@ -120,7 +120,7 @@ class PoseSamples:
 
     Attributes:
         times: (n,) [s]. positions: (n, 3) [m]. quaternions: (n, 4) xyzw, before they are made of length one.
-        frame: what they are seen from, and child: what they are of, where messages say so.
+        frame, child: names of the reference frame and of the frame that moves, where messages have them.
         stamp: [ns] of the first sample in a file of messages, whose times count from there.
     """
 
