@@ -70,6 +70,7 @@ class Format:
         what: such a file, in messages. hint: what to do with one where something else is wanted; `{name}` is its
             name.
         along: suffixes of files of the same stem that are read along, where they are there.
+        points: of meshes: the function that finds all vertices, those that no face uses too, where that is faster.
     """
 
     name: str
@@ -84,6 +85,7 @@ class Format:
     what: str = ""
     hint: str = ""
     along: tuple[str, ...] = ()
+    points: str = ""
 
     def shows_in(self, start: FileStart) -> bool:
         """True where the start of a file, or its suffix, says that it is of this format."""
@@ -149,7 +151,7 @@ def _program(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Fo
 
 FORMATS = (
     _mesh("STL", (".stl",), "stl_file:read_stl"),
-    _mesh("OBJ", (".obj",), "obj_file:read_obj"),
+    _mesh("OBJ", (".obj",), "obj_file:read_obj", points="mesh.obj_file:vertices_of_obj"),
     _mesh("COLLADA", (".dae",), "collada_file:read_collada",
           sniff=lambda start: start.root == "COLLADA" or start.suffix == ".dae"),
     _mesh("PLY", (".ply",), "ply_file:read_ply"),

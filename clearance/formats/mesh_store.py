@@ -14,8 +14,9 @@ from clearance.formats.mesh.mesh_file import (
     LoadedMesh,
     mesh_from_bytes,
     triangles_from_bytes,
+    vertices_from_bytes,
 )
-from clearance.formats.mesh.triangles import UpAxis, scaled
+from clearance.formats.mesh.triangles import UpAxis, scaled_points
 from clearance.tolerance import TESSELLATION
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class MeshStore:
     def __init__(self, files: InputFiles) -> None:
         self.files = files
         self._loaded: dict[tuple[str, Scale, UpAxis, float], LoadedMesh] = {}
-        self._points: dict[tuple[str, Scale, UpAxis, float], np.ndarray] = {}
+        self._points: dict[tuple[str, Scale, UpAxis, bool], np.ndarray] = {}
         self._clouds: dict[tuple[str, float, Scale, bool], LoadedCloud] = {}
 
     def load(
@@ -59,24 +60,31 @@ class MeshStore:
             self._loaded[key] = mesh_from_bytes(data, shown, scale, up_axis, tolerance)
         return self._loaded[key]
 
-    def points(self, path: Path, scale: Scale, up_axis: UpAxis, largest: float) -> np.ndarray:
+    def points(
+        self, path: Path, scale: Scale, up_axis: UpAxis, largest: float, *, loosely: bool = False
+    ) -> np.ndarray:
         """(n, 3) [m] corners of the surface in a mesh file, all of its hull among them; no solid is made of it.
 
         Args:
             largest: [bytes] a larger file is refused, unless it is loaded.
+            loosely: points that no face uses may be among them, which is faster.
 
         Raises:
-            BadInput: as `load`, or too large.
+            BadInput: as `load`, or too large; loosely, not where the faces alone are at fault.
         """
-        key = (os.path.abspath(path), scale, up_axis, TESSELLATION)
-        if key in self._loaded:
-            return self._loaded[key].shape.vertices
+        file = os.path.abspath(path)
+        if (loaded := self._loaded.get((file, scale, up_axis, TESSELLATION))) is not None:
+            return loaded.shape.vertices
+        key = (file, scale, up_axis, loosely)
         if key not in self._points:
             data, shown = self.files.read(path), self.files.shown(path)
             if len(data) > largest:
                 raise BadSyntax(f"{len(data):,} bytes", where=shown, valid=f"up to {largest:,}")
-            made = triangles_from_bytes(data, shown, up_axis)
-            self._points[key] = scaled(made, scale).vertices
+            if loosely:
+                points = vertices_from_bytes(data, shown, up_axis)
+            else:
+                points = triangles_from_bytes(data, shown, up_axis).vertices
+            self._points[key], _ = scaled_points(points, scale)
         return self._points[key]
 
     def load_points(

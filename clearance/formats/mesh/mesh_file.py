@@ -7,6 +7,7 @@ each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -99,6 +100,21 @@ def triangles_from_bytes(
             valid += "; a scan is read as points: {file: …, radius: …}"
         raise BadSyntax(f"unknown mesh format {suffix!r}", valid=valid)
     return checked(function_at(known.read)(MeshRequest(data, up_axis, tolerance)))
+
+
+def vertices_from_bytes(data: bytes, name: str, up_axis: UpAxis = "file") -> np.ndarray:
+    """(n, 3) vertices of a mesh file, all that its triangles have and perhaps more.
+
+    Raises:
+        BadInput: as `read_mesh`, or nothing at all.
+    """
+    known = format_of(Kind.MESH, name)
+    if known is not None and known.points:
+        with suppress(ValueError):  # the reader says better what is wrong
+            points: np.ndarray = function_at(known.points)(data)
+            if len(points) and np.isfinite(points).all():
+                return points
+    return triangles_from_bytes(data, name, up_axis).vertices
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:

@@ -7,6 +7,7 @@ Only positions and faces are read; colour, texture and normals do not matter for
 
 from __future__ import annotations
 
+import re
 from codecs import BOM_UTF8
 from itertools import chain
 
@@ -30,6 +31,20 @@ _NO_SURFACE = frozenset(
 )
 
 
+_VERTEX = re.compile(rb"(?:\A|[\r\n])[ \t]*v[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)")
+
+
+def vertices_of_obj(data: bytes) -> np.ndarray:
+    """(n, 3) all vertices of an OBJ file, whether faces use them or not.
+
+    Raises:
+        ValueError: one is no point.
+    """
+    return np.array(
+        [float(word) for point in _VERTEX.findall(_joined(data)) for word in point]
+    ).reshape(-1, 3)
+
+
 def read_obj(asked: MeshRequest) -> Triangles:
     """The faces of an OBJ file, polygons cut into triangles, in file order.
 
@@ -39,8 +54,7 @@ def read_obj(asked: MeshRequest) -> Triangles:
     positions: list[list[float]] = []
     faces: list[list[int]] = []
     n_lines = 0
-    data = asked.data.removeprefix(BOM_UTF8)
-    lines = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()
+    lines = _joined(asked.data).splitlines()
     for number, line in enumerate(lines, 1):  # of bytes: text would also be split at U+2028
         words = line.partition(b"#")[0].split()
         if not words:
@@ -58,6 +72,12 @@ def read_obj(asked: MeshRequest) -> Triangles:
         except ValueError as error:
             raise _bad_line(number, line, error) from None
     return _cut(positions, faces)._replace(notes=tuple(on_lines(n_lines)))
+
+
+def _joined(data: bytes) -> bytes:
+    """The content with lines that go on made one, and no byte order mark."""
+    data = data.removeprefix(BOM_UTF8)
+    return data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
 
 
 def _refused(key: bytes) -> ValueError:

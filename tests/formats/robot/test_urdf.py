@@ -344,6 +344,32 @@ def test_visual_meshes_that_reach_far_out_of_the_collision_shapes_are_warned_of(
         )
 
 
+CAP = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n"
+
+
+@pytest.mark.parametrize(
+    ("obj", "reach"),
+    [
+        (f"{CAP}f 1 2 3\nf 1 2 4\n", None),
+        (f"{CAP}v 0.9 0 0\nf 1 2 5\n", "0.8 m"),
+        (f"{CAP}v 0.9 0 0\nf 1 2 5\n".replace("\n", "\r"), "0.8 m"),
+        (f"{CAP}v 0.9 \\\n 0 0\nf 1 2 5\n", "0.8 m"),
+        (f"{CAP}\t v\t0.9 0 0 1.0\nf 1 2 5\n", "0.8 m"),
+        (f"{CAP}v 0.9 0 0\nf 1 2 3\n", None),
+        (f"{CAP}v nan 0 0\nv 0.9 0 0\nf 1 2 6\n", "0.8 m"),
+    ],
+    ids=["all near", "far", "old line ends", "a line goes on", "tabs", "no face uses it", "not finite"],
+)  # fmt: skip
+def test_how_far_a_visual_obj_reaches_is_that_of_what_its_faces_use(tmp_path, obj, reach):
+    """Points are looked at first, and faces only where these lie far out."""
+    (tmp_path / "shell.obj").write_bytes(obj.encode())
+    shapes = collision('<box size="0.2 0.4 0.4"/>')
+    shapes += collision('<mesh filename="shell.obj"/>').replace("collision", "visual")
+    made = load_robot(tmp_path, robot(link(shapes)))
+    assert [f"by {reach};" in one.text for one in made.notices] == ([True] if reach else [])
+    assert not made.notes
+
+
 def _seen(shape, x):
     return collision(shape, f'<origin xyz="{x} 0 0"/>').replace("collision", "visual")
 

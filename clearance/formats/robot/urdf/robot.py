@@ -127,14 +127,16 @@ def _on_visuals(
 
 
 def _reach_beyond(box: np.ndarray, visual: Element, pictures: ShapeReader) -> float | None:
-    """[m] How far a visual shape reaches out of a box, at least 0; None if it is not read.
+    """[m] How far a visual shape reaches out of a box, or more where it is up to `BEYOND`; None if it is not read.
 
     A mesh that lies apart because of its `<up_axis>` reaches out less with the other reading, which counts then.
     """
+    asked = pictures.request.collada_up_axis
     try:
-        reach = _out_of(box, pictures.box(visual, pictures.request.collada_up_axis))
+        reach = _out_of(box, pictures.box(visual, asked, loosely=True))
         if reach > BEYOND:
-            reach = min(reach, _out_of(box, pictures.box(visual, pictures.other_axis)))
+            ways = (asked, pictures.other_axis)
+            reach = min(_out_of(box, pictures.box(visual, way)) for way in ways)
     except ClearanceError:  # a picture that cannot be made is no reason to stop
         return None
     return reach

@@ -71,11 +71,12 @@ class ShapeReader:
         moved = element.find("origin") is not None
         return (shape.transformed(pose_of(element)) if moved else shape), origin
 
-    def box(self, element: Element, way: UpAxis) -> np.ndarray:
+    def box(self, element: Element, way: UpAxis, *, loosely: bool = False) -> np.ndarray:
         """(2, 3) [m] the box round a collision or visual element in its link's frame.
 
         Args:
             way: which way is up in COLLADA and GLB.
+            loosely: it may be larger, for points that no face uses, and is found faster.
 
         Raises:
             BadInput: it cannot be read, or is a larger file than asked for.
@@ -85,7 +86,8 @@ class ShapeReader:
             return self.shape(element)[0].bounds
         path, scale = self.mesh_file(mesh)
         pose = pose_of(element)
-        points = self.meshes.points(path, scale, way, self.largest) @ pose[:3, :3].T + pose[:3, 3]
+        points = self.meshes.points(path, scale, way, self.largest, loosely=loosely)
+        points = points @ pose[:3, :3].T + pose[:3, 3]
         return np.array([points.min(axis=0), points.max(axis=0)])
 
     def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
