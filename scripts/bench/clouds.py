@@ -10,6 +10,7 @@ memory in bytes of the arrays that are searched.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 
 import harness  # first: it sets the number of threads before numpy is loaded
@@ -26,6 +27,7 @@ from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
 
@@ -79,9 +81,15 @@ def rows_of(name: str, shapes: tuple[Polyhedron, PointCloud], n_passes: int) -> 
 
 def in_motion(obstacle: Obstacle) -> PairsInMotion:
     """The Panda of the shelf scene on its way, with nothing but one obstacle."""
-    case = replace(load_case(SCENES / "panda_shelf" / "case.yaml"), obstacles=(obstacle,), allow=())
+    case = replace(shelf(), obstacles=(obstacle,), allow=())
     pairs, _ = measured_pairs(case)
     return PairsInMotion(case, tuple(kinematic_motion(placed) for placed in case.robots), pairs)
+
+
+@functools.cache
+def shelf() -> Case:
+    """The scene of the shelf."""
+    return load_case(SCENES / "panda_shelf" / "case.yaml")
 
 
 def mesh_and_cloud(points_of, count: int) -> tuple[Polyhedron, PointCloud]:

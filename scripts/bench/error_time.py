@@ -38,7 +38,7 @@ SHOWN = (
     "missed_contacts", "no_answer", "asked",
 )  # fmt: skip
 
-SMALLEST = ["--polygons", "1", "--poses", "1", "--steps", "0", "--seconds", "0.02"]
+SMALLEST = ["--polygons", "1", "--poses", "1", "--steps", "0", "--seconds", "0.02", "--points", "3"]
 
 
 class Answer(NamedTuple):
@@ -56,11 +56,19 @@ class Answer(NamedTuple):
 def main(words: list[str] | None = None) -> list[Row]:
     """Runs what the command line asks for."""
     asked = harness.arguments(
-        __doc__, words, polygons=60, poses=8, steps=12, scenes=[], seconds=1.5, picture=""
+        __doc__,
+        words,
+        polygons=60,
+        poses=8,
+        steps=12,
+        scenes=[],
+        seconds=1.5,
+        points=[3, 4, 5, 6],
+        picture="",
     )
     tell(*absent_inputs(), *absent_peers())
     rows = measured_polygons(polygon_questions(asked.polygons), asked.seconds)
-    rows += measured_bodies([*body_questions(asked.poses)], asked.seconds)
+    rows += measured_bodies([*body_questions(asked.poses)], asked.seconds, asked.points)
     for scene in step_scenes(asked.scenes) if asked.steps else ():
         if face_pairs(scene) > MOST_FACE_PAIRS:
             tell(f"left out: paper on {scene.name}, {face_pairs(scene)} face pairs a step")
@@ -120,12 +128,14 @@ def _paper(question: Question) -> Callable[[], float]:
     return lambda: cl.polygon_distance(p, q, method="paper").distance
 
 
-def measured_bodies(questions: Sequence[Question], seconds: float) -> list[Row]:
-    """One row a family and method."""
+def measured_bodies(
+    questions: Sequence[Question], seconds: float, powers: Sequence[int]
+) -> list[Row]:
+    """One row a family and method; `powers` of ten are how many points are sampled."""
     papers = [
         Paper(), Paper(1.0), Paper(0.1), Paper(0.01), Paper(0.1, rule_2=False), Paper(rule_2=False),
     ]  # fmt: skip
-    points = [SampledPoints(10**k) for k in (3, 4, 5, 6)]
+    points = [SampledPoints(10**k) for k in powers]
     methods: list[PairPeer] = [Ours(), *papers, *other_libraries(), *points, BoundingSpheres()]
     methods += [ConvexHulls()] if available("coal") else []
     return [row for by in methods for row in asked_of("bodies", by, questions, seconds)]

@@ -29,7 +29,7 @@ from clearance.world.cubic import positions_along
 from clearance.world.trajectory import Trajectory
 
 SMALLEST = [
-    "--arms", "heron6", "iiwa", "--motions", "1", "--finer", "11", "--paths", "20",
+    "--arms", "heron6", "--motions", "1", "--finer", "11", "--paths", "6", "--moves", "10",
     "--only", "enclosure", "peers", "zones", "table",
 ]  # fmt: skip
 

@@ -124,7 +124,6 @@ def test_an_edited_kernel_is_compiled_before_it_is_called(built):
         loaded.seek(0)
         assert loaded.read() == content, "what a process has loaded was written over"
     assert all(file.stat().st_ino != inode for file, inode in before.items())
-    assert built.ask(without=("numba", "llvmlite")) == (built.answer, "")
 
 
 def test_an_edited_kernel_that_cannot_be_compiled_is_not_called(built):
@@ -158,12 +157,3 @@ def test_without_a_linker_llvmlite_links_the_objects(built, tmp_path):
     said, told = built.ask(PATH=str(tmp_path))
     assert said == built.answer and "compiling" not in told
     assert not json.loads((built.built / "manifest.json").read_text())["is_linked"]
-    assert built.ask(PATH=str(tmp_path)) == (built.answer, "")
-
-
-def test_kernels_that_are_not_built_need_no_library(built):
-    manifest, answer = built.built / "manifest.json", float(built.answer.split()[0])
-    before = manifest.read_bytes()
-    built.edit(" * x", " * x * 2.0")
-    assert built.ask(CLEARANCE_KERNELS="jit") == (f"{2.0 * answer} True", "")
-    assert manifest.read_bytes() == before

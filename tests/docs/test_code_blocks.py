@@ -136,17 +136,6 @@ def test_case_files_keep_to_the_schema(block: CodeBlock, tmp_path):
         assert set(content) <= {*Case.model_fields, "jobs", "cases", "repos", "clearance"}
 
 
-def test_a_block_that_is_wrong_is_found():
-    with pytest.raises(click.NoSuchOption):
-        require_valid(["clearance", "check", "case.yaml", "--certainly"])
-    with pytest.raises(click.UsageError):
-        require_valid(["clearance", "profile", "swep"])
-    with pytest.raises(AssertionError):
-        require_valid(["scripts/environment.sh"])
-    with pytest.raises(AssertionError):
-        require_valid(["pip", "install", ".[nothing]"])
-
-
 MENTIONED = re.compile(r"`((?:clearance|scripts|tests|scenes|robots)/[\w./]+)`")
 LINKED = re.compile(r"\]\(([^)#]+)(?:#[^)]*)?\)")
 
