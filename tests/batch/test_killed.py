@@ -27,7 +27,7 @@ pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
 ]
 
-N_CASES = 100
+N_CASES = 60
 
 
 @pytest.fixture(scope="module")
@@ -41,20 +41,20 @@ def undisturbed(tmp_path_factory):
     return manifest, answer_bytes(folder / "out")
 
 
-def arguments(manifest, place, *more):
-    return [str(manifest), "--out", str(place), "--jobs", "2", *more]
+def arguments(manifest, place):
+    return [str(manifest), "--out", str(place)]
 
 
-def goes_on_alone(manifest, place):
-    """Finishes a batch in one process: what is kept is the same, and workers take three times as long."""
-    return finished(*arguments(manifest, place)[:-1], "1")[0] == 1
+def finished_alone(manifest, place):
+    """Finishes a batch in one process: workers take three times as long."""
+    return finished(*arguments(manifest, place), "--jobs", "1")
 
 
 def test_after_killed_workers_and_a_killed_command_the_same_one_goes_on(undisturbed, tmp_path):
     """A worker as it starts, one as it measures, and the command, with which its workers end."""
     manifest, expected = undisturbed
-    least = 40
-    batch = started(*arguments(manifest, tmp_path / "out"))
+    least = 20
+    batch = started(*arguments(manifest, tmp_path / "out"), "--jobs", "2")
     kill(until(lambda: workers_of(batch.pid))[0])
     until(lambda: n_kept(tmp_path / "out"))
     kill(until(lambda: workers_of(batch.pid))[0])
@@ -65,7 +65,7 @@ def test_after_killed_workers_and_a_killed_command_the_same_one_goes_on(undistur
     kept = n_kept(tmp_path / "out")
     assert kept >= least
     until(lambda: all(map(is_gone, workers)))
-    code, out, err = finished(*arguments(manifest, tmp_path / "out"))
+    code, out, err = finished_alone(manifest, tmp_path / "out")
     assert (code, err) == (1, "")
     assert answer_bytes(tmp_path / "out") == expected
     cached = int(next(line for line in out.splitlines() if "cached" in line).split()[1])
@@ -76,8 +76,7 @@ def test_without_its_scheduler_a_batch_is_incomplete_and_goes_on(undisturbed, tm
     manifest, expected = undisturbed
     host = started("127.0.0.1", str(tmp_path / "address"), module=("tests.batch.scheduler",))
     address = until(lambda: (tmp_path / "address").exists() and (tmp_path / "address").read_text())
-    asked = [str(manifest), "--out", str(tmp_path / "out"), "--scheduler", str(address)]
-    batch = started(*asked)
+    batch = started(*arguments(manifest, tmp_path / "out"), "--scheduler", str(address))
     until(lambda: n_kept(tmp_path / "out"))
     kill(host.pid)
     ended(host)
@@ -86,7 +85,7 @@ def test_without_its_scheduler_a_batch_is_incomplete_and_goes_on(undisturbed, tm
         pytest.skip("it was done before")
     assert (batch.returncode, out) == (4, "")
     assert err.startswith("incomplete: the scheduler is gone") and err.count("\n") == 1
-    assert goes_on_alone(manifest, tmp_path / "out")
+    assert finished_alone(manifest, tmp_path / "out")[0] == 1
     assert answer_bytes(tmp_path / "out") == expected
 
 
@@ -100,7 +99,7 @@ def test_a_scheduler_that_does_not_answer_is_bad_input(monkeypatch):
 
 def test_of_two_commands_on_one_store_the_second_waits_and_both_answer(undisturbed, tmp_path):
     manifest, expected = undisturbed
-    both = [started(*arguments(manifest, tmp_path / "out")[:-1], "1") for _ in range(2)]
+    both = [started(*arguments(manifest, tmp_path / "out"), "--jobs", "1") for _ in range(2)]
     said = [ended(one) for one in both]
     assert [one.returncode for one in both] == [1, 1]
     waits = "store.sqlite: another batch writes here; this one goes on when that has ended"

@@ -10,8 +10,6 @@ from clearance.formats.robot.request import load_robot
 from clearance.formats.robot.srdf import load_srdf
 from tests.report.schemas import objections
 
-ROOT = Path(__file__).parents[2]
-
 
 def _box(name, x, size):
     shape = f'<origin xyz="{x} 0 0"/><geometry><box size="{size}"/></geometry>'
@@ -126,14 +124,6 @@ def test_a_proposal_excuses_no_neighbours_that_are_apart_at_home_and_can_meet(
     matrix = load_srdf(tmp_path / "made.srdf", load_robot(urdf))
     assert matrix.reason("lower", "upper") is None
     assert matrix.reason("base", "lower") == "Adjacent"
-
-
-@pytest.mark.slow
-def test_a_robot_of_a_package_is_named_as_in_a_case_file(tmp_path):
-    brought = "pybullet_data:franka_panda/panda.urdf"
-    out = tmp_path / "panda.srdf"
-    assert run(["srdf", "make", brought, "--out", str(out)]) == 0
-    assert out.read_bytes() == (ROOT / "robots" / "panda" / "panda.srdf").read_bytes()
 
 
 def test_bad_input_is_one_line_and_2(robot, refusal):

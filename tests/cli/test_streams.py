@@ -39,17 +39,10 @@ def told_in(stderr: str) -> str:
     return re.sub(r"(?m)^.*, \d+ s so far\n", "", stderr)
 
 
-FAILING = {
-    "clearance check case.yaml >/dev/full": "No space left",
-    "clearance check case.yaml --json >&-": "the output cannot be written: not writable",
-}
-
-
-@pytest.mark.parametrize("line", FAILING)
-def test_it_is_told_in_one_line(folder: Path, line: str) -> None:
-    code, told = ended(folder, line)
+def test_a_closed_output_is_told_in_one_line(folder: Path) -> None:
+    code, told = ended(folder, "clearance check case.yaml --json >&-")
     assert (code, told.count("\n")) == (2, 1), told
-    assert told.startswith("error: ") and FAILING[line].lower() in told.lower()
+    assert told.startswith("error: the output cannot be written: not writable")
     assert sorted(path.name for path in folder.iterdir()) == ["cart.urdf", "case.yaml", "path.csv"]
 
 

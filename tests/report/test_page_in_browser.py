@@ -16,14 +16,11 @@ from clearance.report.comparison import write_comparison
 from clearance.report.still import overview, still_of
 from clearance.run import Question, answer
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, Limits, SignOff
-from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.case import Case, Limits
 from clearance.world.rules import Waiver
-from clearance.world.trajectory import Trajectory
 from tests.findings.gates import load_gates
 from tests.findings.test_verdict import made
-from tests.made_cases import at
+from tests.made_cases import arm, at
 from tests.profiles.moving import slab, sliding
 from tests.report.browser import Page, chromium, executable, opened
 from tests.report.budgets import with_budget
@@ -283,35 +280,14 @@ def test_the_replay_opens_at_the_moment_between_two_steps_with_its_bodies_marked
 
 def hand_among_boxes() -> Case:
     """A chain of 43 boxes that turns a little; one box flies through an obstacle between steps 3 and 4."""
-    names = ["base", *(f"finger_{i // 3}_phalanx_link_{i}" for i in range(43))]
-    joints = tuple(
-        Joint(
-            f"j{i}",
-            JointKind.REVOLUTE,
-            names[i],
-            names[i + 1],
-            at(x=0.05),
-            np.array([0.0, 0, 1]),
-            -3,
-            3,
-        )
-        for i in range(43)
-    )
-    shape = cl.box((0.04, 0.03, 0.03))
-    robot = Robot("hand", tuple(names), joints, tuple(Body(name, shape) for name in names[1:]))
+    places = [
+        at(x=2.125),
+        *(at(x=-1.0 - 0.2 * (i % 10), y=0.3 * (i // 10), z=0.2) for i in range(59)),
+    ]
+    obstacles = [(cl.box((0.05, 0.05, 0.05)), place) for place in places]
     positions = np.zeros((8, 43))
     positions[:, 0] = [-0.3, -0.25, -0.2, -0.15, 0.15, 0.2, 0.25, 0.3]
-    asked = Trajectory(np.arange(8.0), tuple(joint.name for joint in joints), positions)
-    things = [at(x=-1.0 - 0.2 * (i % 10), y=0.3 * (i // 10), z=0.2) for i in range(59)]
-    poses = [at(x=2.0), *things]
-    obstacles = tuple(
-        Obstacle(Body(f"obstacle_with_a_long_name_{i:02d}", cl.box((0.05, 0.05, 0.05))), pose)
-        for i, pose in enumerate(poses)
-    )
-    placed = PlacedRobot(robot, asked)
-    return Case(
-        "a hand of 43 links among 60 things", (placed,), obstacles, sign_off=SignOff("J. Doe", "B")
-    )
+    return arm("hand", [cl.box((0.04, 0.03, 0.03))] * 43, obstacles, positions)
 
 
 NAMES = "window.clearance.chart.told.curves.flatMap((one) => one.name || [])"

@@ -76,22 +76,23 @@ def stand(folder, name):
     )
 
 
-GAIN = ["gain", "case.yaml", "--out", "out", "--force", "--kind"]
-COMMANDS = [
-    ([*GAIN, "obstacle"], ["gain.json"], ["gain.html"]),
-    ([*GAIN, "all"], ["gain.json"], ["gain.html"]),
-    (["workspace", "case.yaml", "away.yaml", "--out", "out"], ["workspace.json", "workspace.svg"], []),
-    (["compare", "report", "report", "--out", "out"], [], ["comparison.html"]),
-    (["check", "case.yaml", *STILLS], ["x.png", "x.glb", "x.csv"], []),
-]  # fmt: skip
-"""What answers, the files of its answer, and its pages."""
+GAIN = ["gain", "case.yaml", "--out", "out", "--force", "--kind", "obstacle"]
+COMMANDS = {
+    "gain": (GAIN, ["gain.json"], ["gain.html"], []),
+    "gain, unknown option": (GAIN, ["gain.json"], ["gain.html"], ["--no-such-option"]),
+    "workspace": (
+        ["workspace", "case.yaml", "away.yaml", "--out", "out"],
+        ["workspace.json", "workspace.svg"], [], [],
+    ),
+    "compare": (["compare", "report", "report", "--out", "out"], [], ["comparison.html"], []),
+    "check": (["check", "case.yaml", *STILLS], ["x.png", "x.glb", "x.csv"], [], []),
+}  # fmt: skip
+"""What answers, the files of its answer, its pages, and what is typed more the second time."""
 
 
-@pytest.mark.parametrize(("arguments", "names", "pages"), COMMANDS)
-@pytest.mark.parametrize("more", [[], ["--no-such-option"]])
-def test_no_older_answer_of_any_command_outlasts_one_that_is_refused(
-    arguments, names, pages, more, folder
-):
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_older_answer_of_any_command_outlasts_one_that_is_refused(name, folder):
+    arguments, names, pages, more = COMMANDS[name]
     (folder / "case.yaml").write_text(GREEN)
     stand(folder, "away.yaml")
     check()
