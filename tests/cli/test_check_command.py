@@ -15,9 +15,7 @@ import clearance.crosscheck.compare as compare
 from clearance.case.case_file import load_case
 from clearance.cli import run
 from clearance.errors import MissingFile
-from clearance.files import LAST
-from clearance.report.withdrawn import OLDER_SUMMARY
-from tests.cart import CASE, PATH, ROOT, files, write_cart
+from tests.cart import CASE, ROOT, files, write_cart
 
 
 @pytest.fixture
@@ -145,12 +143,10 @@ def test_a_case_that_is_not_there(folder, refusal, case, named):
     [
         (("--fail-mm", "5", "--warn-mm", "2"), "the warn limit 2 mm is below the fail limit 5 mm"),
         (("--unproven-ok",), "--unproven-ok: the case has no tolerances"),
-        (("--colour",), "--colour"),
         (("--out", "case.yaml/below"), "case.yaml"),
         (("--out", "/proc/report"), "/proc/report"),
         (("--out", "link/deeper"), "leads nowhere"),
         (("--junit", "."), "--junit"),
-        (("--out", "n" * 300), "name too long"),
         (("--junit", "n" * 250), "name too long"),  # with what is put around it while it is written
     ],
 )
@@ -172,21 +168,3 @@ def test_a_folder_names_the_cases_in_it(folder, refusal):
     assert "a case in it: empty/case.yaml [" in refusal("check", ".")
     with pytest.raises(MissingFile, match="a case in it: "):
         load_case(folder / "empty")
-
-
-def test_an_interrupted_run_leaves_the_older_report_marked_as_such(folder, capsys, monkeypatch):
-    assert check(capsys, "--out", "report")[0] == 0
-    before = files(folder / "report")
-    (folder / "path.csv").write_text(PATH.replace("0.7", "0.6"))
-
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("clearance.crosscheck.compare.PeerRun.measure", interrupted)
-    stopped = check(capsys, "--cross-check", "--out", "report")
-    assert stopped == (130, "", "interrupted\n")
-    left = files(folder / "report")
-    assert left.pop(OLDER_SUMMARY) == before.pop(LAST)
-    assert "what follows is older" in left.pop("report.html").decode()
-    before.pop("report.html")
-    assert left == before and not list(folder.glob("**/*.partial"))

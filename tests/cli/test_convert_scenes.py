@@ -14,7 +14,7 @@ from clearance.world.notice import Severity
 from tests.formats.making import CASE, cube_stl, write_case
 from tests.formats.making_case import TWO_JOINTS
 from tests.formats.making_mjcf import mjcf, tetrahedron_stl
-from tests.formats.making_moveit import FIRST, LISTS, MESSAGE, SECOND
+from tests.formats.making_moveit import FIRST, LISTS, MESSAGE
 from tests.formats.making_octree import data_of, octree
 from tests.formats.making_sdf import collision, link, model, pose, sdf, world
 
@@ -84,9 +84,6 @@ def same_bytes(one, other) -> bool:
     [
         ("w.sdf", SDF, ""),
         ("m.xml", MJCF, ""),
-        ("first.scene", FIRST, ""),
-        pytest.param("second.scene", SECOND, "", marks=pytest.mark.slow),
-        ("lists.yaml", LISTS.replace("base_link", "base"), ""),
         ("held.yaml", MESSAGE, SAID),
         ("map.yaml", OCTOMAP, ""),
         ("ours.yaml", OURS, ""),
@@ -195,7 +192,6 @@ def test_packages_of_a_scene_are_found_in_the_folders_that_are_named(capsys):
     [
         (["cell.scene", "made/scene.csv"], "no suffix to write for a scene; one of .yaml, .yml"),
         (["cell.scene", "no/scene.yaml"], "no/scene.yaml: cannot write here: there is no such folder"),
-        (["cell.scene", "made"], "made: is a folder"),
         (["cell.scene", "made/s.yaml", "--which", "2"], "cell.scene: --which says nothing about a scene"),
         (["path.csv", "made/s.yaml", "--package-dir", "."], "--package-dir says nothing about a trajectory"),
         (["nothing.yaml", "made/s.yaml"], "nothing.yaml: there is no obstacle in it"),

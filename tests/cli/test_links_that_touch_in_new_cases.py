@@ -52,18 +52,6 @@ def checked(text, capsys):
     return code, json.loads(capsys.readouterr().out)
 
 
-def test_a_base_on_its_floor_is_a_comment_too_where_links_are_not_measured_against_each_other(
-    capsys,
-):
-    text = new("--scene", "scene.yaml")
-    assert "hand" not in text.partition("allow:")[2]
-    assert "these pairs touch at every step: base - table;" in capsys.readouterr().out
-    code, told = checked(text, capsys)
-    assert (code, told["verdict"]) == (1, "contact")
-    code, told = checked(uncovered(text), capsys)
-    assert (code, told["verdict"]) == (0, "clear")
-
-
 @pytest.mark.slow
 def test_links_that_touch_at_every_step_are_a_comment_and_a_contact_until_it_is_uncovered(capsys):
     text = new()

@@ -4,7 +4,6 @@ import json
 import os
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -21,7 +20,6 @@ from tests.formats.making import CASE, PATH, cube_stl
 from tests.formats.making_case import TWO_JOINTS
 from tests.formats.making_messages import ROS2
 from tests.formats.making_moveit import FIRST, MESSAGE
-from tests.formats.making_octree import data_of, octree
 from tests.formats.making_sdf import collision, link, model, sdf, world
 from tests.programs.arms import FILES
 
@@ -66,26 +64,11 @@ def cell(tmp_path, monkeypatch):
     return tmp_path
 
 
+USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
+
+
 def new(*words, robot="cell/arm.urdf"):
     return run(["new", "out", "--robot", robot, *map(str, words)])
-
-
-def test_a_scan_and_an_octomap_come_along():
-    """The scan stays where it is; the map that a message holds gets a file."""
-    Path("cell/scan.xyz").write_text("2 0 0\n2 0 1\n")
-    Path("cell/scene.yaml").write_text(
-        "obstacles: [{name: scan, points: {file: scan.xyz, radius: 0.05}}]\n"
-    )
-    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--check") in (0, 1)
-    assert "file: ../cell/scan.xyz" in Path("out/scene.yaml").read_text()
-    tree = data_of(octree({(9, 9, 9): True}))
-    Path("cell/scene.yaml").write_text(
-        f"world: {{octomap: {{octomap: {{id: OcTree, binary: true, resolution: 0.1, data: {tree}}}}}}}\n"
-    )
-    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--force") == 0
-    (held,) = Path("out").glob("*.octomap.bt")
-    assert held.read_bytes().startswith(b"# Octomap OcTree binary file")
-    assert load_case("out/case.yaml").obstacles[0].name == "<octomap>"
 
 
 def summary(capsys, path):
@@ -110,20 +93,10 @@ SCRIPT = "movej([{},0,0,0,0,0])\ngrip()\nmovej([0.1,0,0,0,0,0])\n"
 
 
 @pytest.mark.slow
-def test_a_program_stays_the_file_that_it_is(refusal, capsys):
+def test_a_program_stays_the_file_that_it_is(capsys):
     Path("cell/move.script").write_text(SCRIPT.format(0.0))
-    words = [
-        "--program",
-        "cell/move.script",
-        "--skip",
-        "grip",
-        "--flange",
-        "tool_tip",
-        "--program-keys",
-        "axes_as: plain",
-        "--scene",
-        "cell/cell.scene",
-    ]
+    words = ["--program", "cell/move.script", "--skip", "grip", "--program-keys", "axes_as: plain"]
+    words += ["--flange", "tool_tip", "--scene", "cell/cell.scene"]
     start = ["--start", ",".join(f"joint_{i}={0.2 if i == 1 else 0}" for i in range(1, 7))]
     assert new(*words, *start, robot=str(FILES["heron6"])) == 0
     one = load_case("out/case.yaml").robots[0].trajectory
@@ -134,12 +107,6 @@ def test_a_program_stays_the_file_that_it_is(refusal, capsys):
     assert two.positions[0, 0] == 0.4 and two.has_way_in
     told = capsys.readouterr().out
     assert "trajectory from ../cell/move.script" in told or "from cell/move.script" in told
-    for more, what in (
-        (["--skip", "grip"], "--skip needs --program FILE"),
-        ([*words, "--trajectory", "cell/path.csv"], "both --program and another motion"),
-        ([*words, "--start", "joint_1=x"], "joint_1=0.5,joint_2=0, or a state"),
-    ):
-        assert what in refusal("new", "out", "--robot", FILES["heron6"], *more)
 
 
 HOME, FAR = "movej([0,0,0,0,0,0])", "set_tcp(p[0,0,0,0,0,0])\nmovej(p[0.4,0,0.4,0,0,0])"
@@ -156,6 +123,7 @@ TIP = ["--flange", "tool_tip"]
         (TIP, FAR, "--program: cell/move.script: line 2: the first move ends at a pose, and the joints at its "
          "beginning are unknown; --start JOINT=VALUE"),
         (TIP, "movel(p[0.4,0,0.4,0,0,0])", "; --program-keys '{tools: {tcp: {xyz: […]}}}'"),
+        ([*TIP, "--start", "joint_1=x"], HOME, "joint_1=0.5,joint_2=0, or a state"),
         (["--program-keys", "[1]"], HOME, "'[1]' has no keys; as in 'zones: {CNT: 0.05}'"),
         (["--program-keys", "a: b: c"], HOME, "'a: b: c': line 1: not YAML"),
         (["--program-keys", "file: cell/other.script, axes_as: ur"], HOME,
@@ -171,45 +139,11 @@ def test_an_error_of_a_program_names_the_option_that_answers_it(more, move, told
     assert told in said and "trajectory" not in said
 
 
-LISTING = """/PROG  CELL
-/MN
-   1:J P[1] 10% CNT50    ;
-   2:  CALL HOME    ;
-/POS
-P[1]{
-   GP1:
-	UF : 0, UT : 0,
-	J1= 5 deg, J2= 0 deg, J3= 0 deg, J4= 0 deg, J5= 30 deg, J6= 0 deg
-};
-/END
-"""
-
-
-@pytest.mark.slow
-def test_what_a_program_lacks_is_said_by_its_keys(refusal):
-    Path("cell/CELL.LS").write_text(LISTING)
-    home = LISTING.replace("CELL", "HOME").replace("CNT50", "FINE").replace("J1= 5", "J1= 10")
-    Path("cell/HOME.LS").write_text(home.replace("   2:  CALL HOME    ;\n", ""))
-    words = ["--program", "cell/CELL.LS", *TIP, "--scene", "cell/cell.scene"]
-    robot = str(FILES["heron6"])
-    asked = ("--robot", robot, *words, "--program-keys", "zones: {CNT: 0.05}")
-    assert "--program-keys '{beside: [HOME.LS]}'" in refusal("new", "out", *asked)
-    keys = ["zones: {CNT: 0.05}, beside: [cell/HOME.LS]"]
-    keys += ["axes: {joint_5: {sign: -1}}", "axes: {joint_4: {sign: -1}}"]
-    said = [word for one in keys for word in ("--program-keys", one)]
-    assert new(*words, *said, robot=robot) == 0
-    placed = load_case("out/case.yaml").robots[0]
-    last = dict(zip(placed.trajectory.joint_names, placed.trajectory.positions[-1], strict=True))
-    assert np.degrees([last["joint_1"], last["joint_5"]]) == pytest.approx([10.0, -30.0])
-
-
 @pytest.mark.parametrize(
     ("scene", "trajectory"),
     [
-        (None, "path.csv"),
+        (None, "path.yaml"),
         ("scene.yaml", "degrees.csv"),
-        ("world.sdf", "path.yaml"),
-        ("planning.yaml", "path.csv"),
         ("held.yaml", "path.csv"),
     ],
 )
@@ -223,12 +157,12 @@ def test_it_has_the_results_of_the_files_it_is_made_from(capsys, scene, trajecto
     origins = [[one.pop("origin", None) for one in told["obstacles"]] for _, told in (ours, theirs)]
     assert ours == theirs and len(origins[0]) == len(origins[1])
     text = Path("out/case.yaml").read_text()
-    assert ("padding" in text) == (scene in ("planning.yaml", "held.yaml"))
+    assert ("padding" in text) == (scene == "held.yaml")
     assert ("\ncarry:" in text) == (scene == "held.yaml")
 
 
 def test_it_says_what_it_took_and_what_it_assumed(capsys):
-    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml") == 0
+    assert new(*USUAL) == 0
     told = capsys.readouterr().out.splitlines()
     assert told[0] == (
         "took      robot 'arm' from cell/arm.urdf: 3 links, 3 of them with a shape, 2 joints to move"
@@ -251,7 +185,7 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
 
 
 def test_limits_are_those_that_are_given(refusal, capsys):
-    given = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--fail-mm", "7.5")
+    given = (*USUAL, "--fail-mm", "7.5")
     assert new(*given, "--warn-mm", "20") == 0
     assert "fail limit" not in capsys.readouterr().out
     limits = load_case("out/case.yaml").limits
@@ -341,15 +275,7 @@ def test_limit_files_are_named_where_they_lie(capsys):
     Path("cell/l.yaml").write_text(
         "joint_limits: {shoulder: {has_velocity_limits: true, max_velocity: 0.1}}"
     )
-    words = [
-        "--trajectory",
-        "cell/path.csv",
-        "--scene",
-        "cell/scene.yaml",
-        "--joint-limits",
-        "cell/l.yaml",
-    ]
-    assert new(*words, "--check") == 0
+    assert new(*USUAL, "--joint-limits", "cell/l.yaml", "--check") == 0
     told = capsys.readouterr().out
     assert "joint 'shoulder' moves at up to 0.5 rad/s, its limit is 0.1" in told
     assert "joint_limits: ../cell/l.yaml" in Path("out/case.yaml").read_text()
@@ -357,12 +283,11 @@ def test_limit_files_are_named_where_they_lie(capsys):
 
 def test_visual_shapes_are_taken_where_there_are_no_others(capsys):
     Path("cell/arm.urdf").write_text(ARM.replace("collision>", "visual>"))
-    words = ["--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml"]
-    assert new(*words) == 0
+    assert new(*USUAL) == 0
     told = capsys.readouterr().out
     assert "assumed   no link has a collision shape: the visual shapes are measured" in told
     assert "geometry: visual" in Path("out/case.yaml").read_text()
-    assert new(*words, "--geometry", "collision", "--force") == 2
+    assert new(*USUAL, "--geometry", "collision", "--force") == 2
     assert "no link has a collision shape" in capsys.readouterr().err
 
 
@@ -370,24 +295,15 @@ def test_joints_that_cannot_be_at_zero_rest_at_their_limit(capsys):
     Path("cell/arm.urdf").write_text(
         ARM.replace('lower="0" upper="0.1"', 'lower="0.05" upper="0.1"')
     )
-    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml") == 0
+    assert new(*USUAL) == 0
     assert "rest at the limit next to it: lift 0.05" in capsys.readouterr().out
     assert load_case("out/case.yaml").robots[0].fixed_positions == {"lift": 0.05}
 
 
 def test_check_leaves_with_the_exit_code_of_the_check_and_a_report():
     Path("cell/scene.yaml").write_text("obstacles: [{name: b, box: {size: [1, 1, 1]}}]\n")
-    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--check") == 1
+    assert new(*USUAL, "--check") == 1
     assert Path("out/report/report.html").is_file()
-
-
-def test_an_empty_scene_is_in_the_headline(capsys):
-    assert new("--srdf", "cell/arm.srdf", "--states", "home,out", "--check") in (0, 1)
-    told = capsys.readouterr().out
-    assert "surroundings (the scene is empty) not checked" in told
-
-
-USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
 
 
 @pytest.mark.parametrize(
@@ -396,6 +312,8 @@ USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
         (USUAL[2:], "nothing moves: no trajectory is given; --trajectory FILE (a CSV of two rows will do"),
         ((*USUAL[:2], "--robot", "cell/one.urdf"), "nothing stands around the robot; --scene FILE"),
         ((*USUAL, "--rest", "home"), "state 'home' is in no file"),
+        (("--skip", "grip"), "--skip needs --program FILE"),
+        ((*USUAL, "--program", "cell/move.script"), "both --program and another motion"),
         (("--srdf", "cell/arm.srdf", "--states", "home"), "1 state is given; two or more"),
         (("--srdf", "cell/arm.srdf", "--states", "home,"), "'home,' has an empty name"),
         ((*USUAL, "--states", "home,out"), "both --trajectory and --states home,out; one of them"),

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-import clearance as cl
 from clearance.cli import run
 from scripts.makers.point_sketches import irreducible, shaken, sketched
 from tests.formats.making import CASE, write_case
 from tests.profiles.moving import drawn
-from tests.report.made import page_of
 
 
 @pytest.fixture
@@ -48,18 +44,3 @@ def test_a_fit_stops_and_names_what_does_not_hold(folder, refusal):
     assert told.startswith("error: cluster.yaml: not solved within 0 s: distance")
     assert "a longer time limit may help" in told
     refusal(*asked, "--most-seconds", -1)
-
-
-SCENE = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
-
-
-def test_what_is_farther_than_the_tolerance_is_left_out_and_it_is_told() -> None:
-    case = cl.load_case(SCENE)
-    runs = [cl.answer(cl.Question(case, method="paper", paper_tolerance=t)) for t in (100.0, 0.4)]
-    all_in, some = (run.record.tally for run in runs)
-    assert all_in["cut_by_rule_1"] == 0 < some["cut_by_rule_1"]
-    assert some["measured"] < all_in["measured"]
-    assert runs[1].summary["paper_tolerance"] == 0.4
-    assert "with a tolerance of 400 mm for its first rejection rule" in page_of(runs[1])
-    with pytest.raises(cl.BadInput, match=r"a tolerance above 0\.01 m may do"):
-        cl.answer(cl.Question(case, method="paper", paper_tolerance=0.01))

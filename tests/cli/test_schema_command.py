@@ -46,9 +46,9 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")
-def test_our_cases_follow_it(errors, path):
-    assert errors(path.read_text()) == []
+def test_our_cases_follow_it(errors):
+    assert len(CASES) > 10
+    assert {path: errors(path.read_text()) for path in CASES} == {path: [] for path in CASES}
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,6 @@ def test_what_it_takes_is_taken(errors, old, new):
     [
         ("robot:", "robbot:"),
         ("trajectory: {file: path.csv}", ""),
-        ("trajectory: {file: path.csv}", "trajectory: ['path.csv']"),
         ("box: {size: [0.1, 0.1, 1]}", ""),
         ("box: {size: [0.1, 0.1, 1]}", "box: {size: [0.1, 1]}"),
         ("box: {size: [0.1, 0.1, 1]}", "box: {size: [0.1, 0.1, 1]}\n    sphere: {radius: 1}"),
@@ -83,13 +82,8 @@ def test_what_it_takes_is_taken(errors, old, new):
         ("xyz: [1.2, 0, 0]", "rpy: [0, 0, 0], quat_xyzw: [0, 0, 0, 1]"),
         ("warn: 0.02", "warn: 0.02, joints: stop"),
         ("limits:", "accept: [unit]\nlimits:"),
-        ("limits:", "tolerance: {}\nlimits:"),
-        ("limits:", "tolerance: {joint: {all: 0.1}}\nlimits:"),
         ("limits:", "tolerance: {joints: {all: -0.1}}\nlimits:"),
-        ("limits:", "tolerance: {base: {xyz: 0.6}}\nlimits:"),
         ("limits:", "tolerance: {base: {arm: 0.1}}\nlimits:"),
-        ("limits:", "tolerance: {links: {upper: 0.1}}\nlimits:"),
-        ("limits:", "tolerance: {tracking: controlers}\nlimits:"),
         ("limits:", "tolerance: {presets: [none]}\nlimits:"),
         ("urdf: arm.urdf", "urdf: arm.urdf, geometry: hull"),
         ("file: path.csv", "program: {file: weld.mod, axes: {upper: {sign: 2}}}"),

@@ -43,14 +43,6 @@ def test_a_profile_of_the_links_of_one_robot_and_what_it_carries(cell, tmp_path,
     assert bodies == ["left/boom", "left/tool", "part", "lid"]
 
 
-def test_an_unknown_link_is_one_line_with_the_nearest(cell, tmp_path, capsys):
-    arguments = ["profile", "sweep", str(cell), "--links", "left/tol", "--out", "x.yaml"]
-    assert run(arguments) == 2
-    error = capsys.readouterr().err
-    assert "unknown link 'left/tol'; did you mean 'left/tool'?" in error
-    assert len([line for line in error.splitlines() if "unknown" in line]) == 1
-
-
 @pytest.mark.parametrize(
     ("options", "levels"),
     [

@@ -93,12 +93,6 @@ def test_the_page_is_as_the_report_has_it_once_watching_ends(tmp_path, monkeypat
     assert (out / "report.html").read_text() == first.partition("\n<script>/* clearance check")[0]
 
 
-def test_a_receipt_is_of_one_report(tmp_path, capsys):
-    command = ["check", str(write_case(tmp_path)), "--watch", "--receipt", "--out", str(tmp_path)]
-    assert run(command) == ExitCode.BAD_INPUT
-    assert "--watch and --receipt exclude each other" in capsys.readouterr().err
-
-
 @pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_loads_itself_anew(tmp_path):
