@@ -135,7 +135,7 @@ def _maker(swept: Profile, point: np.ndarray) -> tuple[str, int]:
 
 def _picture(space: ReservedSpace, swept: Profile, sketch: DrawnOutline, ends: np.ndarray) -> str:
     drawn = DrawnOutline("swept", swept.curve, swept)
-    title = f"{space.name}: {space.mode}, plane {space.plane}"
+    title = f"{space.name}: {space.mode}, plane {space.plane}; in m"
     shade = ("only in the sketch", "only swept")
     return picture_bytes(drawn, sketch, ends, title, ".svg", shade=shade).decode()
 
