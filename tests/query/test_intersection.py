@@ -1,4 +1,4 @@
-"""Shared regions against exact rationals, closed forms, scipy and manifold3d, and in touch."""
+"""Common points and shared regions of convex bodies, thin, flat and touching ones too, against exact rationals."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from clearance.errors import BadDimension, EmptyMesh
+from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
 from clearance.query import cutting, intersection
+from clearance.query.common_point import MAX_PASSES, common_point, common_point_paper
 from clearance.query.intersection import intersect
+from tests.examples import first_fast
 from tests.oracle.polytope_volumes import shared_volume
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
@@ -39,13 +42,6 @@ def test_volumes_are_the_exact_ones(m, n, method):
         assert (found.dimension == 3) == (exact > 0.0)
 
 
-def test_sixty_four_identical_copies_are_the_body():
-    body = ball(40, 1)
-    found = intersect([body] * 64)
-    assert found.volume == pytest.approx(body.volume, rel=1e-15)
-    assert len(found.faces) == body.n_faces
-
-
 def test_copies_shifted_by_1e_12():
     points = np.random.default_rng(8).normal(size=(8, 3))
     shifted = points + [1e-12, 0, 0]
@@ -53,16 +49,6 @@ def test_copies_shifted_by_1e_12():
     found = intersect([Polytope(points), Polytope(shifted)])
     assert found.method == "cut"
     assert found.volume == pytest.approx(exact, rel=1e-14)
-
-
-@pytest.mark.parametrize(("m", "n"), [(2, 200), (7, 30), (64, 12), (64, 50)])
-def test_order_changes_nothing_beyond_1e_14(m, n):
-    bodies = cluster(m, n)
-    first = intersect(bodies).volume
-    assert first > 0.0
-    for seed in range(2):
-        order = np.random.default_rng(seed).permutation(m)
-        assert intersect([bodies[i] for i in order]).volume == pytest.approx(first, rel=1e-14)
 
 
 @pytest.mark.slow
@@ -187,3 +173,180 @@ def test_refusals():
     ):
         with pytest.raises(error):
             call()
+
+
+def certificate_is_right(bodies, proof) -> bool:
+    """Weights times normals vanish, and weights times offsets do not exceed 0: nothing inside all."""
+    rows = [bodies[k].half_spaces[f] for k, f in zip(proof.parts, proof.faces, strict=True)]
+    total = proof.weights @ np.array(rows)
+    return len(rows) <= 4 and np.abs(total[:3]).max() < 1e-12 and total[3] > -1e-12
+
+
+def test_apart_bodies_have_a_certificate_and_two_a_separating_plane():
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        centre = rng.normal(size=3)
+        a, b = (
+            ball(25, seed),
+            ball(25, seed + 50, centre / np.linalg.norm(centre) * rng.uniform(1.2, 2.5)),
+        )
+        met, paper = common_point([a, b]), common_point_paper(a, b)
+        assert met.relation == paper.relation
+        if met.relation == "apart":
+            assert certificate_is_right([a, b], met.certificate)
+            for normal in (met.certificate.normal, paper.certificate.normal):
+                assert (a.vertices @ normal).max() < (b.vertices @ normal).min()
+        else:
+            for point in (met.point, paper.point):
+                assert min(a.offsets_about(point).min(), b.offsets_about(point).min()) > 0.0
+
+
+@pytest.mark.parametrize("shift", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0.5, 0.25)])
+def test_touching_is_neither_overlap_nor_apart(shift):
+    a, b = Polytope(CUBE), Polytope(CUBE + shift)
+    assert common_point([a, b]).relation == "touch"
+    assert common_point_paper(a, b).relation == "touch"
+
+
+def posed(angle: float, shift) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.from_rotvec([0.3 * angle, -angle, 0.5 * angle]).as_matrix()
+    pose[:3, 3] = shift
+    return pose
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("m", [2, 5])
+def test_along_a_trajectory_a_warm_start_gives_the_same_answer_with_less_work(m):
+    bodies = [ball(50, i) for i in range(m)]
+    warm, work, seen = (), [0, 0], set()
+    for step in range(60):
+        poses = [posed(0.02 * i * step, [0.04 * step * (i == 1), 0.1 * i, 0.0]) for i in range(m)]
+        cold = common_point(bodies, poses)
+        met = common_point(bodies, poses, warm)
+        moved = [
+            Polytope(b.vertices @ p[:3, :3].T + p[:3, 3])
+            for b, p in zip(bodies, poses, strict=True)
+        ]
+        assert met.relation == cold.relation == common_point(moved).relation
+        if met.relation == "overlap":
+            assert met.level == pytest.approx(cold.level, abs=1e-12)
+            assert cold.level == pytest.approx(common_point(moved).level, abs=1e-12)
+            assert min(b.offsets_about(met.point).min() for b in moved) > 0.0
+        warm = met.warm
+        work[0] += cold.n_faces
+        work[1] += met.n_faces
+        seen.add(met.relation)
+    assert seen == {"overlap", "apart"}
+    assert m > 2 or work[1] < 0.3 * work[0]
+
+
+def test_bodies_without_a_common_point_to_ask_for_are_refused():
+    with pytest.raises(EmptyMesh):
+        common_point([])
+    with pytest.raises(BadShape, match="item 1 is a ndarray"):
+        common_point([Polytope(CUBE), CUBE])
+    with pytest.raises(BadShape, match=r"poses have shape \(1, 4, 4\)"):
+        common_point([Polytope(CUBE)] * 2, [np.eye(4)])
+    with pytest.raises(NotFinite):
+        common_point([Polytope(CUBE)], [np.full((4, 4), np.nan)])
+
+
+OCTAHEDRON = np.vstack([np.eye(3), -np.eye(3)])
+
+
+def turned(points: np.ndarray, seed: int) -> np.ndarray:
+    return points @ Rotation.random(random_state=seed).as_matrix().T
+
+
+def exact_and_found(a: np.ndarray, b: np.ndarray) -> tuple[float, float]:
+    return float(shared_volume(a, b)), intersect([Polytope(a), Polytope(b)]).volume
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("overlap", [1e-12, 1e-9, 1e-6, 1e-3, 1.0])
+@pytest.mark.parametrize(
+    "shift", [(1.0, 0.3, 0.2), (1.0, 0.0, 0.0), (1.0, 1.0, 0.4), (1.0, 1.0, 1.0)]
+)
+def test_boxes_in_any_attitude_that_overlap_little(overlap, shift):
+    moved = CUBE + np.array(shift) - overlap * (np.array(shift) == 1.0)
+    exact, found = exact_and_found(turned(CUBE, 3), turned(moved, 3))
+    if exact > 0.0 or overlap > 1e-10:
+        assert found == pytest.approx(exact, rel=1e-13, abs=0.0)
+    else:
+        assert found == 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("overlap", [1e-12, 1e-9, 1e-6, 1e-3])
+def test_mirrored_bodies_that_overlap_little(overlap):
+    for seed in range(2):
+        points = np.random.default_rng([7, seed]).normal(size=(7, 3))
+        body = Polytope(points / np.linalg.norm(points, axis=1)[:, None])
+        n, d = body.normals[seed], body.anchors[seed] @ body.normals[seed]
+        mirrored = body.vertices - 2.0 * np.outer(body.vertices @ n - (d - overlap / 2.0), n)
+        exact, found = exact_and_found(body.vertices, mirrored)
+        assert exact > 0.0 and found == pytest.approx(exact, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("overlap", [1e-12, 1e-9, 1e-6])
+def test_a_corner_just_through_a_face(overlap):
+    for seed in range(3):
+        a, b = turned(OCTAHEDRON, seed), turned(CUBE - [0.0, 0.4, 0.6], seed) + 0.0
+        toward = Rotation.random(random_state=seed).as_matrix()[:, 0]
+        exact, found = exact_and_found(a, b + toward * (1.0 - overlap))
+        assert exact > 0.0 and found == pytest.approx(exact, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    "scale", first_fast([(1e-6, 1, 1), (1, 1e-5, 1e-5), (1e6, 1e6, 1e6), (1, 40, 0.02)], 1)
+)
+def test_flat_needle_like_and_huge_bodies(scale):
+    for seed in range(3):
+        a, b = np.random.default_rng(seed).normal(size=(2, 5, 3)) * scale
+        for shift in (0.0, 3e5):
+            turn = seed if shift == 0.0 else None
+            pair = [turned(p, turn) if turn is not None else p + shift for p in (a, b)]
+            exact, found = exact_and_found(*pair)
+            assert found == pytest.approx(exact, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.parametrize(("m", "n"), [(3, 8), (8, 5), (16, 4), (64, 4), (64, 30)])
+def test_many_bodies_both_ways(m, n):
+    for seed in range(3):
+        rng = np.random.default_rng([m, n, seed])
+        bodies = [Polytope(rng.normal(size=(n, 3)) + rng.normal(size=3) * 0.1) for _ in range(m)]
+        cut, dual = (intersect(bodies, method) for method in ("cut", "dual"))
+        assert cut.relation == dual.relation and cut.volume >= 0.0
+        assert cut.volume == pytest.approx(dual.volume, rel=1e-11, abs=0.0)
+        assert cut.common.passes < MAX_PASSES and cut.common.n_faces < 16 * m
+        if cut.relation == "overlap":
+            assert 2 * (len(cut.vertices) + len(cut.faces) - 2) == sum(map(len, cut.faces))
+
+
+def test_bytes_do_not_depend_on_the_number_of_threads(monkeypatch):
+    monkeypatch.setattr(intersection, "HALVED_FROM", 100)
+    rng = np.random.default_rng(2)
+    bodies = [Polytope(rng.normal(size=(60, 3)) + 0.2 * rng.normal(size=3)) for _ in range(12)]
+    one, two, three = (intersect(bodies, threads=n) for n in (1, 2, 3))
+    assert one.volume == two.volume == three.volume > 0.0
+    assert one.vertices.tobytes() == two.vertices.tobytes() == three.vertices.tobytes()
+    assert one.provenance.tobytes() == two.provenance.tobytes()
+
+
+@pytest.mark.parametrize("n", [4, 60, 900])
+def test_the_deepest_point_is_that_of_the_linear_programme(n):
+    from scipy.optimize import linprog
+
+    for seed in range(3):
+        rng = np.random.default_rng([n, seed])
+        bodies = [Polytope(rng.normal(size=(n, 3)) + 0.3 * rng.normal(size=3)) for _ in range(3)]
+        rows = np.vstack([np.column_stack([b.normals, b.face_widths]) for b in bodies])
+        bounds = np.concatenate([b.normals @ b.centroid + b.face_widths for b in bodies])
+        best = linprog([0, 0, 0, -1], A_ub=rows, b_ub=bounds, bounds=[(None, None)] * 4)
+        met = common_point(bodies)
+        if met.relation == "overlap":
+            assert met.level == pytest.approx(best.x[3], rel=1e-7)
+        else:
+            assert best.x[3] < 1e-9

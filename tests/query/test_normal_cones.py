@@ -25,14 +25,6 @@ from clearance.kernels.search.node_pairs import (
     turned_away,
     views_along,
 )
-from clearance.kernels.search.pair_query import (
-    FRONT_CAPACITY,
-    POSES_ARE_RIGID,
-    nearest_at_poses,
-    track_pair,
-)
-from clearance.kernels.search.scratch import new_scratch
-from clearance.query.one_pair import answer_rows
 from tests import oracle
 from tests.examples import examples
 from tests.made_cases import (
@@ -43,7 +35,6 @@ from tests.made_cases import (
     faces_below,
     faces_of,
     torus,
-    without_cones,
 )
 from tests.strategies import rotations
 
@@ -193,30 +184,3 @@ def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, 
     holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
     assert not of_a[holds].any()
     assert not of_b[holds].any()
-
-
-def asked(a, b, poses):
-    """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
-    numbers, points, counts = answer_rows(len(poses))
-    tracked = track_pair(a, b, FRONT_CAPACITY, new_scratch())
-    nearest_at_poses(tracked, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
-    apart = numbers[:, 0] > 0.0
-    reported = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
-    return reported, counts[:, 2:4].sum(axis=0)
-
-
-def bare(surface):
-    return surface._replace(cones=without_cones(surface.cones))
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@examples(6)
-@given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(KINDS)))
-def test_cones_change_no_bit(kind, seed, other):
-    random = np.random.default_rng(seed)
-    a, b = (surface_of(KINDS[name](random)) for name in (kind, other))
-    turned, away = rotations(random, 2)[0], random.normal(size=3)
-    poses = np.array([at(*(away * (2.0 - 0.15 * k)), turned) for k in range(12)])
-    found, _ = asked(a, b, poses)
-    expected, _ = asked(bare(a), bare(b), poses)
-    assert found == expected

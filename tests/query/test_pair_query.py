@@ -1,17 +1,22 @@
 """A query that remembers against single questions, bit for bit, whatever the poses do."""
 
+import gc
+import os
+import subprocess
+import sys
+import threading
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadPose, BadShape, NotFinite
-from tests.examples import examples
-from tests.strategies import boxes, poses, rotations
+from clearance.query.one_pair import cached_pair
+from tests.made_cases import at
+from tests.strategies import rotations
 
 
 def turned(axis, angle):
@@ -51,18 +56,12 @@ def bent_pipe():
 
 def cup():
     """A concave body of five plates that touch."""
-    plates = [
-        ((0.6, 0.6, 0.05), (0, 0, -0.3)),
-        ((0.05, 0.6, 0.6), (0.3, 0, 0)),
-        ((0.05, 0.6, 0.6), (-0.3, 0, 0)),
-    ]
-    plates += [((0.6, 0.05, 0.6), (0, 0.3, 0)), ((0.6, 0.05, 0.6), (0, -0.3, 0))]
-    made = []
-    for size, centre in plates:
-        pose = np.eye(4)
-        pose[:3, 3] = centre
-        made.append(cl.box(size).transformed(pose))
-    return cl.Polyhedron.merged(made)
+    floor, side, front = (
+        cl.box(size) for size in ((0.6, 0.6, 0.05), (0.05, 0.6, 0.6), (0.6, 0.05, 0.6))
+    )
+    places = [(floor, at(z=-0.3))]
+    places += [(side, at(x)) for x in (0.3, -0.3)] + [(front, at(0.0, y)) for y in (0.3, -0.3)]
+    return cl.Polyhedron.merged([plate.transformed(place) for plate, place in places])
 
 
 PAIRS = {
@@ -117,22 +116,6 @@ def test_one_call_for_many_poses_gives_the_same_rows(pair):
         assert rows.faces[i].tolist() == [near.face_a, near.face_b]
 
 
-@given(
-    boxes(), boxes(), st.lists(st.tuples(poses(), poses(), st.booleans()), min_size=2, max_size=6)
-)
-@examples(40)
-def test_boxes_anywhere_and_back_again(a, b, asked):
-    one, other = cl.Polyhedron(*a), cl.Polyhedron(*b)
-    query = cl.Query(one, other)
-    for pose_a, pose_b, nudged in [*asked, *asked[::-1]]:
-        if nudged:
-            pose_a = pose_a.copy()
-            pose_a[0, 3] += 2.0**-20
-        assert_same(
-            query.distance(pose_a, pose_b), cl.distance(one, other, pose_a=pose_a, pose_b=pose_b)
-        )
-
-
 def test_a_body_that_stands_is_given_once_or_not_at_all():
     a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5))
     walked = np.tile(np.eye(4), (3, 1, 1))
@@ -152,47 +135,32 @@ def test_a_body_that_stands_is_given_once_or_not_at_all():
     assert query.distances().distances.tolist() == [0.0]
 
 
-def test_poses_of_any_layout_are_taken():
+@pytest.mark.parametrize(
+    "layout", [np.asfortranarray, np.ndarray.tolist, np.float32, np.broadcast_to]
+)
+def test_poses_of_any_layout_are_taken(layout):
     query = cl.Query(cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5)))
-    pose = np.eye(4)
-    pose[0, 3] = 1.75
-    frozen = pose.copy()
-    frozen.flags.writeable = False
-    for given_pose in (
-        frozen,
-        np.asfortranarray(pose),
-        pose.tolist(),
-        pose.astype(np.float32),
-        pose[::1, :],
-    ):
-        assert query.distance(given_pose).distance == 1.0
-        assert query.distances(np.tile(given_pose, (2, 1, 1)), pose).distances.tolist() == [
-            0.0,
-            0.0,
-        ]
-    standing = np.broadcast_to(pose, (2, 4, 4))
-    assert query.distances(standing).distances.tolist() == [1.0, 1.0]
+    pose = layout(at(1.75)) if layout is not np.broadcast_to else np.broadcast_to(at(1.75), (4, 4))
+    assert query.distance(pose).distance == 1.0
+    assert query.distances(np.tile(pose, (2, 1, 1)), pose).distances.tolist() == [0.0, 0.0]
 
 
-def bad_poses():
-    good = np.eye(4)
-    for fault, row, column, value in [
-        (NotFinite, 0, 3, np.nan), (NotFinite, 1, 1, np.inf), (BadPose, 0, 0, 1.001), (BadPose, 0, 0, -1.0),
-        (BadPose, 3, 3, 2.0), (BadPose, 3, 0, 1e-9), (BadPose, 2, 3, 1e200), (BadPose, 0, 1, 1e-5),
-    ]:  # fmt: skip
-        bad = good.copy()
-        bad[row, column] = value
-        yield fault, bad
-    yield BadShape, np.eye(3)
-    yield BadShape, np.ones(4)
-    yield BadShape, "pose"
+def off(row, column, value):
+    """No pose, for one number."""
+    bad = np.eye(4)
+    bad[row, column] = value
+    return bad
 
 
-@pytest.mark.parametrize(("fault", "bad"), list(bad_poses()))
+@pytest.mark.parametrize(
+    ("fault", "bad"),
+    [
+        (NotFinite, off(0, 3, np.nan)), (BadPose, off(0, 0, 1.001)), (BadPose, off(3, 0, 1e-9)),
+        (BadPose, off(2, 3, 1e200)), (BadPose, off(0, 1, 1e-5)), (BadShape, np.eye(3)), (BadShape, "pose"),
+    ],
+)  # fmt: skip
 def test_what_is_no_pose_is_refused_and_forgotten(fault, bad):
-    a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5))
-    query, pose = cl.Query(a, b), np.eye(4)
-    pose[0, 3] = 1.75
+    query, pose = cl.Query(cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5))), at(1.75)
     query.distance(pose)
     for asked in ((bad, pose), (pose, bad)):
         with pytest.raises(fault):
@@ -202,16 +170,70 @@ def test_what_is_no_pose_is_refused_and_forgotten(fault, bad):
     assert query.distance(pose).distance == 1.0
 
 
-def test_threads_that_share_a_query_get_their_own_answers():
+def test_threads_that_share_a_query_or_a_pair_get_their_own_answers():
     a, b = bent_pipe(), cl.sphere(radius=0.3, tolerance=0.01)
-    query, wrong = cl.Query(a, b), []
+    query, start = cl.Query(a, b), threading.Barrier(4)
+    walks = [walk(np.random.default_rng(seed), 60, 0.05, 1.5) for seed in range(4)]
+    alone = [[cl.distance(a, b, pose_a=pose) for pose in poses] for poses in walks]
 
-    def ask(seed):
-        for pose in walk(np.random.default_rng(seed), 60, 0.05, 1.5):
-            near, single = query.distance(pose), cl.distance(a, b, pose_a=pose)
-            if near.distance != single.distance or not np.array_equal(near.point_b, single.point_b):
-                wrong.append((near, single))
+    def ask(i):
+        start.wait()
+        for pose, single in zip(walks[i], alone[i], strict=True):
+            assert_same(query.distance(pose), single)
+            again = cl.distance(a, b, pose_a=pose)
+            assert_same(again, single)
+            assert again.tally == single.tally
 
     with ThreadPoolExecutor(4) as threads:
         list(threads.map(ask, range(4)))
-    assert not wrong
+
+
+def test_a_solid_that_is_let_go_takes_its_arrays_along():
+    a, b = cl.box((1.0, 1.0, 1.0)), cl.box((2.0, 1.0, 1.0))
+    pair = cached_pair(a, b)
+    assert cached_pair(a, b) is pair and cached_pair(b, a) is not pair
+    gone, solid = weakref.ref(pair), weakref.ref(b)
+    del b, pair
+    gc.collect()
+    assert solid() is None and gone() is None
+
+
+FORKING = """
+import os, sys, threading
+import numpy as np
+import clearance as cl
+from tests.made_cases import at, ball
+
+query = cl.Query(ball(1.0, 2), ball(0.5, 2))
+poses = np.array([at(1.6 + 0.001 * (i % 200)) for i in range(2000)])
+before = query.distances(None, poses[:200]).distances
+stop = threading.Event()
+
+def ask():
+    while not stop.is_set():
+        query.distances(None, poses)
+
+asking = threading.Thread(target=ask, daemon=True)
+asking.start()
+while not query._lock.locked():
+    pass
+failed = 0
+for _ in range(3):
+    child = os.fork()
+    if child == 0:
+        same = (query.distances(None, poses[:200]).distances == before).all()
+        os._exit(0 if same and query.distance(None, poses[0]).distance == before[0] else 1)
+    failed += os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+stop.set()
+asking.join()
+sys.exit(failed)
+"""
+
+
+@pytest.mark.cold
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+def test_a_child_asks_the_query_that_another_thread_was_asking():
+    """The time limit only ends a child that hangs."""
+    asked = [sys.executable, "-c", FORKING]
+    done = subprocess.run(asked, timeout=300, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

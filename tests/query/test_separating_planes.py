@@ -16,23 +16,9 @@ from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.search.scratch import new_scratch
 from clearance.kernels.search.separating_planes import separate
-from clearance.kernels.search.support import high_corner, top_of
 from tests import oracle
 from tests.made_cases import SOLIDS, at, ball, faces_of
 from tests.strategies import rotations
-
-
-def tops(surface, directions, rooms, heights, high, leaves, n_leaves):
-    """Fills (n,) heights, those of `high_corner`, and (n, 25) faces of the leaves within a room of the top."""
-    scratch = new_scratch()
-    root = surface.roots[0]
-    for i in range(len(directions)):
-        u = Vec3(directions[i, 0], directions[i, 1], directions[i, 2])
-        top, n_found, _ = top_of(surface, root, u, -1, rooms[i], 24, 0, scratch)
-        heights[i], n_leaves[i] = top.height, n_found
-        for k in range(n_found):
-            leaves[i, k] = surface.children[scratch.entries[k, 0], 0]
-        high[i] = high_corner(surface, root, u, -1)[0].height
 
 
 def separate_all(a, b, poses, points, limits, out, waiting):
@@ -69,35 +55,6 @@ def half_of(shape: Polyhedron) -> Polyhedron:
     """The faces of a shape above its middle: an open surface."""
     above = [face for face in faces_of(shape) if shape.vertices[face][:, 2].mean() > 0.0]
     return Polyhedron(shape.vertices, above)
-
-
-@pytest.mark.parametrize("kind", SHAPES)
-def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
-    random = np.random.default_rng(3)
-    shape = SHAPES[kind](random)
-    surface = surface_of(shape)
-    corners = shape.vertices[np.unique(shape.face_vertices)]
-    directions = np.concatenate(
-        [random.normal(size=(200, 3)), np.eye(3), -np.eye(3), shape.normals[:40]]
-    )
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    n = len(directions)
-    rooms = random.choice([1e-12, 1e-9, 1e-6], n)
-    heights, high, n_leaves = np.empty(n), np.empty(n), np.empty(n, dtype=np.int64)
-    leaves = np.full((n, 25), -1)
-    tops(surface, directions, rooms, heights, high, leaves, n_leaves)
-    reach = corners @ directions.T
-    np.testing.assert_allclose(heights, reach.max(axis=0), rtol=0.0, atol=1e-14)
-    assert (high <= heights + 1e-14).all()
-    starts, owned = surface.vertex_starts, surface.owned_vertices
-    for i in range(n):
-        if n_leaves[i] > 24:
-            continue
-        tall = surface.vertices @ directions[i] >= heights[i] - 1e-14
-        owners = {f for f in range(len(starts) - 1) if tall[owned[starts[f] : starts[f + 1]]].any()}
-        assert owners <= {
-            *leaves[i].tolist()
-        }  # each farthest corner is there with the face that answers for it
 
 
 @pytest.mark.slow
