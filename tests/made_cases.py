@@ -13,9 +13,12 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box
 from clearance.kernels.arithmetic.lanes import WIDTH
-from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from clearance.kernels.mesh.surface import Surface
+from clearance.world.body import Body
+from clearance.world.case import Case
+from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.trajectory import Trajectory
 from scripts.makers.hostile_cases import (
     WORST,
     arm,
@@ -28,8 +31,9 @@ from scripts.makers.hostile_cases import (
 )
 
 __all__ = (
-    "SOLIDS", "WORST", "arm", "arm_among_obstacles", "at", "ball", "corners_moved", "dented", "faces_below",
-    "faces_of", "flying", "l_prism", "prism", "random_robot", "spindle", "torus", "with_copies", "without_cones",
+    "SOLIDS", "WORST", "arm", "arm_among_obstacles", "at", "ball", "corners_moved", "dented", "driven",
+    "faces_below", "faces_of", "flying", "l_prism", "prism", "random_robot", "resampled", "spindle", "torus",
+    "with_copies",
 )  # fmt: skip
 
 
@@ -99,11 +103,30 @@ def faces_below(surface: Surface) -> list[set[int]]:
     return below
 
 
-def without_cones(cones: np.ndarray) -> np.ndarray:
-    """`Surface.cones` as if no node had one."""
-    rows = cones.reshape(-1, CONE_ROWS, WIDTH).copy()
-    rows[:, :4], rows[:, 4] = 0.0, NO_CONE
-    return rows.reshape(cones.shape)
+def driven(
+    shape: Polyhedron,
+    kind: JointKind,
+    positions: Sequence[float],
+    *,
+    axis: Sequence[float] = (0.0, 0.0, 1.0),
+    velocities: Sequence[float] | None = None,
+    base: np.ndarray | None = None,
+    name: str = "robot",
+) -> PlacedRobot:
+    """A robot of one body, `tool` on the joint `joint` of its base, at these positions second by second."""
+    joint = Joint("joint", kind, "base", "tool", np.eye(4), np.array(axis, dtype=float))
+    rates = None if velocities is None else np.array(velocities, dtype=float)[:, None]
+    rows = np.array(positions, dtype=float)[:, None]
+    path = Trajectory(np.arange(float(len(rows))), ("joint",), rows, rates)
+    robot = Robot(name, ("base", "tool"), (joint,), (Body("tool", shape),))
+    return PlacedRobot(robot, path, np.eye(4) if base is None else base)
+
+
+def resampled(case: Case, times: np.ndarray) -> Case:
+    """The case of one robot at other times, on the lines between its samples."""
+    asked = case.robots[0].given_trajectory
+    columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
+    return case.with_trajectory(times, np.column_stack(columns), joint_names=asked.joint_names)
 
 
 def random_robot(

@@ -12,13 +12,9 @@ import clearance as cl
 from clearance.query.contact import BodyPair
 from clearance.simulate.answers.contact import contacts as contact_work
 from clearance.simulate.answers.contact.events import events_of
-from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case
-from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import JointKind
 from clearance.world.rules import Rule
-from clearance.world.trajectory import Trajectory
-from tests.made_cases import at, flying
+from tests.made_cases import at, driven, flying
 
 WAY = np.array([0.5, 0.75, 0.8, 0.85, 0.9, 0.82, 0.6, 0.5, 0.79, 0.78, 0.5])
 """Two events: rows 2 to 5 (a wall from 0.9, a cube of 0.2: at 0.9 it is 0.1 deep), and 8 alone; 0.78 is apart."""
@@ -138,18 +134,11 @@ def test_events_are_unbroken_stretches_of_one_pair():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", [-0.13])
-def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all(first):
+def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all():
     """A few directions rate hulls, none of them the way out of a ball: the best rated step is not the deepest."""
-    turn = Joint("turn", JointKind.REVOLUTE, "ground", "bar", np.eye(4), np.array([0.0, 0.0, 1.0]))
-    robot = Robot("arm", ("ground", "bar"), (turn,), (Body("bar", cl.box((0.8, 0.05, 0.05))),))
-    angles = np.linspace(first, 0.3, 25)
-    path = Trajectory(np.arange(25.0), ("turn",), angles[:, None])
-    pose = np.eye(4)
-    pose[:3, 3] = 0.37, 0.075, 0.03
-    case = Case(
-        "pass", (PlacedRobot(robot, path),), (Obstacle(Body("ball", cl.sphere(0.1)), pose),)
-    )
+    bar = driven(cl.box((0.8, 0.05, 0.05)), JointKind.REVOLUTE, np.linspace(-0.13, 0.3, 25))
+    ball = cl.Obstacle(cl.Body("ball", cl.sphere(0.1, tolerance=1e-3)), at(0.37, 0.075, 0.03))
+    case = cl.Case("pass", (bar,), (ball,))
     every, chosen = (cl.check(case, contact=what).worst for what in ("every", "events"))
     assert chosen["penetration"] == every["penetration"] and chosen["step"] == every["step"]
 
@@ -197,6 +186,9 @@ def test_the_deepest_of_two_at_one_step():
     assert told(run)[:2] == (0, "b")
     assert told(run)[2] == pytest.approx(0.03, abs=1e-12)
     assert run.record.worst is run.record.worst_sample is run.record.nearest
+    every = cl.check(case, contact="every")
+    volumes = [row.known.volume for row in every.record.contacts if row.step == 0]
+    assert len(volumes) == 2 and every.steps["volume"][0].as_py() == pytest.approx(sum(volumes))
     (reason, *_) = run.verdict.reasons
     assert reason.startswith("contact 30.00 mm deep: l6 - b at 0.000 s, step 0")
 
@@ -233,3 +225,16 @@ def test_a_cloud_has_no_depth_and_a_body_that_has_is_worse():
     assert alone.worst["obstacle"] == "a scan" and alone.worst["penetration"] is None
     both = cl.check(passing([0.0, 0.01], cloud, block("b", at(0.2))))
     assert told(both)[:2] == (1, "b")
+
+
+def test_a_touch_that_rounding_parts_in_another_frame_is_a_contact_of_depth_0():
+    """A slider that ends exactly at a wall, turned: contact in the world, whatever the wall's own frame says."""
+    turned = np.eye(4)
+    turned[:2, :2] = [[0.8, -0.6], [0.6, 0.8]]
+    near = 0.1 * np.array([1.0, 1e-16, 0.0, -1e-16, -2e-16]) - 0.1
+    cube = driven(cl.box((0.2,) * 3), JointKind.PRISMATIC, near, axis=(1, 0, 0), base=turned)
+    wall = cl.Obstacle(cl.Body("wall", cl.box((0.2, 1.0, 1.0))), turned @ at(0.2))
+    rows = cl.check(cl.Case("touch", (cube,), (wall,))).steps.to_pylist()
+    for row in rows:
+        assert (row["clearance"] == 0.0) == (row["penetration"] is not None)
+    assert all(row["penetration"] < 1e-12 for row in rows if row["clearance"] == 0.0)

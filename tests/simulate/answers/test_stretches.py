@@ -15,10 +15,10 @@ from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import JointKind
 from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory
-from tests.made_cases import at
+from tests.made_cases import at, driven, resampled
 from tests.simulate.measure.test_between_steps import LIMITS, PAST, THROUGH, sweeping
 
 SCENES = Path(__file__).parents[3] / "scenes"
@@ -41,12 +41,9 @@ def test_spans_that_overlap_or_meet_are_one():
 
 def finer(case: Case, times: int) -> Case:
     """The case with so many times the samples, on the same lines."""
-    (placed,) = case.robots
-    asked = placed.trajectory
-    at = np.linspace(asked.times[0], asked.times[-1], (asked.n_steps - 1) * times + 1)
-    columns = [np.interp(at, asked.times, column) for column in asked.positions.T]
-    table = Trajectory(at, asked.joint_names, np.column_stack(columns))
-    return replace(case, robots=(replace(placed, trajectory=table),))
+    asked = case.robots[0].trajectory
+    n = (asked.n_steps - 1) * times + 1
+    return resampled(case, np.linspace(asked.times[0], asked.times[-1], n))
 
 
 def sampled(case: Case, level: str, times: int) -> tuple[np.ndarray, np.ndarray]:
@@ -138,14 +135,11 @@ def test_intervals_and_events_are_of_the_motion():
 
 def test_a_body_that_goes_wholly_into_another_stays_in_contact():
     """A cube of 0.1 m goes through a solid block of 1 m: from 0.45 to 1.55 m, its surface 0.45 m away half way."""
-    slide = Joint(
-        "slide", JointKind.PRISMATIC, "base", "cube", at(), np.array([1.0, 0.0, 0.0]), -3, 3
-    )
-    robot = Robot("slider", ("base", "cube"), (slide,), (Body("cube", cl.box((0.1,) * 3)),))
     block = Obstacle(Body("block", cl.box((1.0, 1.0, 1.0))), at(1.0))
-    for positions in ([[0.0], [2.0]], [[0.0], [0.9], [1.1], [2.0]]):
-        asked = Trajectory(np.array(positions)[:, 0], ("slide",), np.array(positions))
-        case = Case("through", (PlacedRobot(robot, asked),), (block,), LIMITS)
+    for positions in ([0.0, 2.0], [0.0, 0.9, 1.1, 2.0]):
+        cube = driven(cl.box((0.1,) * 3), JointKind.PRISMATIC, [0.0], axis=(1, 0, 0))
+        path = Trajectory(np.array(positions), ("joint",), np.array(positions)[:, None])
+        case = Case("through", (replace(cube, trajectory=path),), (block,), LIMITS)
         (contact,) = spans_of(case)["contact"].tolist()
         assert contact[0] <= 0.45 <= contact[0] + 0.021 and contact[1] - 0.021 <= 1.55 <= contact[1]
         assert len(spans_of(case)["below_warn"]) == len(spans_of(case)["below_fail"]) == 1

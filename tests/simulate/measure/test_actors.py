@@ -16,13 +16,11 @@ from clearance.world.body import Body
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.placed_robot import PlacedRobot, SelfClearance
-from clearance.world.robot import JointKind, Robot
-from clearance.world.trajectory import Trajectory
+from clearance.world.robot import Robot
 from tests import oracle
 from tests.examples import first_fast
-from tests.made_cases import at, dented, faces_of, random_robot
+from tests.made_cases import at, faces_of, random_robot
 from tests.oracle.kinematics import link_poses, placed
-from tests.simulate.measure.certified import assert_as_tight_as_asked
 from tests.simulate.measure.wandering import N_STEPS, wandering
 from tests.strategies import rotations
 
@@ -118,43 +116,3 @@ def test_two_bodies_with_a_long_chain_between_are_as_far_apart_as_is_exact(seed)
     ]
     assert max(n_between) >= 36
     assert max(exact_errors(case, range(0, N_STEPS, 12))) < 2e-13
-
-
-def finer(case: cl.Case, times: np.ndarray) -> cl.Case:
-    """The case with samples at these times of all robots, which move linearly between their own."""
-    robots = []
-    for robot in case.robots:
-        asked = robot.given_trajectory
-        columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
-        path = Trajectory(times, asked.joint_names, np.stack(columns, axis=1))
-        robots.append(replace(robot, trajectory=path))
-    return replace(case, robots=tuple(robots))
-
-
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.slow
-def test_no_bound_on_two_moving_bodies_is_above_samples_a_thousand_times_finer(seed):
-    """Dented bodies that turn by up to a radian a step, apart from each other by less than they move."""
-    random = np.random.default_rng(seed)
-    robots = []
-    for name, side in (("left", -1.0), ("right", 1.0)):
-        robot = random_robot(random, 4, sizes=(0.05,))
-        robot = replace(
-            robot, name=name, bodies=(Body("l4", dented(random, 2, depth=0.4, radius=0.15)),)
-        )
-        names = tuple(joint.name for joint in robot.moving_joints)
-        steps = random.uniform(-1.0, 1.0, (8, len(names))) * 0.4
-        slides = [joint.kind is JointKind.PRISMATIC for joint in robot.moving_joints]
-        steps[:, slides] *= 0.05
-        path = Trajectory(np.arange(8.0), names, steps.cumsum(axis=0))
-        robots.append(PlacedRobot(robot, path, at(side * random.uniform(0.2, 0.3))))
-    case = cl.Case("turning", tuple(robots), ())
-    run = cl.check(case)
-    bounds, clearances = run.certificate.lower_bound, run.record.clearances
-    for step in {int(np.argmin(bounds[:-1])), *random.integers(0, 7, 2).tolist()}:
-        times = np.linspace(step, step + 1.0, 1001)
-        sampled = cl.check(finer(case, times), certify=False).record.clearances
-        assert bounds[step] <= sampled.min() + 1e-12
-        assert sampled.min() <= run.certificate.upper_bound[step] + 1e-4
-    assert (bounds <= clearances).all()
-    assert_as_tight_as_asked(run)

@@ -21,7 +21,6 @@ from clearance.world.kinematics import (
     all_links,
     floating_links,
     poses_by_link,
-    seen_from,
     standing_link,
     values_by_link,
 )
@@ -152,38 +151,3 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
     assert np.linalg.norm(world - world[0], axis=2).max() <= bound
     assert np.abs(placed[0] - room[link]).max() <= 1e-14
-
-
-def on_one_base(n_steps: int = 30) -> tuple[Scene, dict]:
-    """Two bodies fixed to a base that tumbles and one on a joint of it, seen from the base."""
-    random = np.random.default_rng(7)
-    below, n = chain([FIXED, FIXED, TURNING], random)
-    floats = all_links(standing_link(np.eye(4)), floating_links(1, 0, 0, at(5.0)))
-    hung = below._replace(
-        parents=np.array([4, 5, 5, 5]),
-        kinds=np.array([FIXED, FIXED, FIXED, TURNING]),
-        columns=np.where(below.columns < 0, -1, below.columns + 7),
-    )
-    links, seen = seen_from(all_links(floats, hung), [(4, 6), (4, 7), (4, 8), (1, 7)])
-    shapes = [SHAPE.transformed(at(0.4)), SHAPE.transformed(at(-0.5)), SHAPE.transformed(at(z=0.9))]
-    positions = np.hstack(
-        [
-            random.normal(size=(n_steps, 3)),
-            orientations(random, n_steps, 0.9),
-            random.normal(size=(n_steps, n)),
-        ]
-    )
-    frames = [seen[4, 6], seen[4, 7], seen[4, 8]]
-    return Scene(links, shapes, frames, [(0, 1)], positions), seen
-
-
-def test_two_bodies_on_one_base_stay_as_far_apart():
-    scene, _ = on_one_base()
-    rows, counts = floating.swept(scene)
-    world = floating.distances(scene._replace(frames=[6, 7, 8]), scene.positions)
-    assert np.ptp(rows.clearance) == 0.0
-    assert np.abs(world[:, 0] - rows.clearance[0]).max() < 1e-12
-    assert counts[1] == 1  # asked once
-    assert np.ptp(floating.certified(scene).lower[:-1]) <= 1e-9
-    in_world = scene._replace(frames=[6, 7, 8])
-    assert np.abs(floating.swept(in_world)[0].clearance - rows.clearance).max() < 1e-12

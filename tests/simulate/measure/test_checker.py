@@ -15,13 +15,10 @@ from clearance.world.budget import Budget
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.cells import cell
-from tests.examples import first_fast
 from tests.made_cases import arm, at, ball, faces_of, flying
 
-CASES = [f"scenes/{name}/case.yaml" for name in ("box_box", "panda_shelf", "hot_cell")]
 
-
-@pytest.fixture(scope="module", params=first_fast(CASES, 2))
+@pytest.fixture(scope="module", params=["scenes/box_box/case.yaml", "scenes/box_pipe/case.yaml"])
 def run(request):
     return cl.check(cl.load_case(request.param), certify=False)
 
@@ -38,7 +35,6 @@ def assert_row(near, steps, i):
     assert near.contact == (row["status"] == "contact")
 
 
-@pytest.mark.slow
 def test_answers_are_those_of_a_run_in_any_order(run):
     checker = cl.Checker(run.record.case)
     positions = run.record.case.robots[0].trajectory.positions
@@ -54,13 +50,6 @@ def test_many_at_once_are_the_same(run):
     links = [checker.pairs[i][0] for i in found.pairs]
     assert links == run.steps["link"].to_pylist()
     assert np.array_equal(found.points[:, 0, 0], run.steps["link_x"].to_numpy())
-
-
-def test_a_configuration_may_name_its_joints(run):
-    checker = cl.Checker(run.record.case)
-    values = run.record.case.robots[0].trajectory.positions[1]
-    named = dict(zip(reversed(checker.joint_names), reversed(values.tolist()), strict=True))
-    assert_row(checker.distance(named), run.steps, 1)
 
 
 def swaying():

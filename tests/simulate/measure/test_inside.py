@@ -10,7 +10,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.measure import inside
 from clearance.simulate.measure.sections import section_plan
 from clearance.world.notice import Severity
-from tests.made_cases import WORST, at, ball, faces_of, flying
+from tests.made_cases import at, ball, faces_of, flying
 
 BALL = ball(2.0, 2)
 LINK = cl.box((0.05, 0.05, 0.05))
@@ -39,11 +39,6 @@ def test_a_robot_wholly_inside_is_in_contact_whatever_is_asked(fault: str, need:
     assert run.record.notices == ()
 
 
-def test_a_link_round_an_obstacle_is_in_contact_as_well() -> None:
-    run = moved(Polyhedron(BALL.vertices, faces_of(BALL)[1:]), WAY, LINK)
-    assert run.status == "contact"
-
-
 @pytest.mark.parametrize("at_once", [inside.AT_ONCE, 8])
 def test_where_the_hole_decides_the_pair_is_suspect_by_name_and_first_step(
     at_once: int, monkeypatch: pytest.MonkeyPatch
@@ -68,15 +63,6 @@ def test_larger_holes_make_it_suspect_and_sheets_do_not() -> None:
     assert "step 0" in notice.text
     for shape in (Polyhedron(BALL.vertices, faces[100:]), Polyhedron(BALL.vertices, faces[:100])):
         assert moved(LINK, WAY, shape).record.notices == ()
-
-
-@pytest.mark.parametrize(
-    "name",
-    ["nested_shells", "facing_plates"],
-)
-def test_closed_and_open_surfaces_have_no_notices(name: str) -> None:
-    case = WORST[name]()
-    assert cl.check(case).record.notices == ()
 
 
 def test_steps_in_contact_are_not_in_doubt() -> None:

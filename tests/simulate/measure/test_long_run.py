@@ -23,6 +23,7 @@ from clearance.simulate.measure import resources
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import Case
 from tests.examples import first_fast
+from tests.made_cases import resampled
 
 ROOT = Path(__file__).parents[3]
 ASKED = {
@@ -170,16 +171,6 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
         assert said == ["starting anew: the interrupted run had other inputs"]
 
 
-def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
-    case: Case, tmp_path: Path
-) -> None:
-    with open_resumable_rows(tmp_path / "kept", print) as kept:
-        run = cl.check(case, resources=cl.Resources(rows=kept))
-    assert list(run.pair_minima) == list(cl.check(case).pair_minima)
-    run.save(tmp_path / "out")
-    assert [path.name for path in tmp_path.iterdir()] == ["out"]
-
-
 def test_a_full_disk_is_told_before_anything_is_mapped(
     case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -202,14 +193,10 @@ def test_a_state_whose_rows_are_gone_is_not_believed(case: Case, tmp_path: Path)
     assert said == []
 
 
-def resampled(case: Case, n_steps: int) -> Case:
+def with_steps(case: Case, n_steps: int) -> Case:
     """The case with its joints moving through the same positions in so many steps."""
-    placed = case.robots[0]
-    asked = placed.trajectory
-    times = np.linspace(asked.times[0], asked.times[-1], n_steps)
-    columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
-    moved = replace(asked, times=times, positions=np.column_stack(columns))
-    return replace(case, robots=(replace(placed, trajectory=moved),))
+    times = case.robots[0].given_trajectory.times
+    return resampled(case, np.linspace(times[0], times[-1], n_steps))
 
 
 def most_memory(case: Case, folder: Path, jobs: int) -> int:
@@ -243,8 +230,8 @@ def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
     """[bytes] of 2000 and of 20,000 steps on one thread, and of 20,000 on two."""
     resources.LONGEST_PART, blocks.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
-    check_and_write(resampled(case, 500), folder, 2)  # loads and compiles, slow where traced
-    few, many = resampled(case, 2_000), resampled(case, 20_000)
+    check_and_write(with_steps(case, 500), folder, 2)  # loads and compiles, slow where traced
+    few, many = with_steps(case, 2_000), with_steps(case, 20_000)
     return most_memory(few, folder, 1), most_memory(many, folder, 1), most_memory(many, folder, 2)
 
 

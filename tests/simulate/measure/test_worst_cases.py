@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -15,7 +13,7 @@ from clearance.simulate.measure.resources import Resources
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
-from tests.made_cases import WORST, at, flying
+from tests.made_cases import WORST, arm, at, flying
 from tests.simulate.answers.test_contact_modes import channel
 
 SOME_STEPS = (0, 7, 23)
@@ -42,12 +40,6 @@ def pair_rows(run, step):
     return {(link, obstacle): clearance for i, link, obstacle, clearance in keys if i == step}
 
 
-def corners_in_world(bodies, wanted):
-    """(n, 3, 3) the triangles of the body of that name."""
-    ((shape, pose),) = [placed for name, *placed in bodies if name == wanted]
-    return triangle_soup(shape).corners @ pose[:3, :3].T + pose[:3, 3]
-
-
 @pytest.mark.peer
 @pytest.mark.parametrize("step", SOME_STEPS)
 def test_fcl_in_millimetres_says_the_same_of_every_pair(run, step):
@@ -69,22 +61,6 @@ def test_fcl_in_millimetres_says_the_same_of_every_pair(run, step):
         for (obstacle, *_), other in zip(obstacles, theirs, strict=True):
             said = fcl.distance(ours, other, fcl.DistanceRequest(), fcl.DistanceResult()) * 1e-3
             assert found[name, obstacle] == pytest.approx(max(0.0, said), abs=1e-9)
-
-
-def test_brute_force_over_all_polygons_says_the_same(run):
-    """Every polygon of the nearest pair against every other, without trees and bounds."""
-    step = SOME_STEPS[1]
-    links, obstacles = placed_bodies(run, step)
-    (nearest, least) = min(pair_rows(run, step).items(), key=lambda entry: entry[1])
-    a, b = (
-        corners_in_world(side, name) for name, side in zip(nearest, (links, obstacles), strict=True)
-    )
-    rows, columns = np.divmod(np.arange(len(a) * len(b)), len(b))
-    brute = cl.polygon_distances(a[rows], b[columns]).min()
-    assert least == pytest.approx(brute, abs=1e-14)
-
-
-ROOT = Path(__file__).parents[3]
 
 
 def measured(case, motion, steps, need="steps"):
@@ -121,10 +97,16 @@ def test_every_row_before_in_and_after_contact_is_that_of_its_step_alone(need):
 
 
 def test_of_several_pairs_in_contact_the_least_is_named():
-    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
+    """Three links in a row, and two balls that both the last two go through."""
+    balls = [(cl.sphere(0.1, tolerance=0.01), at(x)) for x in (0.35, 0.6)]
+    case = arm(
+        "through", [cl.box((0.2, 0.1, 0.1))] * 3, balls, np.linspace([-1, 0, 0], [1, 0, 0], 60)
+    )
     motion = kinematic_motion(case.robots[0])
     steps, every = (
         measured(case, motion, np.arange(motion.n_steps), need) for need in ("steps", "pairs")
     )
-    for step in np.flatnonzero(steps.clearance == 0.0):
+    touching = np.flatnonzero(steps.clearance == 0.0)
+    assert ((every.every[touching] == 0.0).sum(axis=1) > 1).any()
+    for step in touching:
         assert steps.pair[step] == np.flatnonzero(every.every[step] == 0.0)[0]
