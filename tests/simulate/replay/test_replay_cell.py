@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ import clearance as cl
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.carry import Carry
 from clearance.world.timing import Timing, Window
+from tests.gains.gantries import crossing, slot
 from tests.made_cases import at
 from tests.report.cells import box, cell, sliding, table_of
 
@@ -137,3 +140,29 @@ def test_a_step_at_which_something_goes_shows_what_was_nearest_until_then(after)
     assert 2.0 in shown(replay, "cart")
     assert place(replay, "cart", 2.0) == pytest.approx([0.11, 0, 0.5], abs=1e-6)
     assert replay.clearances[replay.i_worst] == pytest.approx(0.01)
+
+
+def session_of(case):
+    return cl.check(case, certify=False).session
+
+
+def test_only_what_was_elsewhere_is_drawn_twice():
+    case = slot()
+    base = np.eye(4)
+    base[1, 3] = -0.01
+    moved = replace(case.robots[0], world_from_base=base)
+    after = replay_of(session_of(replace(case, robots=(moved,))))
+    (body,) = session_of(case).earlier_motion(after)
+    assert after.bodies[body.i_body].name == "tool" and body.shown.all()
+    assert body.poses[:, 1] == pytest.approx(after.poses[body.i_body][:, 1] + 0.01, abs=1e-6)
+    assert not session_of(case).earlier_motion(replay_of(session_of(case)))
+
+
+def test_a_run_that_ended_earlier_stands_at_its_end():
+    """One of two that cross begins a second later: at each moment it was where it is a second later."""
+    case = crossing()
+    late = replace(case.robots[0], timing=replace(case.robots[0].timing, start=1.0))
+    after = replay_of(session_of(replace(case, robots=(late, case.robots[1]))))
+    (body,) = session_of(case).earlier_motion(after)
+    expected = np.interp(after.times, [0.0, 1.0], [-1.0, 1.0])
+    assert body.poses[:, 0] == pytest.approx(expected, abs=1e-6)

@@ -1,8 +1,10 @@
-"""The bound on how far a link moves in an interval, against the motion itself."""
+"""A joint, and a link, between two samples: bounds against the motion itself, of joints in rational arithmetic."""
+
+from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.geometry.shapes import box
@@ -15,6 +17,7 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box,
     motion_bound_of_box_along,
 )
+from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
 from clearance.world.kinematics import link_poses, links_of_robot, values_by_link
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
@@ -86,3 +89,78 @@ def test_the_bound_of_a_slide_is_exact_and_a_bend_is_added_in_every_direction(be
     bound, along = drifts(surface_of(SHAPE), chain, 1, poses, swings, bends, sideways)
     assert bound == pytest.approx(0.25 + bend, rel=1e-11)
     assert along == pytest.approx(bend, rel=1e-11)
+
+
+SIZES = st.sampled_from([0.0, 1e-6, 0.3, 7.0, 1e5])
+
+
+def path_of(positions, velocities, times):
+    columns = [
+        np.reshape(np.array(values, dtype=float), (-1, 1)) for values in (positions, velocities)
+    ]
+    return JointPath(np.array(times, dtype=float), *columns, np.ones(1, dtype=bool))
+
+
+def hermite(path, at):
+    """The cubic through both samples in the Bernstein form, exactly."""
+    q0, q1 = (Fraction(float(x)) for x in path.positions[:, 0])
+    v0, v1 = (Fraction(float(x)) for x in path.velocities[:, 0])
+    length = Fraction(float(path.times[1])) - Fraction(float(path.times[0]))
+    controls = [q0, q0 + length * v0 / 3, q1 - length * v1 / 3, q1]
+    weights = [(1 - at) ** 3, 3 * at * (1 - at) ** 2, 3 * at**2 * (1 - at), at**3]
+    return sum(w * c for w, c in zip(weights, controls, strict=True))
+
+
+@examples(60)
+@given(st.integers(0, 2**32 - 1), SIZES, SIZES, st.integers(0, 30))
+def test_the_motion_stays_within_swing_and_bend(seed, size, speed, depth):
+    rng = np.random.default_rng(seed)
+    start = rng.uniform(0, 100)
+    path = path_of(
+        size * rng.uniform(-1, 1, 2),
+        speed * rng.uniform(-1, 1, 2),
+        [start, start + rng.uniform(1e-3, 2)],
+    )
+    i = int(rng.integers(0, 2**depth))
+    low, high = i / 2**depth, (i + 1) / 2**depth
+    found = part_of(path, 0, 0, low, high)
+    middle, half = Fraction(low + high) / 2, Fraction(high - low) / 2
+    slack = Fraction(2.0**-51) * Fraction(
+        max(abs(path.positions[:, 0]))
+    )  # rounding of the sum itself
+    for t in map(Fraction, (-1, -0.75, -0.3, 0, 0.25, 0.6, 1)):
+        rest = hermite(path, middle + half * t) - Fraction(found.middle)
+        rest -= t / Fraction(OUTWARD) * Fraction(found.swing)
+        assert abs(rest) <= Fraction(found.bend) + slack
+
+
+def test_the_bend_of_a_parabola_is_no_larger_than_it_must_be():
+    there_and_back = path_of([0.0, 0.0], [1.0, -1.0], [0.0, 1.0])
+    found = part_of(there_and_back, 0, 0, 0.0, 1.0)
+    assert (found.middle, found.swing) == (0.25, 0.0)
+    assert found.bend == pytest.approx(0.25, rel=1e-11)
+
+
+@examples(50)
+@given(st.floats(-10, 10), st.floats(-10, 10), st.integers(0, 15))
+@example(0.1, 0.7, 3)
+def test_without_velocities_the_motion_is_linear(before, after, i):
+    path = JointPath(
+        np.array([0.0, 1.0]),
+        np.array([[before], [after]]),
+        np.empty((0, 1)),
+        np.ones(1, dtype=bool),
+    )
+    found = part_of(path, 0, 0, i / 16, (i + 1) / 16)
+    assert found.middle == before + 0.5 * (i / 16 + (i + 1) / 16) * (after - before)
+    assert found.swing == pytest.approx((after - before) / 32, rel=1e-11, abs=1e-300)
+    assert found.bend == 0.0
+
+
+def test_velocities_of_the_linear_motion_change_nothing_but_rounding():
+    path = path_of([0.25, 0.75], [0.5, 0.5], [2.0, 3.0])
+    linear = path._replace(velocities=np.empty((0, 1)))
+    found, straight = part_of(path, 0, 0, 0.25, 0.5), part_of(linear, 0, 0, 0.25, 0.5)
+    assert (found.middle, found.swing) == (straight.middle, straight.swing)
+    assert part_of(path._replace(is_cubic=np.zeros(1, dtype=bool)), 0, 0, 0.25, 0.5) == straight
+    assert 0.0 < found.bend < 1e-14
