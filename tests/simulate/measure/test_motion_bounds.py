@@ -1,30 +1,48 @@
 """A joint, and a link, between two samples: bounds against the motion itself, of joints in rational arithmetic."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import Vec3
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.interval_middle import IntervalMiddle
+from clearance.kernels.motion.interval_motion_bound import (
+    fill_motion_radii,
+    interval_motion_bound_of,
+)
 from clearance.kernels.motion.joint_motion_bound import (
+    loosened,
     motion_bound_of,
     motion_bound_of_box,
     motion_bound_of_box_along,
+    orientation_rounding,
 )
-from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
-from clearance.world.kinematics import link_poses, links_of_robot, values_by_link
+from clearance.kernels.motion.joint_path import OUTWARD, BallPath, JointPath, part_of
+from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, place_by_link
+from clearance.kernels.motion.world import World
+from clearance.world.case import Case
+from clearance.world.forest import forest_of
+from clearance.world.kinematics import (
+    link_poses,
+    links_of_robot,
+    poses_by_link,
+    values_by_link,
+)
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.slerp import aligned, arcs_between
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
-from tests.made_cases import random_robot
-from tests.simulate.measure.forests import links_of
+from tests.made_cases import at, random_robot
+from tests.simulate.measure.test_ball_joints import Scene, between, chain, orientations, poses
 
 SHAPE = box((0.3, 0.1, 0.2))
 
@@ -164,3 +182,153 @@ def test_velocities_of_the_linear_motion_change_nothing_but_rounding():
     assert (found.middle, found.swing) == (straight.middle, straight.swing)
     assert part_of(path._replace(is_cubic=np.zeros(1, dtype=bool)), 0, 0, 0.25, 0.5) == straight
     assert 0.0 < found.bend < 1e-14
+
+
+def links_of(placed):
+    """The links of some placed robots behind one another."""
+    named = [
+        replace(one, robot=replace(one.robot, name=f"robot_{i}")) for i, one in enumerate(placed)
+    ]
+    return forest_of(Case("forest", tuple(named), ())).links
+
+
+def ways_in(surface, world, positions):
+    """(k,) [m] the bound on the motion of the first body from the first step to each."""
+    radii, noise = np.empty((len(world.frames), positions.shape[1])), np.empty(len(world.frames))
+    fill_motion_radii(surface, world, positions, radii, noise)
+    steps = range(len(positions))
+    return np.array(
+        [interval_motion_bound_of(positions, 0, step, radii[0], noise[0]) for step in steps]
+    )
+
+
+ASIDE = np.block(
+    [[np.eye(3), np.array([[0.4], [0.0], [-0.2]])], [np.zeros((1, 3)), np.ones((1, 1))]]
+)
+
+
+def ways(surface, frames, links, positions):
+    """(k,) [m] the bound on the motion of the body from the first step to each."""
+    body, no_pairs = np.zeros(1, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
+    world = World(body, frames, body, np.empty((0, 4, 4)), no_pairs, links)
+    return ways_in(surface, world, positions)
+
+
+def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
+    base = np.eye(4)
+    base[:3, 3] = rng.uniform(-3.0, 3.0, 3)
+    return PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))), world_from_base=base)
+
+
+@examples(60)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]))
+def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
+    rng = np.random.default_rng(seed)
+    placed = [
+        placed_at(rng, random_robot(rng, n_joints, sizes=(0.0, 0.5, 50.0), mimics=0.4))
+        for _ in range(2)
+    ]
+    moving = [len(one.robot.moving_joints) for one in placed]
+    first = rng.uniform(-4.0, 4.0, sum(moving)) * rng.choice([1.0, 1e3])
+    positions = first + size * rng.uniform(-1.0, 1.0, (20, sum(moving)))
+    positions[0] = first
+    body = SHAPE if rng.random() < 0.5 else SHAPE.transformed(ASIDE)
+    corners = np.column_stack([body.vertices, np.ones(len(body.vertices))])
+    link, i_robot = n_joints, int(rng.integers(2))
+    frame = link + i_robot * (n_joints + 1)
+    columns = slice(0, moving[0]) if i_robot == 0 else slice(moving[0], None)
+    poses = link_poses(placed[i_robot], positions[:, columns])[:, link]
+    world = corners @ poses.transpose(0, 2, 1)
+    moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
+    bound = ways(surface_of(body), np.array([frame]), links_of(placed), positions)
+    assert (moved <= bound).all()
+
+
+def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
+    offset = np.diag([1.0 + 4.9e-7] * 3 + [1.0])
+    offset[0, 3] = 0.5
+    axis = np.array([0.0, 0.0, 1.0])
+    joints = [
+        Joint(f"j{i}", JointKind("fixed"), f"l{i}", f"l{i + 1}", offset, axis)
+        for i in range(1, 200)
+    ]
+    joints.insert(0, Joint("j0", JointKind("revolute"), "l0", "l1", np.eye(4), axis))
+    robot = Robot("chain", tuple(f"l{i}" for i in range(201)), tuple(joints), ())
+    placed = PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
+    positions = np.array([[0.0], [0.001]])
+    speck = box((1e-4, 1e-4, 1e-4))
+    ends = link_poses(placed, positions)[:, 200, :, 3]
+    bound = ways(surface_of(speck), np.array([200]), links_of([placed]), positions)
+    assert np.linalg.norm(ends[1] - ends[0]) <= bound[1] <= 0.1 * 1.001
+
+
+KINDS = st.lists(st.sampled_from([FIXED, TURNING, SLIDING, BALL]), max_size=4)
+
+
+@examples(60)
+@given(
+    st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]),
+    st.sampled_from([1.0, 1.0 - 1e-6, 0.5]),
+)  # fmt: skip
+def test_no_body_moves_farther_than_its_columns_say(seed, above, below, size, length):
+    random = np.random.default_rng(seed)
+    links, n = chain([*above, BALL, *below], random, shift=random.choice([0.0, 0.5, 50.0]))
+    positions = random.uniform(-2.0, 2.0, n) + size * random.uniform(-1.0, 1.0, (12, n))
+    for column in links.columns[links.kinds == BALL]:
+        turned = orientations(random, 12, min(size, np.pi))
+        turned = aligned(turned) if random.random() < 0.7 else turned
+        positions[:, column : column + 4] = length * turned
+    link = len(links.parents) - 1
+    body = SHAPE.transformed(at(0.4, 0.0, -0.2)) if random.random() < 0.5 else SHAPE
+    corners = np.column_stack([body.vertices, np.ones(8)])
+    world = corners @ poses_by_link(links, positions)[:, link].transpose(0, 2, 1)
+    moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
+    scene = Scene(links, [body], [link], np.empty((0, 2), np.int64), positions)
+    assert (moved <= ways_in(surface_of(body), scene.world, positions)).all()
+
+
+def bound_about(surface, links, link, balls, middle):
+    place_by_link(links, middle.positions, middle.poses)
+    box = box_of(surface, 0)
+    bound = motion_bound_of(box, links, link, middle)
+    rounding = orientation_rounding(box, links, link, balls, middle)
+    return motion_bound_of_box(box, loosened(bound, rounding)), rounding
+
+
+@examples(50)
+@given(st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.1]))
+def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
+    """Every ball joint turns about an axis of its own, the others move linearly."""
+    random = np.random.default_rng(seed)
+    links, n = chain([*above, BALL, *below], random)
+    ends = random.uniform(-2.0, 2.0, n) + size * random.uniform(-1.0, 1.0, (2, n))
+    values = values_by_link(links, ends)
+    middle, swing = values.mean(axis=0), 0.5 * (values[1] - values[0])
+    bend, balls = np.zeros(len(swing)), np.flatnonzero(links.kinds == BALL)
+    turning = links._replace(
+        kinds=np.where(links.kinds == BALL, TURNING, links.kinds),
+        axes=links.axes.copy(),
+        parent_from_joint=links.parent_from_joint.copy(),
+    )
+    for link in balls:
+        at_link = slice(links.columns[link], links.columns[link] + 4)
+        ends[:, at_link] = orientations(random, 2, size)
+        *axis, angle = arcs_between(*ends[:, at_link])
+        turned = Rotation.from_quat(ends[0, at_link]).as_matrix()
+        turning.parent_from_joint[link, :3, :3] = links.parent_from_joint[link, :3, :3] @ turned
+        turning.axes[link], middle[link], swing[link] = axis, angle / 2, angle / 2
+    swing *= 1.0 + 1e-12
+    link = len(links.parents) - 1
+    room = np.empty((link + 1, 4, 4))
+    state = IntervalMiddle(middle, swing, bend, room)
+    path = BallPath(balls, links.parent_from_joint[balls], np.empty((0, len(balls), 8)))
+    bound, rounding = bound_about(surface_of(SHAPE), turning, link, path, state)
+    slides = np.abs(values[:, links.kinds == SLIDING]).max(axis=0).sum()
+    apart = np.linalg.norm(links.parent_from_joint[:, :3, 3], axis=1).sum()
+    reach = np.linalg.norm(SHAPE.bounds[1]) + apart + slides
+    assert 0.0 < rounding <= 2.0**-45 * len(balls) * reach * (1.0 + 1e-6)
+    shares = np.array([0.5, *np.linspace(0.0, 1.0, 41)])
+    placed = poses(links, between(links, *ends, shares))[:, link]
+    world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
+    assert np.linalg.norm(world - world[0], axis=2).max() <= bound
+    assert np.abs(placed[0] - room[link]).max() <= 1e-14
