@@ -122,7 +122,8 @@ def test_larger_holes_leave_it_open_and_sheets_hold_nothing() -> None:
         bowl = Polyhedron(BALL.vertices, faces_of(BALL)[:n_faces])
         assert distance(bowl, CUBE, pose_b=at(0.1, 0.0, 0.0)).inside == "no"
     lidless = Polyhedron(box((1.0, 1.0, 1.0)).vertices, faces_of(box((1.0, 1.0, 1.0)))[1:])
-    assert distance(lidless, CUBE).inside == "no"
+    for sheet in (lidless, two_sided(lidless), two_sided(bowl)):
+        assert distance(sheet, CUBE).inside == "no"
 
 
 @pytest.mark.parametrize("n_missing", [1, 2])
@@ -150,23 +151,70 @@ def test_depth_and_volume_are_found_of_what_is_almost_closed() -> None:
     assert deep.penetration > 0.5 and deep.volume >= 0.999e-3
 
 
-def test_solids_of_patches_that_do_not_meet_and_two_sided_ones_are_undecided_by_name() -> None:
-    faces = faces_of(BALL)
-    patches = Polyhedron.merged(
-        [
-            Polyhedron(BALL.vertices, faces[::2]),
-            Polyhedron(np.nextafter(BALL.vertices, 9.0), faces[1::2]),
-        ]
+def apart(shape: Polyhedron, scatter: float) -> Polyhedron:
+    """Each face with corners of its own, moved by up to `scatter` [m]."""
+    faces = faces_of(shape)
+    corners = shape.vertices[np.concatenate(faces)]
+    corners = corners + np.random.default_rng(3).uniform(-scatter, scatter, corners.shape)
+    ends = np.cumsum([len(face) for face in faces])
+    return Polyhedron(
+        corners, [list(range(e - len(f), e)) for e, f in zip(ends, faces, strict=True)]
     )
-    sided = Polyhedron(BALL.vertices, [*faces, *(face[::-1] for face in faces)])
-    for outer in (patches, sided):
-        for shift, inside in ((0.2, "undecided"), (0.6, "undecided"), (1.1, "no")):
-            place = at(*(shift * np.array([0.6, 0.64, 0.48])))
-            near = distance(outer, CUBE, pose_b=place)
-            assert (near.contact, near.inside) == (False, inside)
-            assert distance(CUBE, outer, pose_a=place).inside == inside
-            many = Query(outer, CUBE).distances(None, [place, place])
-            assert many.undecided.tolist() == [inside == "undecided"] * 2
+
+
+def halves(shape: Polyhedron, scale: float) -> Polyhedron:
+    """A shape of two halves, one larger by a little, so that no two of their corners are the same."""
+    faces = np.array(faces_of(shape))
+    up = shape.vertices[faces].mean(axis=1)[:, 2] > 0.0
+    lower = Polyhedron(np.nextafter(shape.vertices, 9.0) * scale, faces[~up])
+    return Polyhedron.merged([Polyhedron(shape.vertices, faces[up]), lower])
+
+
+def with_t_junctions() -> Polyhedron:
+    """A cube whose walls are cut at other places than their neighbours."""
+    corners, faces = [], []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            cuts = np.linspace(-1.0, 1.0, 2 + axis + (side > 0.0))
+            for low, high in zip(cuts, cuts[1:], strict=False):
+                wall = np.array(
+                    [[side, low, -1], [side, high, -1], [side, high, 1], [side, low, 1]]
+                )
+                faces.append(
+                    list(range(len(corners), len(corners) + 4))[:: 1 if side > 0.0 else -1]
+                )
+                corners += np.roll(wall, axis, axis=1).tolist()
+    return Polyhedron(np.array(corners), faces)
+
+
+def two_sided(shape: Polyhedron) -> Polyhedron:
+    return Polyhedron(shape.vertices, [*faces_of(shape), *(face[::-1] for face in faces_of(shape))])
+
+
+CRACKED = {
+    "halves an ulp apart": halves(BALL, 1.0),
+    "halves a micrometre apart": halves(BALL, 1.0 + 1e-6),
+    "each face apart": apart(BALL, 1e-6),
+    "each face apart by far": apart(BALL, 1e-4),
+    "T-junctions": with_t_junctions(),
+    "two-sided": two_sided(BALL),
+    "two-sided, each face apart": two_sided(apart(BALL, 1e-6)),
+    "two-sided box": two_sided(box((2.0, 2.0, 2.0))),
+}
+
+
+@pytest.mark.parametrize("kind", CRACKED)
+def test_solids_of_patches_that_do_not_meet_and_two_sided_ones_are_undecided_by_name(
+    kind: str,
+) -> None:
+    outer = CRACKED[kind]
+    for shift, inside in ((0.2, "undecided"), (0.6, "undecided"), (2.1, "no")):
+        place = at(*(shift * np.array([0.6, 0.64, 0.48])))
+        near = distance(outer, CUBE, pose_b=place)
+        assert (near.contact, near.inside) == (False, inside)
+        assert distance(CUBE, outer, pose_a=place).inside == inside
+        many = Query(outer, CUBE).distances(None, [place, place])
+        assert many.undecided.tolist() == [inside == "undecided"] * 2
 
 
 def turns_round(shape: Polyhedron, points: np.ndarray) -> np.ndarray:
