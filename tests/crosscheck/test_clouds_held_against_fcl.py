@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from clearance import PointCloud
-from clearance.crosscheck.fcl_adapter import PeerBody
-from clearance.crosscheck.triangles import triangle_soup
 from tests.crosscheck.sliding import box, cross_check, rail_record
 from tests.query.test_clouds import GRID, KINDS, answer, scan, solid_of
 
@@ -47,12 +45,3 @@ def test_a_point_wholly_inside_that_is_called_apart_is_a_disagreement():
     record = rail_record(box(0.5, 0.5, 0.5), {"cloud": (cloud, (0, 0, 0))}, [0.0], [row])
     (found,) = cross_check(record).disagreements
     assert (found.peer_clearance, found.reason) == (0.0, "the peer says contact")
-
-
-@pytest.mark.slow
-def test_two_clouds_like_their_nearest_points():
-    random = np.random.default_rng(2)
-    one, two = random.uniform(-1.0, 1.0, (2, 300, 3)) + [[[0.0, 0.0, 0.0]], [[2.1, 0.0, 0.0]]]
-    gap = np.linalg.norm(one[:, None] - two, axis=2).min()
-    sides = [PeerBody(triangle_soup(PointCloud(points, 0.01))) for points in (one, two)]
-    assert sides[0].distance(sides[1]) == pytest.approx(gap - 0.02, abs=4e-10)

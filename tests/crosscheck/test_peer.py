@@ -6,14 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.crosscheck.peer_run import (
     PeerRun,
-    greatest_displacements,
-    lower_bound_boxes,
-    world_boxes,
 )
 from clearance.crosscheck.triangles import is_inside, triangle_soup, winding_number
 from clearance.geometry.point_cloud import PointCloud
@@ -121,17 +117,6 @@ def test_containment_is_contact_for_the_peer_too(link, obstacle):
     assert cross_check(record).agrees
 
 
-def test_one_of_two_parts_inside_is_contact():
-    small = box(0.2, 0.2, 0.2)
-    two = Polyhedron(
-        np.vstack([small.vertices, small.vertices + np.array([5.0, 0, 0])]),
-        [*small.face_vertices.reshape(-1, 4), *(small.face_vertices.reshape(-1, 4) + 8)],
-    )
-    rows = [(0.0, "solid", (5.0, 0.0, 0.0), (5.0, 0.0, 0.0))]
-    record = rail_record(two, {"solid": (box(2, 2, 2), (5, 0, 0))}, [0.0], rows)
-    assert cross_check(record).agrees
-
-
 def test_an_open_body_has_no_inside():
     lidless = box(2.0, 2.0, 2.0)
     open_box = Polyhedron(lidless.vertices, lidless.face_vertices.reshape(-1, 4)[:5])
@@ -160,26 +145,12 @@ def two_robots(**changes) -> cl.Case:
     return replace(case, robots=(one, other))
 
 
-def test_every_step_agrees_and_links_have_their_robots_names() -> None:
-    run = cl.check(two_robots(), cross_check=True)
-    assert run.cross_check.agrees and run.cross_check.n_steps == 12
-    assert run.cross_check.worst_witness_error < 1e-12
-    assert set(run.steps["body_a"].to_pylist()) <= {"flying/l6", "second/l6"}
-
-
 def test_a_wrong_clearance_of_either_robot_is_found() -> None:
     run = cl.check(two_robots())
     wrong = run.record.rows.with_columns({"clearance": run.record.clearances + 1e-6})
     check = cross_check(replace(run.record, table=wrong))
     assert len(check.disagreements) == 12
     assert {row.peer_link for row in check.disagreements} <= {"flying/l6", "second/l6"}
-
-
-def random_poses(rng: np.random.Generator, n: int) -> np.ndarray:
-    poses = np.tile(np.eye(4), (n, 1, 1))
-    poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
-    poses[:, :3, 3] = rng.normal(size=(n, 3))
-    return poses
 
 
 def test_inside_is_what_a_box_says():
@@ -192,19 +163,6 @@ def test_inside_is_what_a_box_says():
     assert np.allclose(numbers, np.round(numbers), atol=1e-12)
 
 
-def test_a_cavity_is_outside():
-    outer, inner = box(2, 2, 2), box(1, 1, 1)
-    shell = Polyhedron(
-        np.vstack([outer.vertices, inner.vertices]),
-        [
-            *outer.face_vertices.reshape(-1, 4),
-            *(inner.face_vertices.reshape(-1, 4)[:, ::-1] + 8),
-        ],
-    )
-    points = np.array([[0.0, 0.0, 0.0], [0.75, 0.0, 0.0], [1.5, 0.0, 0.0]])
-    assert is_inside(triangle_soup(shell), points).tolist() == [False, True, False]
-
-
 def test_before_a_hole_the_peer_says_inside_where_the_package_says_contact():
     """By the faces alone, which are there on three quarters of all sides, or are not."""
     whole = ball(1.0, 2)
@@ -215,21 +173,6 @@ def test_before_a_hole_the_peer_says_inside_where_the_package_says_contact():
     found = is_inside(triangle_soup(outer), points)
     ours = [distance(outer, PointCloud([point], 1e-9)).inside == "yes" for point in points]
     assert 20 < found.sum() < 180 and found.tolist() == ours
-
-
-def test_bounds_never_exceed_what_samples_show():
-    rng = np.random.default_rng(3)
-    soup = triangle_soup(box(1.0, 0.1, 0.4))
-    poses = random_poses(rng, 40)
-    samples = rng.uniform(*soup.bounds, size=(200, 3))
-    world = samples @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
-    moved = np.linalg.norm(np.diff(world, axis=0), axis=2).max(axis=1)
-    bound = greatest_displacements(soup.bounds, poses)
-    assert (bound >= moved).all() and (bound < 1.5 * moved).all()
-    fixed = np.array([[-0.2, -0.3, -0.1], [0.1, 0.2, 0.3]])
-    nearest = np.clip(world, *fixed)
-    gaps = np.linalg.norm(world - nearest, axis=2).min(axis=1)
-    assert (lower_bound_boxes(world_boxes(soup.bounds, poses), fixed) <= gaps).all()
 
 
 def test_skipping_changes_no_answer():

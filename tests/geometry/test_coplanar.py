@@ -21,7 +21,6 @@ from tests.geometry.exact_faces import (
     six_volumes,
 )
 from tests.made_cases import at, ball, faces_below, faces_of, with_copies
-from tests.strategies import rotations
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 CUBE_TRIANGLES = np.array([
@@ -53,22 +52,6 @@ def voxel_surface(cells: set[tuple[int, int, int]], diagonals: list[bool]):
                 ids = ids[k:] + ids[:k]
                 triangles += [[ids[0], ids[1], ids[2]], [ids[0], ids[2], ids[3]]]
     return np.array(list(vertices), dtype=float), np.array(triangles)
-
-
-def test_a_grid_becomes_one_rectangle_whose_straight_corners_are_gone():
-    vertices, triangles = voxel_surface(
-        {(x, y, 0) for x in range(5) for y in range(3)}, [True, False]
-    )
-    shape = merged(vertices, triangles)
-    assert shape.n_faces == 6 and len(shape.vertices) == 8
-
-
-def test_an_ulp_out_of_plane_is_not_merged():
-    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
-    triangles = [[0, 1, 2], [0, 2, 3]]
-    assert merged(square, triangles).n_faces == 1
-    square[3, 2] = 5e-308 * 0 + 2.0**-290
-    assert merged(square, triangles).n_faces == 2
 
 
 def test_an_l_shape_is_cut_into_convex_parts():
@@ -111,11 +94,6 @@ def test_equal_vertices_and_signed_zeros_are_one():
     soup[::5] *= np.where(soup[::5] == 0.0, -1.0, 1.0)
     shape = merged(soup, np.arange(36).reshape(-1, 3))
     assert shape.n_faces == 6 and len(shape.vertices) == 8 and shape.closed
-
-
-def test_coordinates_beyond_the_exact_range_are_unchanged():
-    square = np.array([[0, 0, 0], [1e-200, 0, 0], [1e-200, 1e-200, 0], [0, 1e-200, 0]])
-    assert merged(square, [[0, 1, 2], [0, 2, 3]]).n_faces == 2
 
 
 cells = st.sets(st.tuples(*[st.integers(0, 2)] * 3), min_size=1, max_size=10)
@@ -169,27 +147,6 @@ def exact_row(row):
 
 BALL = ball(1.0, 3)
 TINY = ball(0.05, 1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("turned_round", [False, True])
-@pytest.mark.parametrize("every", [1, 3])
-def test_a_face_and_its_copies_have_one_leaf_and_the_same_answer(
-    every: int, turned_round: bool
-) -> None:
-    doubled = with_copies(BALL, list(range(0, BALL.n_faces, every)), turned_round=turned_round)
-    assert sorted(faces_below(surface_of(doubled))[surface_of(doubled).roots[0]]) == list(
-        range(BALL.n_faces)
-    )
-    assert (surface_of(doubled).cones == surface_of(BALL).cones).all()
-    random = np.random.default_rng(5)
-    for turn in rotations(random, 10):
-        pose = at(*(1.5 * random.normal(size=3)), turned=turn)
-        one, two = distance(BALL, TINY, pose_b=pose), distance(doubled, TINY, pose_b=pose)
-        if one.contact:
-            continue
-        assert (one.distance, one.face_a, one.face_b) == (two.distance, two.face_a, two.face_b)
-        assert one.tally == two.tally
 
 
 def test_a_face_that_another_one_shares_two_corners_with_is_no_copy() -> None:

@@ -133,40 +133,6 @@ def test_joints_that_follow_move_with_their_master():
     assert set(audit_pair(robot_of(shapes, left, closing), "b", "c").positions) == {"ab"}
 
 
-def followed(lower, upper, multiplier=1.0, offset=0.0, least=-3.0, most=3.0):
-    """A short link b on a joint of `least` to `most`, which c follows; c reaches the post at about 0 rad."""
-    leader = turning("a", "b", at(z=5.0), least, most)
-    follower = turning("a", "c", np.eye(4), lower, upper, mimic=Mimic("ab", multiplier, offset))
-    return robot_of(
-        [Body("a", POST), Body("b", box((0.1,) * 3)), Body("c", arm(0.95))], leader, follower
-    )
-
-
-def test_a_pose_beyond_the_limits_of_a_joint_that_follows_is_not_within_reach():
-    """The arm meets the post between -0.17 and 0.17 rad: not where its own limits end before."""
-    assert audit_pair(followed(-3.0, 3.0), "a", "c").status is PairStatus.MEETS
-    for lower, upper in ((0.3, 3.0), (-3.0, -0.3)):
-        found = audit_pair(followed(lower, upper), "a", "c")
-        assert found.status is PairStatus.APART
-        assert lower - 1e-12 <= found.positions["ab"] <= upper + 1e-12
-    for lower, upper in ((0.1, 3.0), (-3.0, -0.1)):
-        found = audit_pair(followed(lower, upper), "a", "c")
-        assert (
-            found.status is PairStatus.MEETS
-            and lower - 1e-12 <= found.positions["ab"] <= upper + 1e-12
-        )
-
-
-def test_limits_of_followers_count_by_their_factor_and_offset_wherever_they_hang():
-    """c = -2 b + 1 within 0.4 to 2: b within -0.5 to 0.3. A third joint that follows b bounds all three."""
-    found = audit_pair(followed(0.4, 2.0, -2.0, 1.0), "a", "c")
-    assert found.status is PairStatus.APART and -0.5 <= found.positions["ab"] <= 0.3 + 1e-12
-    robot = followed(-3.0, 3.0)
-    third = turning("a", "d", at(z=9.0), 0.3, 1.0, mimic=Mimic("ac"))
-    both = replace(robot, link_names=("a", "b", "c", "d"), joints=(*robot.joints, third))
-    assert audit_pair(both, "a", "c").status is PairStatus.APART
-
-
 def test_a_leader_without_limits_has_those_of_what_follows_it():
     """A tenth of its turns: over one turn of the leader the arm would not come round to the post."""
     leader = turning("a", "b", at(z=5.0), -np.inf, np.inf, kind=JointKind.CONTINUOUS)

@@ -210,16 +210,6 @@ def statuses(case: Case) -> dict[tuple[str, str], tuple[float, str]]:
     }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", [two_posts(), sweeping(TWICE, 0.47), sweeping(TWICE)])
-def test_pairs_stand_as_at_a_hundred_times_as_many_samples(case):
-    coarse, fine = statuses(case), statuses(finer(case, 100))
-    assert coarse.keys() == fine.keys()
-    for pair, (clearance, status) in coarse.items():
-        assert status == fine[pair][1]
-        assert clearance == pytest.approx(fine[pair][0], rel=0.01, abs=1.1e-4)
-
-
 def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
     run = cl.check(two_posts())
     assert {one.body_b for one in run.findings if one.broken} == {"post", "other"}

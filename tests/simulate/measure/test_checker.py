@@ -43,15 +43,6 @@ def test_answers_are_those_of_a_run_in_any_order(run):
         assert_row(checker.distance(positions[i]), run.steps, int(i))
 
 
-def test_many_at_once_are_the_same(run):
-    checker = cl.Checker(run.record.case)
-    found = checker.distances(run.record.case.robots[0].trajectory.positions)
-    assert np.array_equal(found.distances, run.record.clearances)
-    links = [checker.pairs[i][0] for i in found.pairs]
-    assert links == run.steps["link"].to_pylist()
-    assert np.array_equal(found.points[:, 0, 0], run.steps["link_x"].to_numpy())
-
-
 def swaying():
     posts = [(cl.box((0.1, 0.1, 2.0)), at(x=0.9)), (cl.sphere(radius=0.2), at(y=-0.8, z=0.3))]
     positions = np.linspace([0.0, 0.1], [1.0, -0.4], 20)

@@ -192,15 +192,6 @@ def pose_in(phase, step, name):
     return BodyIndex(OBSTACLE, names.index(name)).poses_in(phase.case, poses)[0]
 
 
-@pytest.mark.slow
-def test_a_receipt_proves_it_again(tmp_path):
-    found = there_and_back(tmp_path)
-    run = cl.check(found)
-    folder = run.save(tmp_path / "out")
-    cl.write_receipt(run, folder, kind="full")
-    assert cl.verify(folder, found).proven
-
-
 def test_a_joint_that_goes_to_its_limit_is_not_beyond_it_for_the_way_it_is_followed(tmp_path):
     """s - s^4 is greatest at s^3 = 1/4, where the cubics are above it by up to the path error."""
     highest = 0.25 ** (1.0 / 3.0) * 0.75
