@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.world.case import Case
@@ -20,9 +20,14 @@ from tests.cells import positions_at, table_at
 
 
 def pose_of(t: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(4, 4) of a shift and a rotation vector."""
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = Rotation.from_rotvec(v).as_matrix(), t
+    """(4, 4) of a shift and a rotation vector, by Rodrigues' formula."""
+    x, y, z = v
+    pose = np.array([[1.0, 0, 0, t[0]], [0, 1.0, 0, t[1]], [0, 0, 1.0, t[2]], [0, 0, 0, 1.0]])
+    angle = math.sqrt(x * x + y * y + z * z)
+    if angle > 0.0:
+        across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) / angle
+        twice = 2.0 * math.sin(0.5 * angle) ** 2
+        pose[:3, :3] += math.sin(angle) * across + twice * (across @ across)
     return pose
 
 
