@@ -90,8 +90,6 @@ def with_turn(folder):
 CASES = {
     "a turn as written": (with_turn, "waypoints", {}),
     "waypoints": (lambda folder: write_cell(folder, SLOT), "waypoints", {}),
-    "base": (lambda folder: write_cell(folder, SLOT), "base", {}),
-    "obstacle": (lambda folder: write_cell(folder, SLOT), "obstacle", {"obstacle": "left"}),
     "scene file": (with_scene_file, "obstacle", {"obstacle": "left"}),
     "SDF": (with_sdf, "obstacle", {"obstacle": "left/board/c"}),
     "planning scene": (with_planning_scene, "obstacle", {"obstacle": "left"}),
@@ -107,7 +105,6 @@ CASES = {
         "timing",
         {"robot": "other", "slow_down": True},
     ),
-    "timing": (lambda folder: write_cell(folder, CROSSING), "timing", {"robot": "other"}),
     "timing of a part": (
         lambda folder: write_cell(folder, CARRYING),
         "timing",

@@ -95,7 +95,7 @@ def test_a_clearance_that_is_kept_is_not_called_violated(found_for, low, text, l
 
 
 def test_a_clearance_below_its_limit_is_called_violated(found_for):
-    ((_, line),) = told(found_for(-0.01, 0.09), "before")
+    ((_, line),) = told(found_for(-0.09, 0.09), "before")
     assert line.endswith("fail below 40 mm: violated")
 
 

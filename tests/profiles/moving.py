@@ -75,3 +75,10 @@ def drawn(*outlines):
         for one, other in zip(points, [*points[1:], points[0]], strict=True):
             sketch.segment(one, other)
     return sketch
+
+
+def free_circle(radius):
+    """A sketch of a circle about the origin, whose radius is free."""
+    sketch = Sketch()
+    sketch.radius(sketch.circle(sketch.point(0.0, 0.0), radius), radius, name="r", driven=True)
+    return sketch

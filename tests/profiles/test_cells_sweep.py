@@ -82,11 +82,11 @@ def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
     case, rng = cells.cell(seed), np.random.default_rng(seed)
     found = cl.swept_profile(case, "xz", tolerance=1e-2)
     assert found.bound <= 1e-2
-    times = np.linspace(0.0, end_of(case) - 1e-9, 300)  # the formulas begin a loop again as it ends
+    times = np.linspace(0.0, end_of(case) - 1e-9, 120)  # the formulas begin a loop again as it ends
     for name in LINKS:
         assert_contains(found, seen(case, name, times), rng)
     for window in held(case):
-        times = np.linspace(window.start, window.end, 100)[1:-1]
+        times = np.linspace(window.start, window.end, 40)[1:-1]
         for name in ("part", "lid"):
             assert_contains(found, seen(case, name, times), rng)
 

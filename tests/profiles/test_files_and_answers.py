@@ -16,7 +16,8 @@ from clearance.profiles.compare import as_data, compare
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, read_outline
 from clearance.profiles.profile_file import write_profile
-from tests.profiles.moving import rows, slab, turning
+from tests.formats.making import write_case
+from tests.profiles.moving import free_circle, rows, slab, turning
 from tests.report.schemas import objections
 
 SCENES = Path(__file__).parents[2] / "scenes"
@@ -94,11 +95,10 @@ def test_compare_agrees_with_the_distance_and_names_the_maker():
 
 @pytest.mark.slow
 def test_the_commands_from_sweep_to_picture(tmp_path):
-    case, zone = SCENES / "profiles" / "keep_in.yaml", SCENES / "sketches" / "keep_in_zone.yaml"
-    run = CliRunner().invoke
-    swept, fitted = tmp_path / "swept.yaml", tmp_path / "zone.yaml"
-    arguments = ["--links", "gripper,wrist_pitch", "--tolerance", "2", "--out", str(swept)]
-    out = run(command, ["profile", "sweep", str(case), *arguments])
+    case, run = write_case(tmp_path), CliRunner().invoke
+    swept, zone, fitted = (tmp_path / name for name in ("swept.yaml", "zone.yaml", "fitted.yaml"))
+    free_circle(2.0).save(zone)
+    out = run(command, ["profile", "sweep", str(case), "--tolerance", "2", "--out", str(swept)])
     assert out.exit_code == 0 and "contains all that is swept" in out.output, out.output
     arguments = [str(zone), str(swept), "--outside", "--margin-mm", "5", "--out", str(fitted)]
     out = run(command, ["profile", "fit", *arguments])

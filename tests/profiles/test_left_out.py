@@ -20,13 +20,12 @@ from clearance.profiles.profile_file import (
     yaml_text,
 )
 from clearance.report.junit_cases import results_of
-from clearance.sketch import Sketch
 from clearance.world.case import ReservedSpace
 from clearance.world.notice import NOT_MEASURED, Notice, Severity
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Hole
 from tests.formats.making import ARM, CASE, write_case
-from tests.profiles.moving import Z, joint, moved, turning
+from tests.profiles.moving import Z, free_circle, joint, moved, turning
 from tests.profiles.test_zones import ARM as SLAB
 from tests.profiles.test_zones import POST, squares
 from tests.report.made import page_of, summary_of
@@ -119,9 +118,8 @@ def _joined(path) -> str:
 
 def test_a_comparison_and_a_fit_tell_what_their_outline_leaves_out(tmp_path, capsys):
     path = write_case(tmp_path, urdf=ARM.replace('<link name="tip"/>', SHOWN))
-    swept, zone = str(tmp_path / "swept.yaml"), Sketch()
-    zone.radius(zone.circle(zone.point(0.0, 0.0), 2.0), 2.0, name="r", driven=True)
-    zone.save(tmp_path / "zone.yaml")
+    swept = str(tmp_path / "swept.yaml")
+    free_circle(2.0).save(tmp_path / "zone.yaml")
     assert run(["profile", "sweep", str(path), "--out", swept]) == 0
     capsys.readouterr()
     assert run(["profile", "compare", swept, swept]) == 0

@@ -11,7 +11,7 @@ from tests.examples import examples
 from tests.sketch.independent import Numbers
 from tests.sketch.patterns import again
 
-SOME = examples(40)
+SOME = examples(25)
 
 
 class Builder:
