@@ -7,7 +7,7 @@ import pytest
 
 from clearance.sketch import Sketch
 from clearance.sketch.beam import nearest_branch
-from scripts.makers.point_sketches import constructed, sketched, slivered
+from scripts.makers.point_sketches import constructed, sketched
 
 
 def placed(s: Sketch) -> np.ndarray:
@@ -79,20 +79,3 @@ def test_what_is_no_construction_of_points_from_distances_is_left_to_others():
     line = s.line(p[0], p[1])
     s.distance(p[0], p[1], 2.0), s.distance(p[2], line, 1.0), s.distance(p[2], p[0], 1.5)
     assert branch_of(s) is None
-
-
-def checked(seed, n):
-    s, points, edges = slivered(n, 0.05, seed)
-    result = s.solve()
-    x = np.array([e.position for e in s.entities.values()])
-    a, b = np.array(edges).T
-    error = np.linalg.norm(x[a] - x[b], axis=1) - np.linalg.norm(points[a] - points[b], axis=1)
-    assert result.solved, result.reason
-    assert np.abs(error).max() <= 1e-12 * np.abs(x).max()
-    return s, x
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [3, 11, 16, 17, 19])
-def test_patches_whose_plan_finds_no_place_are_solved_from_the_drawing(seed):
-    checked(seed, 300)

@@ -37,21 +37,6 @@ def test_directions_that_contradict():
     assert result.status == "inconsistent" and sorted(result.conflicts) == ["p01", "p12", "skew"]
 
 
-@pytest.mark.slow
-def test_a_wrong_dimension_that_is_too_short_for_no_chain():
-    s, p, points, _ = truth(60, 3, off=0.02)
-    a, b = 20, 32
-    s.distance(p[a], p[b], 0.93 * float(np.linalg.norm(points[a] - points[b])), name="wrong")
-    result = s.solve()
-    assert result.status == "inconsistent" and "freedom" in result.reason
-    assert "wrong" in result.conflicts and len(result.conflicts) < 40
-    others = [n for n in s.constraints if n not in result.conflicts]
-    assert not again(s, others).solve().solved
-    for name in result.conflicts:
-        left = [s.constraints[n].index for n in result.conflicts if n != name]
-        assert result._diagnosis._trial.solvable(left), name
-
-
 def test_a_failed_search_is_not_called_inconsistent():
     """K(3,3) that no place fits, though no chain is too short: P3 and P4 must be 1.9 apart, so that
     P0 and P1 are within 0.63, but P5 needs them 0.7 apart."""

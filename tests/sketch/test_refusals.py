@@ -95,12 +95,6 @@ def test_values(s, value):
     assert "width" not in s.constraints
 
 
-def test_dimensions_set_later(s):
-    s.distance("a", "b", 1.0, name="width")
-    refused(lambda: s.set("width", -2.0), "-2.0")
-    assert s.value("width") == 1.0
-
-
 def test_degenerate(s):
     refused(lambda: s.line(s.entity("a"), s.point(0, 0, name="twin"), name="l"), "l")
     refused(lambda: s.circle((0, 0), 0.0, name="k"), "k", "0")
