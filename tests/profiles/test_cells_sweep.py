@@ -11,7 +11,6 @@ import clearance as cl
 from clearance.errors import UnknownLink, UnknownObstacle
 from clearance.findings.limit_lines import profile_text
 from clearance.profiles.answer import answer_profiles
-from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.swept_bodies import over_time, swept_bodies
 from clearance.world.body import Body, Obstacle
@@ -25,7 +24,6 @@ from clearance.world.timing import Timing, Window
 from tests import cells
 from tests.examples import examples
 from tests.oracle.outlines import inside
-from tests.profiles.finely import assert_within_chord_and_turn
 from tests.profiles.moving import drawn, rows
 
 shapely = pytest.importorskip("shapely")
@@ -89,80 +87,6 @@ def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
         times = np.linspace(window.start, window.end, 40)[1:-1]
         for name in ("part", "lid"):
             assert_contains(found, seen(case, name, times), rng)
-
-
-def within_intervals(case, start, end, n):
-    """(k, n) [s] times inside each interval between two steps of a run, from `start` to `end`."""
-    times = over_time(case).timeline.times
-    times = times[(times >= start) & (times <= end)]
-    share = np.linspace(1e-9, 1.0 - 1e-9, n)
-    return times[:-1, None] + np.diff(times)[:, None] * share
-
-
-@pytest.mark.peer
-@pytest.mark.parametrize("seed", [0, 5])
-def test_the_outline_is_nowhere_far_from_what_is_swept(seed):
-    """Hulls from each of many instants to the next are all that is swept, and little more."""
-    case = cells.cell(seed)
-    found = cl.swept_profile(case, "xz", links=["right/tool"], tolerance=1e-2)
-    spans = [("right/tool", 0.0, end_of(case))]
-    spans += [
-        (name, c.window.start, c.window.end)
-        for c in case.carries
-        for name in ("part", "lid")
-        if c.by == "right/tool"
-    ]
-    hulls = []
-    for name, start, end in spans:
-        for times in within_intervals(case, start, end, 40):
-            at = seen(case, name, times)
-            pairs = np.concatenate([at[:-1], at[1:]], axis=1)
-            hulls.append(shapely.convex_hull(shapely.multipoints(pairs)))
-    truth = shapely.unary_union(np.concatenate(hulls))
-    outline = np.concatenate([contour.flattened(1e-6) for contour in found.contours])
-    assert (
-        shapely.distance(truth, shapely.points(outline)).max() <= found.bound + 2e-3
-    )  # the samples' own steps
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["crate", "right/tool"])
-def test_a_section_holds_every_point_cut(name):
-    case, rng = cells.cell(4), np.random.default_rng(4)
-    times = np.linspace(0.0, end_of(case), 1000)
-    poses = np.array([cells.pose_at(case, name, t) for t in times])
-    height = float(np.median(poses[:, 2, 3]))
-    names = ([name], []) if name in LINKS else ([], [name])
-    found = cl.swept_profile(
-        case, section=height, tolerance=1e-2, links=names[0], obstacles=names[1]
-    )
-    low, high = body_of(case, name).bounds
-    box = found.curve.box
-    on_plane = rng.uniform(box[0] - 0.05, box[1] + 0.05, (1500, 2))
-    world = np.column_stack([on_plane, np.full(len(on_plane), height)])
-    local = np.einsum("nji,npj->npi", poses[:, :3, :3], world[None] - poses[:, None, :3, 3])
-    cut = ((local >= low) & (local <= high)).all(axis=2).any(axis=0)
-    if name == "right/tool":  # what it has in hand is in the section as well
-        assert {one.label for one in swept_bodies(over_time(case), [name], [])} >= {name, "part"}
-    assert cut.sum() >= 10
-    chosen = rows(found)
-    assert all(inside(point, chosen) for point in on_plane[cut][:60])
-
-
-@examples(10)
-@given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate", "part", "lid"]))
-def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, name):
-    case = cells.cell(seed)
-    names = ["right/*"] if name in ("part", "lid") else [name] if name in LINKS else []
-    obstacles = [name] if name in ("door", "crate") else []
-    over = over_time(case)
-    for one in swept_bodies(over, names, obstacles):
-        if one.label != name or one.chain is None:
-            continue
-        knots = knots_of(one.chain, one.body.shape, PLANE, 0.5, solid=False)
-        assert_within_chord_and_turn(
-            knots, one.body.shape, PLANE, lambda at, one=one: one.chain.poses_at(at)[:, -1], 1e-13
-        )
 
 
 @examples(5)

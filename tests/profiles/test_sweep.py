@@ -107,14 +107,6 @@ def test_a_sphere_on_a_line_sweeps_a_stadium():
     assert cl.minimum_distance(found.curve, truth).distance > 0.0
 
 
-@pytest.mark.slow
-def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
-    found = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.5, 0.1, 0.1]), [0, 3.2, 6.4]))
-    outer, hole = found.contours
-    assert outer.area > 0 > hole.area
-    assert abs(-hole.area - math.pi * 0.3**2) <= found.bound * hole.length
-
-
 @pytest.mark.peer
 @examples(8)
 @given(

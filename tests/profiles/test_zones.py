@@ -69,7 +69,8 @@ def test_a_robot_in_the_overlap_of_two_zones_that_it_keeps_out_of_is_not_clear()
 
 def test_a_zone_with_a_hole_is_what_the_guide_says():
     assert checked("inside", (-2.0, 2.0), (-0.8, 0.8)).passed
-    assert not checked("inside", (-2.0, 2.0)).passed
+    found = checked("inside", (-2.0, 2.0))
+    assert not found.passed and found.status == "violated"
 
 
 def test_outlines_that_only_have_to_be_near_may_cross():
@@ -192,8 +193,6 @@ def test_a_zone_that_slides_when_its_width_is_edited_stands_in_the_headline(
     ("mode", "low", "high", "said"),
     [
         ("outside", -600, 600, "the sketch of profile 'zone' is 1200 m long where the robot reaches"),
-        ("outside", -60, 60, "the sketch of profile 'zone' is 120 m long where the robot reaches"),
-        ("inside", 300, 800, "the sketch of profile 'zone' stays 424 m away from a robot that reaches"),
         ("inside", 30, 80, "the sketch of profile 'zone' stays 41.9 m away from a robot that reaches"),
     ],
 )  # fmt: skip
