@@ -1,14 +1,11 @@
 """The four real cases load unchanged, and hold what an independent reading of the same files finds."""
 
-from collections import Counter
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from clearance.case.case_file import load_case
-from clearance.formats.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
 from tests.shared_cases import SHARED_CASES as CASES
 
 pytestmark = [
@@ -37,48 +34,6 @@ def rows_of(path: Path) -> np.ndarray:
     faces = [[int(x.split("/")[0]) - 1 for x in w[1:]] for w in words if w[0] == "f"]
     assert all(len(face) == 3 for face in faces)
     return points[np.array(faces)]
-
-
-def multiset(corners: np.ndarray) -> Counter:
-    """Oriented triangles, each from its least corner, counted."""
-    found: Counter = Counter()
-    for triangle in corners.tolist():
-        points = [tuple(point) for point in triangle]
-        i = points.index(min(points))
-        found[tuple(points[i:] + points[:i])] += 1
-    return found
-
-
-def area_vector(corners: np.ndarray) -> list[Fraction]:
-    """Twice the sum of the triangles' area vectors, exactly: in whole numbers of a power of two."""
-    ratios = [x.as_integer_ratio() for x in corners.ravel().tolist()]
-    unit = max(below for _, below in ratios)
-    whole = np.array([above * (unit // below) for above, below in ratios], dtype=object)
-    a, b, c = whole.reshape(-1, 3, 3).transpose(1, 0, 2)
-    u, v = b - a, c - a
-    sums = ((u[:, i] * v[:, j] - u[:, j] * v[:, i]).sum() for i, j in ((1, 2), (2, 0), (0, 1)))
-    return [Fraction(one, unit * unit) for one in sums]
-
-
-@pytest.mark.parametrize("path", MESHES, ids=lambda p: f"{p.parent.name}-{p.name}")
-def test_every_triangle_is_as_in_the_file(path):
-    expected = rows_of(path)
-    triangles = triangles_from_bytes(path.read_bytes(), path.name)
-    found = triangles.vertices[triangles.corners]
-    assert multiset(found) == multiset(expected)
-
-
-@pytest.mark.parametrize("path", MESHES, ids=lambda p: f"{p.parent.name}-{p.name}")
-def test_merging_coplanar_triangles_moves_nothing(path):
-    expected = rows_of(path)
-    mesh = mesh_from_bytes(path.read_bytes(), path.name)
-    corners = mesh.shape.vertices[np.asarray(mesh.shape.triangles())]
-    assert mesh.n_triangles == len(expected)
-    assert mesh.shape.bounds.tolist() == [
-        expected.min(axis=(0, 1)).tolist(),
-        expected.max(axis=(0, 1)).tolist(),
-    ]
-    assert area_vector(corners) == area_vector(expected)
 
 
 @pytest.mark.parametrize("name", EXPECTED)

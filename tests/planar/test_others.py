@@ -64,26 +64,6 @@ def test_biarcs_of_a_circle_are_the_circle():
         biarcs(WAVE, 0.0)
 
 
-@pytest.mark.slow
-def test_least_distance_against_samples_and_by_hand():
-    assert minimum_distance(
-        Curve.circle([0, 0], 1), Curve.circle([5, 0], 1.5)
-    ).distance == pytest.approx(2.5)
-    assert minimum_distance(WAVE, Curve.line([2, -5], [2, 5])).distance <= 1e-14
-    rng = np.random.default_rng(4)
-    for _ in range(20):
-        a = Curve.bspline(rng.normal(size=(6, 2)))
-        b = Curve.bspline(rng.normal(size=(7, 2)) + [3.0, 1.0])
-        found = minimum_distance(a, b)
-        p, q = (c.point(np.linspace(0, 1, 600)) for c in (a, b))
-        sampled = np.sqrt(((p[:, None] - q) ** 2).sum(axis=2)).min()
-        assert found.distance - found.error_bound <= sampled and found.distance >= sampled - 0.05
-        assert found.error_bound <= 1e-12 * a.size
-        assert np.hypot(*(found.point_a - found.point_b)) == pytest.approx(
-            found.distance, abs=1e-14
-        )
-
-
 def test_deviation_profile():
     base = Curve.line([0, 0], [5, 0])
     profile_of = deviation(WAVE, base, limit=0.5, samples=400)

@@ -75,7 +75,7 @@ def outline(n, noise):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("noise", [1e-6, 2e-3])
+@pytest.mark.parametrize("noise", [2e-3])
 def test_outlines_of_108_594_vertices(noise):
     many = outline(108_594, noise)
     few = many[np.linspace(0, len(many) - 1, 720).astype(int)]
@@ -132,7 +132,7 @@ def comb(low, high):
     return [[low + (high - low) * k / n, -0.15 if k % 2 else -0.1] for k in range(n + 1)]
 
 
-@pytest.mark.parametrize(("start", "width"), [(60, 6), (64, 2), (64, 6), (66, 2), (70, 6), (90, 2)])
+@pytest.mark.parametrize(("start", "width"), [(64, 6), (66, 2), (90, 2)])
 def test_a_straight_edge_over_a_long_row_of_teeth_is_farthest_over_its_gap(start, width):
     bottom = [[start, -12], [start + width, -12]]
     teeth = Curve.polyline([*comb(0, start), *bottom, *comb(start + width, 100)])

@@ -55,12 +55,6 @@ def test_positions_and_extremes_are_those_of_the_spline(seed):
         assert np.abs(greatest[i] - sampled.max(axis=0)).max() <= 1e-3 * size
 
 
-def test_before_and_after_a_trajectory_the_robot_rests():
-    asked = random_trajectory(1)
-    ends = positions_along(asked, asked.times[[0, -1]] + [-5.0, 5.0])
-    assert np.abs(ends - asked.positions[[0, -1]]).max() <= 1e-15
-
-
 def test_mimics_move_at_their_multiple_and_fixed_joints_rest():
     joints = (
         Joint("a", JointKind.REVOLUTE, "l0", "l1", np.eye(4)),
@@ -205,19 +199,6 @@ def test_a_loop_jumps_back_where_its_ends_differ():
 def test_a_loop_that_closes_does_not_jump():
     closed = np.array([[0.0], [2.0], [-1.0], [0.0]])
     assert not len(looped(knots_of(TIMES, closed), 20.0).jumps)
-
-
-@given(st.integers(0, 2**32 - 1), st.integers(1, 5))
-def test_a_loop_is_the_table_again(seed, n_rounds):
-    rng = np.random.default_rng(seed)
-    times = np.cumsum(rng.uniform(0.1, 2.0, 4))
-    values = rng.normal(size=(4, 1))
-    once, period = knots_of(times, values), times[-1] - times[0]
-    knots = looped(once, times[0] + n_rounds * period)
-    for i in range(n_rounds):
-        inside = np.sort(rng.uniform(times[0], times[-1], 5))
-        found = knots.values_at(np.append(inside + i * period, times[-1] + (i + 1) * period))[:-1]
-        assert np.allclose(found, once.values_at(np.append(inside, np.inf))[:-1], atol=1e-9)
 
 
 def test_too_many_rounds_are_refused():

@@ -76,17 +76,6 @@ def test_a_list_that_is_used_again_changes_nothing_made_before() -> None:
     assert case.obstacles and replace(robot, joints=[*robot.joints]).joints == robot.joints
 
 
-def test_a_new_checker_answers_for_the_case_as_it_is() -> None:
-    near, far = np.eye(4), np.eye(4)
-    near[0, 3], far[0, 3] = 1.0, 2.0
-    obstacles = [cl.Obstacle(CUBE, far)]
-    case = cl.Case("case", [placed(np.eye(4))], obstacles)
-    before = cl.Checker(case).distance([0.0]).distance
-    obstacles[0] = cl.Obstacle(CUBE, near)
-    obstacles.append(obstacles[0])
-    assert cl.Checker(case).distance([0.0]).distance == before
-
-
 @pytest.mark.parametrize(
     ("given", "told"),
     [
