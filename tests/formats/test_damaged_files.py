@@ -34,7 +34,7 @@ N_FILES = max(9, share_of(36))
 """Files of a kind whose bytes are damaged: of fewer than nine all may still be readable."""
 
 OPEN_ENDED = {
-    "OBJ", "points CSV", "points XYZ", "curves", "profile", "outline", "sketch", "joint limits", "controllers",
+    "OBJ", "points CSV", "points XYZ", "curves", "profile", "sketch", "joint limits", "controllers",
     "scene", "PlanningScene", "octomap message", "trajectory", "trajectory semicolons", "JointTrajectory",
     "pose table", "poses stamped", "case", "manifest", "batch", "waivers", "program",
 }  # fmt: skip

@@ -8,113 +8,113 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
-from tests.formats.damaged.meshes import binary_stl
+from clearance.batch.manifest import batch_of
+from clearance.case.case_file import load_case
+from clearance.case.case_list import cases_in
+from clearance.case.driven_robots import Surroundings
+from clearance.case.program import program_motion
+from clearance.case.robots import RobotReader
+from clearance.errors import BadSyntax
+from clearance.formats.cloud.formats import cloud_from_bytes
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.known_formats import Kind, format_of, function_at
+from clearance.formats.mesh.mesh_file import mesh_from_bytes
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.motion.requests import Choice, PoseRequest, parse_trajectory, read_samples
+from clearance.formats.program.controller_program import ProgramRequest
+from clearance.formats.program.conversion import converted
+from clearance.formats.robot.request import load_robot
+from clearance.formats.robot.urdf.xacro_process import evaluated
+from clearance.formats.scene.obstacles import make_obstacles
+from clearance.formats.scene.request import SceneRequest, read_scene
+from clearance.formats.schema import case as schema
+from clearance.formats.schema.obstacle import Scene
+from clearance.formats.schema.program import Frame
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.formats.schema.strict_model import validated
+from clearance.formats.schema.timed import TrajectoryFile
+from clearance.formats.timed_files import load_trajectory
+from clearance.world.placed_robot import PlacedRobot
+from tests.formats.damaged import bags
 from tests.formats.damaged.texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF, URDF
+from tests.formats.making import cube_stl
+from tests.formats.making_urdf import parse_document
 
 Read = Callable[[bytes, Path, str], object]
 
+MESH = {"m.stl": cube_stl()}
+CASE_FILES = {"case.yaml": CASE, "arm.urdf": URDF, "path.csv": PATH, **MESH}
+ROBOT_FILES = {
+    "arm.urdf": BOXES, "arm.srdf": SRDF, "limits.yaml": LIMITS, "control.yaml": CONTROL, **MESH,
+}  # fmt: skip
+
+
+def by_path(read_path: Callable[[Path], object], **beside: bytes) -> Read:
+    """A reader of files on disk, a double underscore in whose names beside it stands for the dot."""
+    others = {name.replace("__", "."): content for name, content in beside.items()}
+    return among(others, lambda folder, name: read_path(folder / name))
+
+
+def among(files: dict[str, bytes], read: Callable[[Path, str], object]) -> Read:
+    """A reader of a folder with these files, of which one is damaged or beside which it is."""
+
+    def reads(data: bytes, folder: Path, name: str) -> object:
+        for other, content in (files | {name: data}).items():
+            (folder / other).parent.mkdir(exist_ok=True)
+            (folder / other).write_bytes(content)
+        return read(folder, name)
+
+    return reads
+
 
 def mesh(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.mesh.mesh_file import mesh_from_bytes
-
     return mesh_from_bytes(data, name).shape.vertices
 
 
 def points(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.cloud.formats import cloud_from_bytes
-
     return cloud_from_bytes(data, name, 0.01).shape.vertices
 
 
-def by_path(read_path: Callable[[Path], object]) -> Read:
-    """A reader of files on disk."""
-
-    def read(data: bytes, folder: Path, name: str) -> object:
-        path = folder / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_bytes(data)
-        return read_path(path)
-
-    return read
+def trajectory(data: bytes, folder: Path, name: str) -> object:
+    return parse_trajectory(data, name)
 
 
-def case(data: bytes, folder: Path, name: str) -> object:
-    """A case with its files, of which one is damaged."""
-    from clearance.case.case_file import load_case
-
-    valid = {"case.yaml": CASE, "arm.urdf": URDF, "path.csv": PATH, "m.stl": binary_stl()}
-    for other, content in (valid | {name: data}).items():
-        (folder / other).write_bytes(content)
-    return load_case(folder / "case.yaml")
+def poses(data: bytes, folder: Path, name: str) -> object:
+    return read_samples(PoseRequest(lambda: io.BytesIO(data)), name)
 
 
-def robot_beside(data: bytes, folder: Path, name: str) -> object:
-    """A robot with all the files that may stand beside it, of which one is damaged."""
-    from clearance.case.robots import RobotReader
-    from clearance.formats.files.input_files import InputFiles
-    from clearance.formats.mesh_store import MeshStore
-    from clearance.formats.schema import case as schema
-
-    valid = {"arm.urdf": BOXES, "m.stl": binary_stl(), "arm.srdf": SRDF}
-    valid |= {"limits.yaml": LIMITS, "control.yaml": CONTROL}
-    for other, content in (valid | {name: data}).items():
-        (folder / other).write_bytes(content)
-    robot = schema.Robot.model_validate(ROBOT)
-    entry = schema.RobotEntry("robot", robot, None, "trajectory")
+def _robot_beside(folder: Path, name: str) -> object:
+    entry = schema.RobotEntry("robot", schema.Robot.model_validate(ROBOT), None, "trajectory")
     return RobotReader(MeshStore(InputFiles(folder))).moving(entry, {})
 
 
-def robot(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.robot.request import load_robot
-
-    (folder / "m.stl").write_bytes(binary_stl())
-    (folder / name).write_bytes(data)
-    return load_robot(folder / name)
-
-
-def scene(data: bytes, folder: Path, name: str) -> object:
-    """A scene as a case would have it: its content, then the solids that it names."""
-    from clearance.formats.files.input_files import InputFiles
-    from clearance.formats.mesh_store import MeshStore
-    from clearance.formats.scene.obstacles import make_obstacles
-    from clearance.formats.scene.request import SceneRequest, read_scene
-    from clearance.formats.schema.obstacle import Scene
-    from clearance.formats.schema.strict_model import validated
-
-    (folder / "m.stl").write_bytes(binary_stl())
-    (folder / name).write_bytes(data)
+def _scene(folder: Path, name: str) -> object:
+    """Its content, then the solids that it names."""
     files = InputFiles(folder)
     content = read_scene(SceneRequest(folder / name, files))
     given = validated(Scene, content.scene, name).obstacles
     return make_obstacles(given, folder, MeshStore(files))
 
 
-def trajectory(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.motion.requests import parse_trajectory
-
-    return parse_trajectory(data, name)
-
-
-def program(data: bytes, folder: Path, name: str) -> object:
-    """A program as a case would have it: its moves, then the joints that follow."""
-    from clearance.case.driven_robots import Surroundings
-    from clearance.case.program import program_motion
-    from clearance.formats.files.input_files import InputFiles
-    from clearance.formats.schema.timed import TrajectoryFile
-
-    (folder / name).write_bytes(data)
+def _program(folder: Path, name: str) -> object:
+    """Its moves, then the joints that follow."""
     asked = TrajectoryFile.model_validate({"program": name})
     return program_motion(asked, {}, programmed(), InputFiles(folder), Surroundings())
 
 
+case = among(CASE_FILES, lambda folder, name: load_case(folder / "case.yaml"))
+robot_beside = among(ROBOT_FILES, _robot_beside)
+robot = among(MESH, lambda folder, name: load_robot(folder / name))
+scene = among(MESH, _scene)
+program = among({}, _program)
+case_list = by_path(cases_in, case__yaml=CASE)
+batch_items = by_path(
+    lambda path: batch_of([str(path)]).items, case__yaml=CASE, cell__yaml=CASE, a__csv=CASE
+)
+
+
 def controller(data: bytes, folder: Path, name: str) -> object:
     """A program of a controller as moves of a robot."""
-    from clearance.formats.known_formats import Kind, format_of, function_at
-    from clearance.formats.program.controller_program import ProgramRequest
-    from clearance.formats.program.conversion import converted
-    from clearance.formats.schema.program import Frame
-    from clearance.formats.schema.program_file import ProgramFile
-
     asked = ProgramFile(file=name, link="tool_tip", base=Frame(on="base"), axes_as="plain")
     row = format_of(Kind.PROGRAM, name, data)
     read = function_at(row.read)(ProgramRequest(data, name, asked))
@@ -122,42 +122,24 @@ def controller(data: bytes, folder: Path, name: str) -> object:
 
 
 @lru_cache
-def programmed():
+def programmed() -> PlacedRobot:
     """The arm that programs move."""
-    from clearance.formats.robot.request import load_robot
-    from clearance.world.placed_robot import PlacedRobot
-
     root = Path(__file__).parents[3]
     return PlacedRobot(load_robot(root / "robots" / "heron6" / "heron6.urdf"))
 
 
-def bag(path: Path) -> object:
-    from clearance.formats.motion.requests import Choice
-    from clearance.formats.timed_files import load_trajectory
-
+def _bag(path: Path) -> object:
     return load_trajectory(path, Choice())
 
 
-def bag_folder(path: Path) -> object:
+def _bag_folder(path: Path) -> object:
     """A bag that is a folder, of which the file beside the messages is damaged."""
-    from tests.formats.damaged import bags
-
     (path.parent / "run.db3").write_bytes(bags.bag("rosbag2 sqlite3"))
-    return bag(path.parent)
+    return _bag(path.parent)
 
 
-def poses(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.motion.requests import PoseRequest, read_samples
-
-    return read_samples(PoseRequest(lambda: io.BytesIO(data)), name)
-
-
-def xacro(path: Path) -> object:
+def _xacro(path: Path) -> object:
     """What is evaluated in the process that is started for it, and then read as URDF."""
-    from clearance.errors import BadSyntax
-    from clearance.formats.robot.urdf.xacro_process import evaluated
-    from tests.formats.making_urdf import parse_document
-
     with contextlib.redirect_stderr(io.StringIO()):  # its process hands it on as notes
         made = evaluated(path, {})
     if "problem" in made:
@@ -166,58 +148,4 @@ def xacro(path: Path) -> object:
     return None
 
 
-def dxf(path: Path) -> object:
-    from clearance.planar.dxf import read_dxf
-
-    return read_dxf(str(path))
-
-
-def curves(path: Path) -> object:
-    from clearance.planar.curve_file import read_curve
-
-    return read_curve(str(path))
-
-
-def outline(path: Path) -> object:
-    from clearance.profiles.outline_file import read_outline
-
-    return read_outline(path)
-
-
-def sketch(path: Path) -> object:
-    from clearance.sketch import Sketch
-
-    return Sketch.load(path)
-
-
-def waivers(path: Path) -> object:
-    from clearance.case.waiver_file import load_waivers
-
-    return load_waivers(path)
-
-
-def manifest(path: Path) -> object:
-    from clearance.batch.manifest_file import load_manifest
-
-    return load_manifest(path)
-
-
-def batch_items(path: Path) -> object:
-    from clearance.batch.manifest import batch_of
-
-    for name in ("case.yaml", "cell.yaml", "a.csv"):
-        (path.parent / name).write_bytes(CASE)
-    return batch_of([str(path)]).items
-
-
-def case_list(path: Path) -> object:
-    from clearance.case.case_list import cases_in
-
-    (path.parent / "case.yaml").write_bytes(CASE)
-    return cases_in(path)
-
-
-def findings(path: Path) -> object:
-    from clearance.findings.findings_file import read_findings
-
-    return read_findings(path)
+bag, bag_folder, xacro = by_path(_bag), by_path(_bag_folder), by_path(_xacro)
