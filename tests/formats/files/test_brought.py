@@ -10,6 +10,7 @@ from clearance.cli import run
 from clearance.errors import MissingFile, Unavailable
 from clearance.formats.files.brought import brought_path
 from clearance.formats.files.input_files import InputFiles, path_from, resolved
+from tests.formats.refusal import refusal
 
 LINKS = '<link name="base"/><link name="tip">{collision}</link>'
 JOINT = '<joint name="j" type="{kind}"><parent link="base"/><child link="tip"/></joint>'
@@ -76,9 +77,7 @@ def test_a_robot_is_called_by_its_file_or_path(robots, tmp_path, name, path):
     ],
 )  # fmt: skip
 def test_a_name_of_none_or_of_several_is_refused(robots, given, fault, says):
-    with pytest.raises(fault) as caught:
-        brought_path(given)
-    assert says in str(caught.value)
+    assert says in refusal(brought_path, given, of=fault)
 
 
 def test_what_is_no_package_is_a_path(tmp_path):

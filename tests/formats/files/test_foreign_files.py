@@ -8,6 +8,7 @@ from clearance.errors import BadShape, BadSyntax
 from tests.formats.making import CASE
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_urdf import BOX, link, robot
+from tests.formats.refusal import refusal
 from tests.formats.test_known_formats import JOINT_TRAJECTORY, SCENE, SDF
 
 
@@ -33,9 +34,7 @@ from tests.formats.test_known_formats import JOINT_TRAJECTORY, SCENE, SDF
     ],
 )
 def test_what_a_case_names_is_told_what_it_is(tmp_path, case, says, files):
-    with pytest.raises(BadSyntax) as caught:
-        load_small(tmp_path, case, **files)
-    assert says in str(caught.value)
+    assert says in refusal(load_small, tmp_path, case, **files, of=BadSyntax)
 
 
 def test_a_case_without_a_name_has_that_of_its_file_or_folder(tmp_path):

@@ -8,6 +8,7 @@ from clearance.formats.files.input_files import InputFiles
 from clearance.world.notice import Severity
 from tests.formats.making import cube_stl
 from tests.formats.making_urdf import collision, link, load_robot, robot
+from tests.formats.refusal import refusal
 
 ASKED = robot(link(collision('<mesh filename="package://arms/meshes/part.stl"/>')))
 
@@ -84,9 +85,8 @@ def test_a_file_of_the_same_name_stands_in_as_suspect_input_that_names_both(tmp_
 def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_PACKAGE_PATH", "/opt/ws/src")
     (tmp_path / "given").mkdir()
-    with pytest.raises(MissingFile) as caught:
-        load_robot(tmp_path, ASKED, [tmp_path / "given"])
-    told = str(caught.value)
+    said = refusal(load_robot, tmp_path, ASKED, [tmp_path / "given"], of=MissingFile)
+    told = said
     n_above = len(tmp_path.parents)
     assert "there is no mesh 'package://arms/meshes/part.stl'" in told
     assert f"robot.package_dirs ('given'), in the file's folder and the {n_above} above it" in told
@@ -97,10 +97,8 @@ def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
 def test_an_error_says_that_the_package_is_here_without_the_file(tmp_path, place):
     package(tmp_path / "given")
     (tmp_path / "given/meshes/part.stl").rename(tmp_path / "given/meshes/renamed.stl")
-    with pytest.raises(MissingFile) as caught:
-        load_robot(tmp_path, ASKED.replace("package:/", place), [tmp_path])
-    assert "package 'arms' is here, without meshes/part.stl: is it of another version?" in str(
-        caught.value
+    assert "package 'arms' is here, without meshes/part.stl: is it of another version?" in refusal(
+        load_robot, tmp_path, ASKED.replace("package:/", place), [tmp_path], of=MissingFile
     )
 
 

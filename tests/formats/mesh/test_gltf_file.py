@@ -12,6 +12,7 @@ from clearance.formats.mesh import placing
 from clearance.formats.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
 from tests.formats.making import CUBE, CUBE_TRIANGLES, signed_volume
 from tests.formats.making_glb import changed, cube_document, document_of, glb
+from tests.formats.refusal import refusal
 
 Y_UP_BOUNDS = [[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]]
 DOCUMENT, BINARY = cube_document()
@@ -194,17 +195,15 @@ INSTANCES = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
     ],
 )
 def test_what_would_be_another_surface_is_refused(document, says):
-    with pytest.raises(BadInput) as caught:
-        load(document)
-    assert says in str(caught.value)
-    assert str(caught.value).startswith("m.glb: ")
+    said = refusal(load, document, of=BadInput)
+    assert says in said
+    assert said.startswith("m.glb: ")
 
 
 def test_an_accessor_without_data_is_refused():
     document = changed(DOCUMENT, "accessors", 0, "min", [0, 0, 0])
     del document["accessors"][0]["bufferView"]
-    with pytest.raises(BadInput, match="has no data"):
-        load(document)
+    assert "has no data" in refusal(load, document, of=BadInput)
 
 
 def test_meshes_placed_very_often_are_counted(monkeypatch):
@@ -212,8 +211,7 @@ def test_meshes_placed_very_often_are_counted(monkeypatch):
     nodes = [{"mesh": 0} for _ in range(100)]
     document = changed(DOCUMENT, "nodes", nodes)
     document["scenes"][0]["nodes"] = list(range(len(nodes)))
-    with pytest.raises(BadSyntax, match="more than 1,000 copies of triangles"):
-        load(document)
+    assert "more than 1,000 copies of triangles" in refusal(load, document, of=BadSyntax)
 
 
 def test_json_that_is_nested_without_end_is_refused():

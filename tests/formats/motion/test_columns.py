@@ -18,6 +18,7 @@ from clearance.world.plausible_motion import notices_on_motion
 from tests.formats.making import ARM
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.motion.test_foreign_tables import read
+from tests.formats.refusal import refusal
 
 ABOVE, BLANKS = "above the header, passed over:", "columns are separated by tabs or blanks"
 
@@ -81,9 +82,7 @@ def test_a_joint_that_is_called_t_is_no_time():
     ],
 )  # fmt: skip
 def test_what_could_be_meant_otherwise_is_refused(text, fault, says):
-    with pytest.raises(fault) as caught:
-        read(text)
-    assert says in str(caught.value)
+    assert says in refusal(read, text, of=fault)
 
 
 LOG = (
@@ -113,9 +112,8 @@ def test_half_of_a_time_is_no_time(tmp_path, header, columns):
     table = f"{header},shoulder\n0,0,0\n1,990000000,0.1\n2,0,0.2\n"
     said = f"path.csv, columns: {{{columns}, shoulder: shoulder}}" if columns else "path.csv"
     first, second = header.split(",")
-    with pytest.raises(BadTime) as caught:
-        load_small(tmp_path, changed("path.csv", said), trajectory=table)
-    told = str(caught.value)
+    line = refusal(load_small, tmp_path, changed("path.csv", said), trajectory=table, of=BadTime)
+    told = line
     assert f"'{first}' and '{second}' are a time together; a column time [s] in their place" in told
 
 

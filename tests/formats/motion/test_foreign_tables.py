@@ -15,6 +15,7 @@ from clearance.errors import (
 from clearance.formats.motion.requests import TrajectoryRequest, read_trajectory
 from clearance.formats.schema.timed import Choice
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
+from tests.formats.refusal import refusal
 
 TURNS = {"shoulder": True, "lift": False}
 DEGREES = {"angle": "deg", "length": "mm"}
@@ -111,9 +112,8 @@ def test_numbers_with_commas_are_read_to_the_last_bit():
     ],
 )  # fmt: skip
 def test_each_fault_is_one_line_with_its_place(text, choice, fault, says):
-    with pytest.raises(fault) as caught:
-        read(text, **choice)
-    told = str(caught.value)
+    said = refusal(read, text, **choice, of=fault)
+    told = said
     assert says in told
     assert told.startswith("path.csv: ")
 

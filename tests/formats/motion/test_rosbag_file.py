@@ -1,5 +1,6 @@
 """Bags in all three containers: what was planned, what was done, which topic, and nothing but our own errors."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from clearance.formats.timed_files import load_trajectory
 from clearance.report.motion_file import motion_content
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed
+from tests.formats.refusal import refusal
 
 pytest.importorskip("rosbags", reason="bags are made by rosbags")
 
@@ -59,22 +61,19 @@ def test_what_was_done_comes_back(tmp_path, container):
 @pytest.mark.parametrize("container", CONTAINERS)
 def test_of_several_topics_one_is_chosen(tmp_path, container):
     path = write_bag(tmp_path, container, {"/plan": [MOVE, MOVE], "/joint_states": STATES})
-    with pytest.raises(
-        BadInput, match=r"several topics: /joint_states \(JointState\), /plan \(Joint"
-    ):
-        read(path)
+    assert "several topics: /joint_states (JointState), /plan (Joint" in refusal(
+        read, path, of=BadInput
+    )
     assert read(path, topic="/joint_states").trajectory.n_steps == 3
-    with pytest.raises(BadInput, match="the file holds 2 trajectories"):
-        read(path, topic="/plan")
+    assert "the file holds 2 trajectories" in refusal(read, path, topic="/plan", of=BadInput)
     assert read(path, topic="/plan", which=2).trajectory.n_steps == 2
-    with pytest.raises(BadInput, match="did you mean '/plan'"):
-        read(path, topic="/plam")
+    assert "did you mean '/plan'" in refusal(read, path, topic="/plam", of=BadInput)
     with pytest.raises(BadInput, match="'which' says nothing about recorded joint states"):
         read(path, topic="/joint_states", which=1)
-    with pytest.raises(
-        BadInput, match=r"'units' says nothing about messages in a bag.*convert` makes"
-    ):
-        read(path, topic="/plan", units={"angle": "deg"})
+    assert re.search(
+        r"'units' says nothing about messages in a bag.*convert` makes",
+        refusal(read, path, topic="/plan", units={"angle": "deg"}, of=BadInput),
+    )
 
 
 @pytest.mark.parametrize("container", first_fast(CONTAINERS[1:], 1))
@@ -82,10 +81,9 @@ def test_a_message_of_moveit_brings_its_definition(tmp_path, container):
     path = write_bag(tmp_path, container, {"/display": [displayed(MOVE)]})
     assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
     path = write_bag(tmp_path / "more", container, {"/display": [displayed(MOVE, MOVE)]})
-    with pytest.raises(
-        BadInput, match=r"holds 2 trajectories: 1: trajectory\[0\].joint_trajectory, 2 points"
-    ):
-        read(path)
+    assert "holds 2 trajectories: 1: trajectory[0].joint_trajectory, 2 points" in refusal(
+        read, path, of=BadInput
+    )
 
 
 def test_a_goal_of_an_action_is_a_topic_in_ros_1(tmp_path):
@@ -102,11 +100,9 @@ def test_a_goal_of_an_action_is_an_event_in_ros_2(tmp_path, container):
     path = write_bag(tmp_path / "one", container, {topic: events})
     assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
     path = write_bag(tmp_path / "two", container, {topic: [*events, goal_event(2, other)]})
-    with pytest.raises(BadInput, match="holds 2 trajectories"):
-        read(path)
+    assert "holds 2 trajectories" in refusal(read, path, of=BadInput)
     assert read(path, which=2).trajectory.n_steps == 3
-    with pytest.raises(BadInput, match=f"{topic.split('_')[0]}"):
-        read(path, topic="/arm")
+    assert re.search(f"{topic.split('_')[0]}", refusal(read, path, topic="/arm", of=BadInput))
     assert EVENT.endswith("_SendGoal_Event")
 
 
@@ -169,16 +165,14 @@ def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
         read(twice)
     other = state(3, [0.0], ["gripper"])
     bag = write_bag(tmp_path / "b", "mcap", {"/joint_states": [*STATES, other]})
-    with pytest.raises(
-        BadInput, match="joint 'gripper' is known from 3 s on, 'shoulder' until 2 s"
-    ):
-        read(bag)
+    assert "joint 'gripper' is known from 3 s on, 'shoulder' until 2 s" in refusal(
+        read, bag, of=BadInput
+    )
     for names in (["shoulder", "lift", "x"], ["shoulder", "shoulder"]):
         bag = write_bag(
             tmp_path / names[-1], "mcap", {"/joint_states": [state(0, [0.0, 1.0], names)]}
         )
-        with pytest.raises(BadShape, match="message 1: 2 positions of shoulder, "):
-            read(bag)
+        assert "message 1: 2 positions of shoulder, " in refusal(read, bag, of=BadShape)
 
 
 def test_a_case_names_a_bag(tmp_path, capsys):
@@ -265,5 +259,4 @@ def test_a_recording_of_which_an_end_is_not_known_is_not_converted(tmp_path, cap
 def test_a_joint_without_any_number_is_refused(tmp_path):
     messages = [state(i, [0.1 * i, float("nan")]) for i in range(3)]
     path = write_bag(tmp_path, "mcap", {"/joint_states": messages})
-    with pytest.raises(NotFinite, match="no message has a finite position of joint 'lift'"):
-        read(path)
+    assert "no message has a finite position of joint 'lift'" in refusal(read, path, of=NotFinite)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +24,7 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import pose_from_rotation_vector, pose_from_rpy
 from clearance.world.robot import Joint, JointKind, Robot
+from tests.formats.refusal import refusal
 
 X, Y, Z = np.eye(3)
 ABB = (Z, Y, Y, X, Y, X)
@@ -86,100 +88,75 @@ def test_an_arm_whose_joints_turn_as_its_makers_axes_is_taken_as_such(maker):
     assert doubts.get(maker, "") in "".join(found.assumed)
     assert any("joints turn as the axes of" in note for note in said.notes)
     for other in ARMS.keys() - {maker}:
-        with pytest.raises(cl.ClearanceError, match=r"turns against|another line"):
-            made(arm(*ARMS[maker]), other)
+        assert re.search(r"turns against|another line", refusal(made, arm(*ARMS[maker]), other))
+
+
+# as the KR 210 of ROS-Industrial: it has its zero at A2 -90 and A3 90, and three joints turn the other way
+KR210 = arm(
+    ABB,
+    ((0, 0, 0.331), (0.353, 0, 0.419), (0, 0, 1.25), (0.96, 0, -0.055), (0.54, 0, 0), (0.19, 0, 0)),
+)
 
 
 def test_joints_that_turn_otherwise_are_refused_until_the_case_says_how():
-    # as the KR 210 of ROS-Industrial: it has its zero at A2 -90 and A3 90, and three joints turn the other way
-    places = (
-        *((0, 0, 0.331), (0.353, 0, 0.419), (0, 0, 1.25)),
-        (0.96, 0, -0.055),
-        (0.54, 0, 0),
-        (0.19, 0, 0),
-    )
-    robot = arm(ABB, places)
-    with pytest.raises(cl.ClearanceError) as refused:
-        made(robot, "kuka")
-    assert str(refused.value).endswith(
+    assert refusal(made, KR210, "kuka").endswith(
         "axes: with the axes of KUKA robots at 0, joint_1 turns against axis 1, joint_4 turns against axis 4, "
         "joint_6 turns against axis 6, joint_2 is 90 degrees from where axis 2 is at 0; if joint_6 and its axis "
         "are 0 together, program: {axes: {joint_1: {sign: -1}, joint_2: {offset: 90deg}, joint_3: "
         "{offset: -90deg}, joint_4: {sign: -1}, joint_6: {sign: -1}}}; axes_as: plain is right only if the "
         "controller shows the joints' own angles"
     )
-    how = r"how joints follow axes, as program: \{axes: \{joint: \{sign: -1, offset: 90deg"
-    with pytest.raises(cl.ClearanceError, match=how):
-        made(arm(*ARMS["ur"]), "kuka")
-    (told,) = made(robot, "kuka", axes_as="plain").assumed
-    assert told.startswith(
-        "joints are taken for the axes (axes_as: plain), but with the axes of KUKA robots at 0, joi"
-    )
-    (told,) = made(arm(*ARMS["fanuc"]), "fanuc", axes_as="plain").assumed
-    assert told.endswith("but axis 3 of FANUC robots counts from the horizontal")
-    assert made(arm(*ARMS["abb"]), "abb", axes_as="plain").assumed == ()
-    with pytest.raises(
-        cl.ClearanceError, match="axes_as: with the axes of KUKA robots at 0, joint_1"
-    ):
-        made(robot, "kuka", axes_as="kuka")
-    flagged = ControllerMove(
-        Line(4), "ptp", PoseTarget(np.eye(4), ranges={1: (3.0, 4.0)}, is_behind=True), np.eye(4)
-    )
-    asked = validated(ProgramFile, {"file": "a.src", "axes_as": "kuka"}, "program")
-    with pytest.raises(
-        cl.ClearanceError, match="axes_as: "
-    ):  # and not that the flags contradict each other
-        converted(
-            ControllerProgram((flagged,), maker="kuka"),
-            asked,
-            robot,
-            {f"joint_{i}": 0.0 for i in range(1, 7)},
-        )
+    how = "how joints follow axes, as program: {axes: {joint: {sign: -1, offset: 90deg"
+    assert how in refusal(made, arm(*ARMS["ur"]), "kuka")
+    said = "axes_as: with the axes of KUKA robots at 0, joint_1"
+    assert said in refusal(made, KR210, "kuka", axes_as="kuka")
     rules = {name: {"sign": -1} for name in ("joint_1", "joint_4", "joint_6")}
     rules |= {"joint_2": {"offset": "90deg"}, "joint_3": {"offset": "-90deg"}}
-    found = made(robot, "kuka", (10, -90, 90, 20, 30, 40), axes_as="kuka", axes=rules)
+    found = made(KR210, "kuka", (10, -90, 90, 20, 30, 40), axes_as="kuka", axes=rules)
     assert found.assumed == () and degrees_of(found) == pytest.approx([-10, 0, 0, -20, 30, -40])
-    found = made(robot, "kuka", axes={"joint_1": {"sign": -1}})
+    found = made(KR210, "kuka", axes={"joint_1": {"sign": -1}})
     assert found.assumed == () and any("joint_4 turns against" in note for note in found.notes)
 
 
+def test_axes_that_turn_otherwise_are_told_before_flags_that_contradict_each_other():
+    to = PoseTarget(np.eye(4), ranges={1: (3.0, 4.0)}, is_behind=True)
+    read = ControllerProgram((ControllerMove(Line(4), "ptp", to, np.eye(4)),), maker="kuka")
+    asked = validated(ProgramFile, {"file": "a.src", "axes_as": "kuka"}, "program")
+    start = {f"joint_{i}": 0.0 for i in range(1, 7)}
+    assert "axes_as: " in refusal(converted, read, asked, KR210, start)
+
+
+COUNTS = "J3 is taken to count from the horizontal"
+PLAIN = "joint_6 are taken to turn as the axes do; axes_as: plain"
+OTHER = "joints are taken for the axes (axes_as: plain), but with the axes of KUKA robots at 0, joi"
+HORIZONTAL = "but axis 3 of FANUC robots counts from the horizontal"
+
+
 @pytest.mark.parametrize(
-    ("asked", "third"),
+    ("robot", "maker", "asked", "third", "told"),
     [
-        ({}, 30.0),
-        ({"axes": {"joint_3": {"sign": -1}}}, -30.0),
-        ({"axes": {"joint_2": {"sign": -1}}}, 30.0),
-        ({"axes": {"joint_3": {"plus": {2: 1.0}}}}, 30.0),
-        ({"axes": {"joint_3": {"plus": {}}}}, 10.0),
-        ({"axes_as": "plain"}, 10.0),
+        (arm(*ARMS["fanuc"]), "fanuc", {}, 30.0, COUNTS),
+        (arm(*ARMS["fanuc"]), "fanuc", {"axes": {"joint_3": {"sign": -1}}}, -30.0, COUNTS),
+        (arm(*ARMS["fanuc"]), "fanuc", {"axes": {"joint_2": {"sign": -1}}}, 30.0, COUNTS),
+        (arm(*ARMS["fanuc"]), "fanuc", {"axes": {"joint_3": {"plus": {2: 1.0}}}}, 30.0, ""),
+        (arm(*ARMS["fanuc"]), "fanuc", {"axes": {"joint_3": {"plus": {}}}}, 10.0, ""),
+        (arm(*ARMS["fanuc"]), "fanuc", {"axes_as": "plain"}, 10.0, HORIZONTAL),
+        (arm(*ARMS["abb"]), "abb", {}, 10.0, "parallel bars"),
+        (arm(*ARMS["abb"]), "abb", {"axes": {"joint_3": {"sign": 1}}}, 10.0, ""),
+        (arm(*ARMS["abb"]), "abb", {"axes_as": "abb_parallel"}, -10.0, ""),
+        (arm(*ARMS["abb"]), "abb", {"axes_as": "plain"}, 10.0, ""),
+        (arm(*ARMS["abb"]), "plain", {}, 10.0, PLAIN),
+        (arm(*ARMS["abb"]), "plain", {"axes_as": "plain"}, 10.0, ""),
+        (arm(*ARMS["abb"]), "plain", {"axes": {"joint_1": {}}}, 10.0, ""),
+        (KR210, "kuka", {"axes_as": "plain"}, 10.0, OTHER),
     ],
-)
-def test_an_axis_that_counts_from_the_horizontal_is_counted_once(asked, third):
-    found = made(arm(*ARMS["fanuc"]), "fanuc", (0, 20, 10, 0, 0, 0), **asked)
+)  # fmt: skip
+def test_how_the_third_axis_counts_is_assumed_and_told_unless_the_case_says_it(
+    robot, maker, asked, third, told
+):
+    found = made(robot, maker, (0, 20, 10, 0, 0, 0), **asked)
     assert degrees_of(found)[2] == pytest.approx(third)
-    is_said = "axes_as" in asked or "plus" in asked.get("axes", {}).get("joint_3", {})
-    assert is_said != any("J3 is taken to count" in one for one in found.assumed)
-
-
-def test_a_rule_for_joint_3_says_how_it_counts_where_it_is_whole():
-    robot = arm(*ARMS["abb"])
-    assert (
-        made(robot, "abb").assumed and not made(robot, "abb", axes={"joint_3": {"sign": 1}}).assumed
-    )
-
-
-def test_parallel_bars_keep_the_forearm_as_it_is():
-    robot = arm(*ARMS["abb"])
-    found = made(robot, "abb", (0, 20, 10, 0, 0, 0), axes_as="abb_parallel")
-    assert degrees_of(found)[2] == pytest.approx(-10.0) and found.assumed == ()
-
-
-def test_an_arm_of_which_nobody_knows_the_axes_is_told():
-    robot = arm(*ARMS["abb"])
-    (told,) = made(robot, "plain").assumed
-    assert "joint_6 are taken to turn as the axes do; axes_as: plain" in told
-    assert made(robot, "plain", axes_as="plain").assumed == ()
-    assert made(robot, "plain", axes={"joint_1": {}}).assumed == ()
+    assert len(found.assumed) == bool(told) and told in "".join(found.assumed)
 
 
 def test_axes_and_pose_of_a_published_point_agree():
@@ -200,27 +177,16 @@ def test_axes_and_pose_of_a_published_point_agree():
 def test_joints_with_other_signs_and_zeros_are_told_by_how_much(maker):
     """Of an arm whose URDF counts joints from elsewhere, and the other way: of its maker's, once it is said so."""
     random = np.random.default_rng(3)
-    turns, places = ARMS[maker]
     offsets, signs = random.uniform(-1.2, 1.2, 6) * [1, 1, 1, 1, 1, 0], random.choice([-1, 1], 6)
-    robot, joints = arm(turns, places), []
-    for joint in robot.joints[:6]:
-        i = len(joints)
-        turned = pose_from_rotation_vector(
-            [0.0] * 3, (-offsets[i] * joint.axis * signs[i]).tolist()
-        )
-        joints.append(
-            replace(
-                joint,
-                parent_from_joint=joint.parent_from_joint @ turned,
-                axis=signs[i] * joint.axis,
-            )
-        )
+    robot, joints = arm(*ARMS[maker]), []
+    for joint, sign, offset in zip(robot.joints[:6], signs, offsets, strict=True):
+        turned = pose_from_rotation_vector([0.0] * 3, (-offset * joint.axis * sign).tolist())
+        place = joint.parent_from_joint @ turned
+        joints.append(replace(joint, parent_from_joint=place, axis=sign * joint.axis))
     odd = replace(robot, joints=(*joints, *robot.joints[6:]))
     arm_of = ControlledArm(validated(ProgramFile, {"file": "a"}, "program"), odd, maker=maker)
     rules = CONVENTIONS[maker].rules(arm_of.chain, arm_of.axes, np.eye(4))
-    if (
-        maker == "ur"
-    ):  # its axes 2, 3 and 4 are parallel, so that their directions do not say where 3 is
+    if maker == "ur":  # axes 2, 3 and 4 are parallel: their directions do not say where 3 is
         assert not rules
         return
     assert [one.sign for one in rules.values()] == signs.tolist()

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-import clearance as cl
 from clearance.formats.program.arc_turns import turn_on_path
 from clearance.formats.program.controller_program import (
     AxisTarget,
@@ -23,6 +23,7 @@ from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import validated
 from clearance.geometry.pose import pose_from_rpy
 from clearance.world.robot import Joint, JointKind
+from tests.formats.refusal import refusal
 from tests.made_cases import at
 from tests.programs.arms import arm
 
@@ -166,11 +167,9 @@ def test_a_first_pose_begins_at_the_axes_beside_it_if_these_have_the_tool_there(
     for pose, told in ((at(0.0, 0.0, 0.011) @ there, "11 mm and 0"), (turned, "0 mm and 2.29")):
         far = replace(first, to=PoseTarget(pose, near=near))
         match = f"ends at a pose, and the axes beside it have the tool .*{told} degrees from it"
-        with pytest.raises(cl.ClearanceError, match=match):
-            made(far, HOME, **asked)
+        assert re.search(match, refusal(made, far, HOME, **asked))
     line = replace(first, kind="lin")
-    with pytest.raises(cl.ClearanceError, match="ends at a pose, and the joints at its beg"):
-        made(line, HOME, **asked)
+    assert "ends at a pose, and the joints at its beg" in refusal(made, line, HOME, **asked)
 
 
 def test_another_tool_is_a_move_of_its_own():
@@ -209,8 +208,7 @@ def test_a_turn_seen_from_the_path_is_about_one_axis_or_refused(case):
     if told in ("to", "tangent"):
         assert turn_on_path(start, through, end) == told
     else:
-        with pytest.raises(cl.ClearanceError, match=told):
-            turn_on_path(start, through, end)
+        assert re.search(told, refusal(turn_on_path, start, through, end))
 
 
 def test_a_joint_move_has_the_time_or_the_speed_of_axes_that_it_states():
@@ -258,8 +256,7 @@ def test_an_external_axis_that_moves_needs_a_joint():
     moved = replace(one, to=replace(target, external={"E1": 20.0}), line=Line(8))
     taught = replace(one, to=replace(target, external={"E1": 0.001}))
     assert made(HOME, one, taught).program.moves[1].lin.hold == {}
-    with pytest.raises(cl.ClearanceError, match="line 8: external axis E1 moves, and no joint"):
-        made(HOME, one, moved)
+    assert "line 8: external axis E1 moves, and no joint" in refusal(made, HOME, one, moved)
 
 
 def test_a_corner_where_the_tool_begins_is_none():
@@ -286,10 +283,9 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
     asked = validated(ProgramFile, {"file": "a.ls", "link": "tool_tip"}, "program")
     line = ControllerMove(Line(7), "lin", PoseTarget(at(0.5, 0.0, 0.3)), np.eye(4))
     assert converted(ControllerProgram((HOME,), base="at axis 2"), asked, robot, {}).program.moves
-    with pytest.raises(
-        cl.ClearanceError, match="base: at axis 2; where it is, seen from the robot's root, as"
-    ):
-        converted(ControllerProgram((HOME, line), base="at axis 2"), asked, robot, {})
+    assert "base: at axis 2; where it is, seen from the robot's root, as" in refusal(
+        converted, ControllerProgram((HOME, line), base="at axis 2"), asked, robot, {}
+    )
 
 
 @pytest.mark.parametrize(
@@ -318,10 +314,9 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
     ],
 )
 def test_what_has_no_meaning_for_the_robot_is_refused_with_its_line(moves, asked, told):
-    with pytest.raises(cl.ClearanceError) as caught:
-        made(*moves, **asked)
-    assert told in str(caught.value)
-    assert "link" not in told or "line 3" not in str(caught.value)
+    said = refusal(made, *moves, **asked)
+    assert told in said
+    assert "link" not in told or "line 3" not in said
 
 
 def test_flags_that_nothing_checks_stand_in_the_headline():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import clearance as cl
 from clearance.formats.program.controller_program import ControllerWait
 from clearance.formats.program.tokens import Line
 from tests.formats.program.reading import read
+from tests.formats.refusal import refusal
 
 HEAD = "/PROG  CELL\n/ATTR\nOWNER\t\t= MNEDITOR;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n/MN\n"
 FRAMES = "UFRAME_NUM=1 ;\nUTOOL_NUM=1 ;\n"
@@ -205,22 +207,18 @@ def test_a_program_that_a_motion_calls_on_its_way_runs_beside_the_others():
     left_out = " ".join(found.left_out)
     assert "WAIT sec (SUB.LS line 6)" in left_out and "OVERRIDE (SUB.LS line 7)" in left_out
     refused = "IF decides on L at line 11.*program 'SUB' may change it at any time: 'R.1.' at SUB"
-    with pytest.raises(cl.ClearanceError, match=refused):
-        on_the_way("R[1]=5 ;", DECIDES)
-    with pytest.raises(cl.ClearanceError, match=r"line 9: program 'SUB' moves the robot, or may"):
-        on_the_way(L2 + " ;", "")
+    assert re.search(refused, refusal(on_the_way, "R[1]=5 ;", DECIDES))
+    assert "line 9: program 'SUB' moves the robot, or may" in refusal(on_the_way, L2 + " ;", "")
     for changed in ("P[2]=P[3] ;", "UTOOL[1]=PR[1] ;"):
-        with pytest.raises(
-            cl.ClearanceError, match=r"(given a value before|is set in the program)"
-        ):
-            on_the_way(changed, L2 + " ;")
+        assert re.search(
+            r"(given a value before|is set in the program)", refusal(on_the_way, changed, L2 + " ;")
+        )
 
 
 @pytest.mark.parametrize("word", ["TA", "TB", "DB"])
 def test_a_program_that_a_motion_calls_on_its_way_has_to_be_there(word):
     text = ON_THE_WAY.replace("TB .10sec", f"{word} 10mm" if word == "DB" else f"{word} .10sec")
-    with pytest.raises(cl.ClearanceError, match=r"line 9: program 'SUB' .*it is in no file"):
-        program(text)
+    assert re.search(r"line 9: program 'SUB' .*it is in no file", refusal(program, text))
     assert program(text, skip=["SUB"]).left_out == ("SUB (line 9)",)
 
 
@@ -228,8 +226,7 @@ def test_what_a_motion_sets_on_its_way_is_not_known_behind_it():
     output = ON_THE_WAY.replace("CALL SUB", "DO[1]=ON")
     assert len(program(output + DECIDES).moves) == 2
     refused = r"'R\[1\]' is given a value on the way of a motion at line 9"
-    with pytest.raises(cl.ClearanceError, match=refused):
-        program(ON_THE_WAY.replace("CALL SUB", "R[1]=5") + DECIDES)
+    assert re.search(refused, refusal(program, ON_THE_WAY.replace("CALL SUB", "R[1]=5") + DECIDES))
 
 
 COUNT = "FOR R[1]=1 TO 2 ;\nENDFOR ;\n"
@@ -300,23 +297,21 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
 )
 def test_what_a_listing_does_not_decide_is_refused_with_its_line(body, told):
     untaught = point(6, 0.0, 0.0).replace("    0.000  mm,\tY", " ********  mm,\tY")
-    with pytest.raises(cl.ClearanceError) as caught:
-        program(body, POINTS + point(5, 0.0, 0.0, 7) + untaught, skip=SKIP)
-    assert str(caught.value).startswith("CELL.LS: ") and told in str(caught.value)
+    said = refusal(program, body, POINTS + point(5, 0.0, 0.0, 7) + untaught, skip=SKIP)
+    assert said.startswith("CELL.LS: ") and told in said
 
 
 @pytest.mark.parametrize("word", ["P", "R", "UFRAME_NUM", "UTOOL", "$MNUFRAMENUM"])
 def test_what_changes_points_and_frames_is_never_left_out(word):
-    with pytest.raises(
-        cl.ClearanceError, match=f"skip: .*{word[1:]} moves the robot, or changes how"
-    ):
-        program(FRAMES + "P[R[1]]=P[5] ;\nL P[2] 100mm/sec FINE ;", skip=[word])
+    assert re.search(
+        f"skip: .*{word[1:]} moves the robot, or changes how",
+        refusal(program, FRAMES + "P[R[1]]=P[5] ;\nL P[2] 100mm/sec FINE ;", skip=[word]),
+    )
 
 
 def test_a_listing_that_is_cut_off_within_its_points_is_refused():
     text = listing(L2 + " ;")
-    with pytest.raises(cl.ClearanceError, match="no /END is in it"):
-        read("CELL.LS", text[: text.index("P[4:") + 40], **CASE)
+    assert "no /END is in it" in refusal(read, "CELL.LS", text[: text.index("P[4:") + 40], **CASE)
     with pytest.raises(cl.ClearanceError, match=r"P\[2\] has no X"):
         read("CELL.LS", text.replace("  100.000  mm,", "  1e5  mm,"), **CASE)
     with pytest.raises(cl.ClearanceError, match="under /POS is no position"):
@@ -391,9 +386,7 @@ def test_a_jump_goes_to_a_label_of_its_own_program():
     ],
 )  # fmt: skip
 def test_a_jump_that_the_file_does_not_decide_is_refused(body, told):
-    with pytest.raises(cl.ClearanceError) as caught:
-        names(body, skip=["JMP", "IF", "LBL"])
-    assert told in str(caught.value)
+    assert told in refusal(names, body, skip=["JMP", "IF", "LBL"])
 
 
 def test_a_program_that_jumps_back_to_its_top_is_measured_until_a_pass_repeats_one():
@@ -425,10 +418,10 @@ def test_what_a_called_program_may_change_is_not_known_in_it_nor_behind_it(chang
     sub = f"IF (DI[1]=ON) THEN ;\n{changed} ;\nENDIF ;\n"
     for body, after in ((sub, go(2)), (sub + go(2), "")):
         beside = {"SUB.LS": listing(body).replace("CELL", "SUB").encode()}
-        with pytest.raises(
-            cl.ClearanceError, match=r"(given a value before|is set in the program)"
-        ):
-            names(f"CALL SUB ;\n{after}{go(4)}", beside)
+        assert re.search(
+            r"(given a value before|is set in the program)",
+            refusal(names, f"CALL SUB ;\n{after}{go(4)}", beside),
+        )
 
 
 def at_point(*block: str) -> str:
@@ -448,8 +441,7 @@ def test_lines_that_run_at_the_end_of_a_motion_move_nothing():
         told = (
             r"program 'P-SPS of line 8' moves the robot, or may: (L|END|'END'|JMP|GRIP) at line 10"
         )
-        with pytest.raises(cl.ClearanceError, match=told):
-            names(f"{at_point('DO[1]=ON', line)}LBL[1] ;\n")
+        assert re.search(told, refusal(names, f"{at_point('DO[1]=ON', line)}LBL[1] ;\n"))
     assert names(at_point("CALL GRIP") + go(3), skip=["GRIP"]) == ["P[2]", "P[3]"]
     with pytest.raises(cl.ClearanceError, match="line 8: P-SPS has no end; a line of dashes"):
         names(at_point("DO[1]=ON").replace("------ ;", ""))
@@ -462,5 +454,4 @@ def test_what_lines_at_the_end_of_a_motion_change_is_not_known_behind_it(changed
     if changed == "UFRAME_NUM=2":  # the point says its own, and no controller accepts another
         assert names(body) == ["P[2]", "P[3]"]
     else:
-        with pytest.raises(cl.ClearanceError, match=told):
-            names(body)
+        assert re.search(told, refusal(names, body))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -18,6 +19,7 @@ from tests.formats.program.test_fanuc import (
     point,
     program,
 )
+from tests.formats.refusal import refusal
 
 
 def places(body: str, points: str = POINTS, **asked) -> list[list[float]]:
@@ -96,18 +98,15 @@ def test_a_position_register_of_the_case_is_seen_from_the_frame_in_force():
 )  # fmt: skip
 def test_a_position_register_that_the_file_does_not_decide_is_refused(body, told):
     untaught = SHIFT.replace("P[5:", "P[6:").replace("   10.000  mm", " ********  mm")
-    with pytest.raises(cl.ClearanceError) as caught:
-        places(body, POINTS + SHIFT + untaught)
-    assert told in str(caught.value)
+    assert told in refusal(places, body, POINTS + SHIFT + untaught)
 
 
 def test_a_position_register_needs_the_frame_and_the_tool_in_force():
     """A point has numbers of both, a register has none."""
-    with pytest.raises(
-        cl.ClearanceError,
-        match=r"PR\[5\]: no UTOOL_NUM is set before; write UTOOL_NUM=1 .*variables: {\"UTOOL",
-    ):
-        program("UFRAME_NUM=1 ;\nPR[5]=P[2] ;\n" + L5)
+    assert re.search(
+        r"PR\[5\]: no UTOOL_NUM is set before; write UTOOL_NUM=1 .*variables: {\"UTOOL",
+        refusal(program, "UFRAME_NUM=1 ;\nPR[5]=P[2] ;\n" + L5),
+    )
 
 
 WAY = f"IF R[1]=2,JMP LBL[1] ;\n{go(2)}LBL[1] ;\n{go(3)}"
@@ -151,9 +150,7 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
     ],
 )  # fmt: skip
 def test_a_register_that_decides_is_asked_for(body, asked, told):
-    with pytest.raises(cl.ClearanceError) as caught:
-        names(body, **asked)
-    assert told in str(caught.value)
+    assert told in refusal(names, body, **asked)
 
 
 F, OFF = WAY.replace("R[1]=2", "F[1]=ON"), {"variables": {"F[1]": False}}
@@ -177,9 +174,7 @@ F, OFF = WAY.replace("R[1]=2", "F[1]=ON"), {"variables": {"F[1]": False}}
 )  # fmt: skip
 def test_an_output_or_a_flag_of_the_case_holds_until_the_lines_change_it(body, ends):
     if "known" in ends or "F[1]" in ends or "time" in ends:
-        with pytest.raises(cl.ClearanceError) as caught:
-            names(body + F, **OFF)
-        assert ends in str(caught.value)
+        assert ends in refusal(names, body + F, **OFF)
         return
     found = program(FRAMES + body + F, **OFF)
     assert [one.to.name for one in found.moves] == [f"P[{one}]" for one in ends]
@@ -212,8 +207,7 @@ def test_a_program_that_runs_beside_may_change_registers_though_its_start_is_lef
     moving = listing("J P[1] 9% FINE ;").replace("CELL", "GRIP").encode()
     with pytest.raises(cl.ClearanceError, match="RUN 'GRIP' moves the robot, or may: J at"):
         program(FRAMES + body, beside={"GRIP.LS": moving}, skip=["RUN"])
-    with pytest.raises(cl.ClearanceError, match=r"line 9: 'RUN' is .*skip: \[RUN\]"):
-        program(FRAMES + body)
+    assert re.search(r"line 9: 'RUN' is .*skip: \[RUN\]", refusal(program, FRAMES + body))
 
 
 def test_a_wait_for_another_value_than_the_case_says_gives_the_input_that_value():
@@ -222,8 +216,7 @@ def test_a_wait_for_another_value_than_the_case_says_gives_the_input_that_value(
     assert names(body, **asked) == ["P[2]", "P[3]"]
     body = body.replace("WAIT DI[5]=OFF", "WAIT DI[5]=OFF AND DI[6]=ON")
     asked["variables"]["DI[6]"] = True
-    with pytest.raises(cl.ClearanceError, match="given a value by what WAIT waits for at line 8"):
-        names(body, **asked)
+    assert "given a value by what WAIT waits for at line 8" in refusal(names, body, **asked)
     select = f"SELECT GI[1]=1,JMP LBL[1] ;\n=2,JMP LBL[2] ;\nLBL[1] ;\n{go(2)}LBL[2] ;\n{go(3)}"
     with pytest.raises(cl.ClearanceError, match="given a value by what WAIT waits for at line 8"):
         names(f"WAIT GI[1]<>0 ;\n{select}", variables={"GI[1]": 0}, skip=["WAIT"])
@@ -239,8 +232,7 @@ def test_a_joint_move_to_axes_needs_the_tool_where_it_ends_in_a_corner():
     body, two = "J P[1] 9% {} ;\nL P[2] 9mm/sec FINE ;", {"UTOOL[2]": {"xyz": [0.0, 0.0, 0.3]}}
     lacks = r'P\[1\]: UTOOL\[2\] is not in a listing; program: {tools: {"UTOOL\[2\]"'
     corner = {"zones": {"CNT50": 0.02}}
-    with pytest.raises(cl.ClearanceError, match=lacks):
-        program(f"UFRAME_NUM=1 ;\n{body.format('CNT50')}", **corner)
+    assert re.search(lacks, refusal(program, f"UFRAME_NUM=1 ;\n{body.format('CNT50')}", **corner))
     assert len(program(f"UFRAME_NUM=1 ;\n{body.format('FINE')}").moves) == 2
     (move, _) = program(FRAMES + body.format("CNT50"), **corner).moves
     assert move.tool[2, 3] == 0.1

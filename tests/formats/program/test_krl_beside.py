@@ -10,6 +10,7 @@ import pytest
 import clearance as cl
 from tests.formats.program.reading import read
 from tests.formats.program.test_krl import FRAMES, HEAD, POINTS, program
+from tests.formats.refusal import refusal
 
 WHEN = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO"
 
@@ -66,8 +67,7 @@ def test_jumps_go_to_the_labels_of_their_subprogram(body, found):
     ],
 )  # fmt: skip
 def test_jumps_that_the_file_does_not_decide_are_refused(body, told):
-    with pytest.raises(cl.ClearanceError, match=told):
-        angles(body, skip=["GOTO"])
+    assert re.search(told, refusal(angles, body, skip=["GOTO"]))
 
 
 def test_functions_of_angles_are_in_degrees():
@@ -77,8 +77,7 @@ def test_functions_of_angles_are_in_degrees():
 def test_a_signal_is_not_known_by_what_it_was_given():
     """The same output may have been set by its number, or by another name."""
     body = "SIGNAL lamp $OUT[3]\nlamp=TRUE\n$OUT[3]=FALSE\nIF lamp THEN\ngo(1)\nENDIF"
-    with pytest.raises(cl.ClearanceError, match=r"not known: only the controller knows \$OUT\[3\]"):
-        angles(body)
+    assert "not known: only the controller knows $OUT[3]" in refusal(angles, body)
     data = POINTS.replace("ENDDAT", "SIGNAL lamp $OUT[3]\nENDDAT")
     with pytest.raises(cl.ClearanceError, match=r"not known: only the controller knows \$OUT\[3\]"):
         angles(body.partition("\n")[2], points=data)
@@ -88,10 +87,7 @@ def test_an_output_that_a_procedure_gives_back_is_one_that_other_lines_may_set()
     data = POINTS.replace("ENDDAT", "SIGNAL lamp $OUT[3]\nENDDAT")
     body = "lampset(lamp)\n$OUT[3]=FALSE\nIF lamp THEN\ngo(1)\nENDIF\ngo(2)\n"
     body += "END\nDEF lampset(o:OUT)\nDECL BOOL o\no=TRUE"
-    with pytest.raises(
-        cl.ClearanceError, match=r"'\$OUT\[3\]' is given a value by LAMPSET at line 7"
-    ):
-        angles(body, points=data)
+    assert "'$OUT[3]' is given a value by LAMPSET at line 7" in refusal(angles, body, points=data)
     assert angles(body, points=data, variables={"$OUT[3]": False}) == [2]
     taken = body.replace("$OUT[3]=FALSE\n", "")
     assert angles(taken, points=data, variables={"$OUT[3]": False}) == [1, 2]
@@ -99,8 +95,7 @@ def test_an_output_that_a_procedure_gives_back_is_one_that_other_lines_may_set()
 
 def test_a_timer_runs_on_whatever_it_was_set_to():
     body = "SIGNAL watch $TIMER[1]\nwatch=0\nIF watch>100 THEN\ngo(1)\nENDIF\ngo(2)"
-    with pytest.raises(cl.ClearanceError, match=r"not known: only the controller knows \$TIMER"):
-        angles(body)
+    assert "not known: only the controller knows $TIMER" in refusal(angles, body)
 
 
 LAMP = "SIGNAL lamp $OUT[3]\n%s\nIF lamp THEN\ngo(1)\nENDIF\ngo(2)"
@@ -129,8 +124,7 @@ SIGNAL_TOLD = "of the case decides, which is taken to hold that until these file
 def test_an_output_of_the_case_holds_until_the_lines_change_it(body, ends):
     asked = {"variables": {"$OUT[3]": False}}
     if isinstance(ends, str):
-        with pytest.raises(cl.ClearanceError, match=ends):
-            angles(LAMP % body, **asked)
+        assert re.search(ends, refusal(angles, LAMP % body, **asked))
     else:
         assert angles(LAMP % body, **asked) == ends
 
@@ -143,8 +137,7 @@ def test_a_loop_that_waits_for_another_value_than_the_case_has_is_refused(more):
     )
     body += "\nPTP XHOME"
     told = r"(LOOP|GOTO) repeats itself without a move, and what lies behind it is not measured: \$IN\[1\]"
-    with pytest.raises(cl.ClearanceError, match=rf"line \d+: {told}"):
-        program(body, variables={"$IN[1]": False})
+    assert re.search(rf"line \d+: {told}", refusal(program, body, variables={"$IN[1]": False}))
     assert len(program(body, variables={"$IN[1]": True}).moves) == 2
     moving = "LOOP\ngo(2)\ngo(1)\nIF $IN[1] THEN\nEXIT\nENDIF\nENDLOOP"
     assert angles(moving, variables={"$IN[1]": False}) == [2, 1, 2, 1]
@@ -168,8 +161,7 @@ def test_a_case_gives_inputs_and_variables_that_no_file_has():
     for name in given:
         with pytest.raises(cl.ClearanceError, match=f"(?i)variables: {{{{0,1}}.{re.escape(name)}"):
             angles(body, variables={key: one for key, one in given.items() if key != name}, **asked)
-    with pytest.raises(cl.ClearanceError, match=r"1 is given; true or false"):
-        angles(body, variables={"$IN[2]": 1})
+    assert "1 is given; true or false" in refusal(angles, body, variables={"$IN[2]": 1})
 
 
 def test_what_the_submit_interpreter_sets_may_change_at_any_time():
@@ -179,31 +171,27 @@ def test_what_the_submit_interpreter_sets_may_change_at_any_time():
         "sps.sub": b"DEF sps()\nLOOP\n$OUT[1]=TRUE\nENDLOOP\nEND\n",
     }
     told = r"sps.sub 'SPS' may change it at any time: '\$OUT\[1\]' at sps.sub line 3"
-    with pytest.raises(cl.ClearanceError, match=told):
-        read("weld.src", body, beside, variables={"$OUT[1]": False})
+    assert re.search(told, refusal(read, "weld.src", body, beside, variables={"$OUT[1]": False}))
 
 
 @pytest.mark.parametrize("word", ["ANIN", "DIGIN"])
 def test_what_an_input_gives_a_value_again_and_again_may_change_at_any_time(word):
     body = f"REAL n\nn=0\n{word} ON n=1.0*$ANIN[1]+0\nIF n>3 THEN\ngo(2)\nENDIF\ngo(3)"
-    with pytest.raises(cl.ClearanceError, match=f"{word} 'N at line 9' may change it at any time"):
-        angles(body)
+    assert re.search(f"{word} 'N at line 9' may change it at any time", refusal(angles, body))
     assert angles(f"n=3\n{word} OFF $ANIN[1]\ngo(n)") == [3]
 
 
 def test_what_a_trigger_gives_a_value_may_change_at_any_time():
     for body in (f"go(1)\nn=1\n\n{WHEN} n=90", f"IF $IN[1] THEN\n{WHEN} n=90 PRIO=-1\nENDIF\nn=1"):
         told = r"line 11: .* TRIGGER 'N at line \d+' may change it at any time"
-        with pytest.raises(cl.ClearanceError, match=told):
-            angles(f"{body}\ngo(n)")
+        assert re.search(told, refusal(angles, f"{body}\ngo(n)"))
     sub = "END\nDEF c(x:%s, y)\nINT x\nx=90\n"
     for passed, told in (("OUT", "may change it at any time"), ("IN", "")):
         text = f"INTERRUPT DECL 4 WHEN $IN[2] DO c(n,2)\nn=1\ngo(n)\n{sub % passed}"
         if not told:
             assert angles(text) == [1]
             continue
-        with pytest.raises(cl.ClearanceError, match=told):
-            angles(text)
+        assert re.search(told, refusal(angles, text))
     assert angles(f"n=1\n{WHEN} $OUT[3]=TRUE\n{WHEN} m=2\ngo(n)") == [1]
 
 
@@ -219,17 +207,15 @@ def test_an_interrupt_that_brakes_stops_the_robot_on_its_way_and_is_told():
         "HALT (line 12) in INTERRUPT PARO",
     )
     unknown = f"{body}BRAKE\nlights()"
-    with pytest.raises(
-        cl.ClearanceError, match=r"INTERRUPT 'PARO' .*LIGHTS at line 12; .*skip: \[LIGHTS\]"
-    ):
-        program(unknown)
+    assert re.search(
+        r"INTERRUPT 'PARO' .*LIGHTS at line 12; .*skip: \[LIGHTS\]", refusal(program, unknown)
+    )
     for name in ("PARO", "lights"):
         found = program(unknown, skip=[name])
         assert len(found.moves) == 1 and found.doubts == (stop,)
     assert "PARO (line 7)" in program(unknown, skip=["PARO"]).left_out
     for last, told in (("RESUME", "or may: RESUME at line 12"), ("LIN XP1", "skip: PARO moves")):
-        with pytest.raises(cl.ClearanceError, match=told):
-            program(f"{body}BRAKE\n{last}", skip=["PARO"])
+        assert re.search(told, refusal(program, f"{body}BRAKE\n{last}", skip=["PARO"]))
 
 
 @pytest.mark.parametrize("line", ["FIND(XP1)", "N=FIND(1,XP1)", "XP1=A(1) WHATEVER"])

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import clearance as cl
 from tests.formats.program.reading import read
+from tests.formats.refusal import refusal
 
 FRAMES = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\n"
 HOME = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 45,A6 0}"
@@ -32,10 +35,9 @@ def test_a_variable_of_a_procedure_is_not_known_in_those_that_it_calls(place):
     sub = f"DEF sub()\nLIN {at('m')}\nm=150\nEND"
     body = f"DECL INT m\n{FRAMES}m=20\nsub()\nLIN {at('m')}\nsub()"
     assert heights(body, sub, **beside) == [300, 20, 150]
-    with pytest.raises(
-        cl.ClearanceError, match=r"line 11: Y of the target is not known: 'M' is in"
-    ):
-        heights(body, sub.replace("m=150\n", ""))
+    assert "line 11: Y of the target is not known: 'M' is in" in refusal(
+        heights, body, sub.replace("m=150\n", "")
+    )
 
 
 B = f"DEF b()\nLIN {at(0)}\nc()\nEND\n"
@@ -47,8 +49,7 @@ def test_a_subprogram_is_known_in_its_own_file_only_unless_it_is_global():
     body = f"{FRAMES}c()\nb()"
     assert heights(body, OWN, b_src=B, c_src=C) == [11, 0, 300]
     assert heights(f"{FRAMES}b()\nc()", f"GLOBAL {OWN}", b_src=B) == [0, 11, 11]
-    with pytest.raises(cl.ClearanceError, match=r"b.src line 3: 'C' .*beside: \[C.src\]"):
-        heights(body, OWN, b_src=B)
+    assert re.search(r"b.src line 3: 'C' .*beside: \[C.src\]", refusal(heights, body, OWN, b_src=B))
     what = "INTERRUPT DECL 9 WHEN $IN[1] DO c()\n"
     with pytest.raises(cl.ClearanceError, match="'C' moves the robot, or may"):
         heights(f"{FRAMES}{what}b()", OWN, b_src=B, c_src=C.replace("LIN", ";LIN"))
@@ -75,10 +76,9 @@ def test_data_are_known_in_their_own_file_only_unless_they_are_global():
     with pytest.raises(cl.ClearanceError, match=r"b.src line 2: .*'PT' is in no file"):
         heights(body, a_dat=a, b_src=b.replace("PT.Y=PT.Y+1", "LIN PT"))
     far = {"a_dat": a.replace("PT", "PICKPOSITION"), "b_src": "DEF b()\nLIN PICKPOSITION\nEND"}
-    with pytest.raises(
-        cl.ClearanceError, match="'PICKPOSITION' is in no file that is given; a target"
-    ):
-        heights(f"{FRAMES}b()", **far)
+    assert "'PICKPOSITION' is in no file that is given; a target" in refusal(
+        heights, f"{FRAMES}b()", **far
+    )
     tool = "DECL FRAME T1={X 0,Y 0,Z %d,A 0,B 0,C 0}"
     more = {"a_dat": data("a", tool % 100), "config_dat": data("$CONFIG", tool % 300)}
     beside = {name.replace("_", "."): text.encode() for name, text in more.items()}
@@ -111,8 +111,7 @@ def test_data_of_a_name_that_two_files_give_to_all_are_not_known():
     points = (data(name, f"DECL GLOBAL E6POS PT={at(y)}") for name, y in (("b", 7), ("c", 300)))
     beside = dict(zip(("b_dat", "c_dat"), points, strict=True))
     told = "line 4: the target is not known: PT is declared at b.dat line 2 and at c.dat line 2"
-    with pytest.raises(cl.ClearanceError, match=told):
-        heights(f"{FRAMES}LIN PT", **beside)
+    assert re.search(told, refusal(heights, f"{FRAMES}LIN PT", **beside))
     assert heights(f"{FRAMES}LIN {at(5)}", **beside) == [5]
     assert heights(f"{FRAMES}LIN PT", a_dat=data("a", f"DECL E6POS PT={at(3)}"), **beside) == [3]
 
@@ -132,10 +131,10 @@ def test_types_hold_in_whatever_order_the_case_has_the_files(order):
 def test_a_variable_that_is_imported_is_not_known():
     of_all, own = data("$CONFIG", "DECL INT m=300"), data("b", "IMPORT INT m IS /R1/c..m", "IMPORT")
     b = f"DEF b()\nLIN {at('m')}\nEND"
-    with pytest.raises(
-        cl.ClearanceError, match=r"b.src line 2: .* is not known: IMPORT is not read"
-    ):
-        heights(f"{FRAMES}b()", b_src=b, b_dat=own, config_dat=of_all)
+    assert re.search(
+        r"b.src line 2: .* is not known: IMPORT is not read",
+        refusal(heights, f"{FRAMES}b()", b_src=b, b_dat=own, config_dat=of_all),
+    )
     assert heights(f"{FRAMES}b()\nLIN {at('m')}", b_src=b, config_dat=of_all) == [300, 300]
 
 
@@ -147,17 +146,15 @@ def test_an_interrupt_in_a_branch_that_only_the_controller_decides_is_followed()
     ):
         routine = "DEF c()\nPTP {A1 9}\nEND\nDEF d()\nINTERRUPT DECL 8 WHEN $IN[3] DO c()\nEND\n"
         branch = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\n{HOME}\nEND\n{routine}"
-        with pytest.raises(cl.ClearanceError, match="line 2: IF decides on INTERRUPT at line 3"):
-            read("a.src", branch)
+        assert "line 2: IF decides on INTERRUPT at line 3" in refusal(read, "a.src", branch)
         skipped = f"DEF a()\nb()\n{HOME}\nEND\nDEF b()\n{declared}\nEND\n{routine}"
-        with pytest.raises(
-            cl.ClearanceError, match=r"line 2: INTERRUPT '[CD]' moves the robot, or may"
-        ):
-            read("a.src", skipped, skip=["b"])
+        assert re.search(
+            r"line 2: INTERRUPT '[CD]' moves the robot, or may",
+            refusal(read, "a.src", skipped, skip=["b"]),
+        )
     text = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\nn=1\n{HOME}\nPTP {{A1 n}}\nEND\n"
     text += "DEF d()\nn=2\nEND\n"
-    with pytest.raises(cl.ClearanceError, match="INTERRUPT 'D' may change it at any time"):
-        read("a.src", text)
+    assert "INTERRUPT 'D' may change it at any time" in refusal(read, "a.src", text)
     assert len(read("a.src", text.replace("\nn=2", "\nm=2")).moves) == 2
     itself = f"DEF a()\n{declared}\n{HOME}\nEND\nDEF d()\n{declared}\nEND\n"
     assert len(read("a.src", itself).moves) == 1
@@ -208,8 +205,7 @@ def test_a_branch_of_unknown_routines_says_what_gets_past_it():
         "frame or variables"
     )
     assert len(read("a.src", text, skip=["b", "C"]).moves) == 1
-    with pytest.raises(
-        cl.ClearanceError,
-        match=r"let the file decide it, or program: {variables: {\"N\": …}}, if it holds .* it$",
-    ):
-        read("a.src", text.replace("c()", HOME))
+    assert re.search(
+        r"let the file decide it, or program: {variables: {\"N\": …}}, if it holds .* it$",
+        refusal(read, "a.src", text.replace("c()", HOME)),
+    )

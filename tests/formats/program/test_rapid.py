@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import clearance as cl
 from clearance.formats.program.controller_program import AxisTarget
 from tests.formats.program.reading import read
+from tests.formats.refusal import refusal
 
 NONE = "[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]"
 P = f"[[0,0,0],[1,0,0,0],[0,0,0,0],{NONE}]"
@@ -255,8 +257,7 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
 )
 def test_a_module_that_is_cut_off_is_refused(end):
     told = r"line 26: the file ends; |line 24: PROC has no ENDPROC; "
-    with pytest.raises(cl.ClearanceError, match=told):
-        read("a.mod", CELL[: CELL.index(end) + len(end)])
+    assert re.search(told, refusal(read, "a.mod", CELL[: CELL.index(end) + len(end)]))
 
 
 GLUE = f"MoveL {P},v100,fine,tool0;"
@@ -305,9 +306,7 @@ def test_what_only_the_controller_decides_is_never_taken_for_known(body):
     line = f"\nMoveL [[x,0,0],[1,0,0,0],[0,0,0,0],{NONE}],v100,fine,tool0;"
     more = "\nENDPROC\nPROC double(INOUT num a)\na:=a*2;\nENDPROC\nFUNC bool found(INOUT num a)\n"
     more += 'RETURN StrToVal("1",a);\nENDFUNC\nTRAP t x:=5; ENDTRAP PROC last()'
-    with pytest.raises(cl.ClearanceError) as caught:
-        moves_of(body + line + more)
-    assert UNDECIDED[body] in str(caught.value)
+    assert UNDECIDED[body] in refusal(moves_of, body + line + more)
 
 
 def test_modules_have_data_and_procedures_of_their_own():
@@ -351,11 +350,9 @@ def test_tools_that_stand_and_work_that_moves_are_refused(data):
 def test_what_moves_nothing_is_left_out_by_name():
     body = f"WaitDI di1,1;\nGRIP_IN;\nWHILE di1=0 DO ENDWHILE\nMoveL {P},v100,fine,tool0;"
     assert len(moves_of(body, skip=["WAITDI", "Grip_In", "while"])) == 1
-    with pytest.raises(cl.ClearanceError, match="skip: MoveL moves the robot"):
-        moves_of(body, skip=["movel"])
+    assert "skip: MoveL moves the robot" in refusal(moves_of, body, skip=["movel"])
     for word in ("GOTO", "EXITCYCLE"):  # it decides which lines run
-        with pytest.raises(cl.ClearanceError, match="decides which lines run; a copy of"):
-            moves_of(f"{word} a;", skip=[word])
+        assert "decides which lines run; a copy of" in refusal(moves_of, f"{word} a;", skip=[word])
 
 
 def test_a_trap_that_stops_the_robot_and_lets_it_go_on_moves_nothing():
@@ -370,18 +367,16 @@ def test_a_trap_that_stops_the_robot_and_lets_it_go_on_moves_nothing():
     )
     assert found.left_out == ("StopMove (line 8) in trap t",)
     for more in ("ClearPath;\n", f"MoveL {P},v5,fine,tool0;\n"):
-        with pytest.raises(
-            cl.ClearanceError, match=r"trap 't' moves the robot, or may: \w+ at line 9"
-        ):
-            read("a.mod", text % more)
+        assert re.search(
+            r"trap 't' moves the robot, or may: \w+ at line 9", refusal(read, "a.mod", text % more)
+        )
 
 
 def test_tools_and_work_objects_that_no_file_has_are_asked_of_the_case():
     move = f"MoveL {P},v100,fine,tGun\\WObj:=wJig;"
-    with pytest.raises(cl.ClearanceError) as caught:
-        moves_of(move)
-    assert "line 3: the tool is not known: 'tGun' is in no file" in str(caught.value)
-    assert str(caught.value).endswith(
+    said = refusal(moves_of, move)
+    assert "line 3: the tool is not known: 'tGun' is in no file" in said
+    assert said.endswith(
         "program: {tools: {tGun: {xyz: […], rpy: […]}}, frames: {wJig: {xyz: […], rpy: […]}}} in m and rad"
     )
     (found,) = moves_of(move, tools={"tgun": {"xyz": [0, 0, 0.2]}}, frames={"wJig": {}})
@@ -402,8 +397,7 @@ def test_a_procedure_is_left_out_only_if_it_moves_nothing():
     data = f"VAR robtarget p:={P};"
     body = "sub;\nMoveL p,v100,fine,tool0;\nENDPROC\nPROC sub()\nsub2;\nENDPROC\nPROC sub2()\n"
     told = "skip: sub moves the robot, .*: MoveL at line 10; skip only what moves nothing"
-    with pytest.raises(cl.ClearanceError, match=told):
-        moves_of(f"{body}MoveL p,v100,fine,tool0;", data, skip=["sub"])
+    assert re.search(told, refusal(moves_of, f"{body}MoveL p,v100,fine,tool0;", data, skip=["sub"]))
     with pytest.raises(cl.ClearanceError, match=r"line 4: the target is not known: .* at line 10"):
         moves_of(f"{body}p:=here;", data, skip=["sub"])
     assert len(moves_of(f"{body}SetDO do1,1;\nWorldAccLim\\On:=3;", data, skip=["sub"])) == 1
@@ -412,10 +406,9 @@ def test_a_procedure_is_left_out_only_if_it_moves_nothing():
 @pytest.mark.parametrize("call", ["find p;", "n:=find(p);", "find 1\\at:=p;", "find p.trans;"])
 def test_what_a_procedure_in_no_file_may_have_changed_is_unknown(call):
     data, body = "%s robtarget p:=%s; VAR num n;", f"{call}\nMoveL p,v100,fine,tool0;"
-    with pytest.raises(
-        cl.ClearanceError, match="line 4: the target is not known: 'p' is given a value by find"
-    ):
-        moves_of(body, data % ("PERS", P), skip=["find"])
+    assert "line 4: the target is not known: 'p' is given a value by find" in refusal(
+        moves_of, body, data % ("PERS", P), skip=["find"]
+    )
     assert len(moves_of(body, data % ("CONST", P), skip=["find"])) == 1
 
 
@@ -433,5 +426,4 @@ def test_the_procedure_that_runs_is_chosen():
     assert len(read("a.mod", text, entry="A").moves) == 1
     several = "several procedures are there: a, b"
     for asked, told in (({}, several), ({"entry": "c"}, "no procedure 'c'")):
-        with pytest.raises(cl.ClearanceError, match=told):
-            read("a.mod", text, **asked)
+        assert re.search(told, refusal(read, "a.mod", text, **asked))

@@ -11,6 +11,7 @@ from clearance.world.notice import Severity
 from clearance.world.placed_robot import MotionLimit, PathTolerance
 from clearance.world.plausibility import notices_of
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
+from tests.formats.refusal import refusal
 
 LIMITS = """# as MoveIt's assistant writes it
 default_velocity_scaling_factor: 0.1
@@ -272,9 +273,8 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
 )  # fmt: skip
 def test_bad_limits_are_one_line(tmp_path, old, new, fault, says):
     assert old in LIMITS
-    with pytest.raises(fault) as caught:
-        load(tmp_path, LIMITS.replace(old, new))
-    assert says in str(caught.value) and "robot.joint_limits: limits.yaml: " in str(caught.value)
+    said = refusal(load, tmp_path, LIMITS.replace(old, new), of=fault)
+    assert says in said and "robot.joint_limits: limits.yaml: " in said
 
 
 @pytest.mark.parametrize(
@@ -294,11 +294,8 @@ def test_bad_controllers_are_one_line(tmp_path, old, new, fault, says):
             "joints that the robot cannot move are left out: elbow" in note for note in notes
         )
         return
-    with pytest.raises(fault) as caught:
-        load(tmp_path, None, text)
-    assert says in str(caught.value) and "robot.controllers: controllers.yaml: " in str(
-        caught.value
-    )
+    said = refusal(load, tmp_path, None, text, of=fault)
+    assert says in said and "robot.controllers: controllers.yaml: " in said
 
 
 def test_files_of_another_robot_are_refused(tmp_path):

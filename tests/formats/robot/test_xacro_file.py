@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ from clearance.formats.robot import request as robot_request
 from clearance.formats.robot.request import RobotRequest, load_robot
 from clearance.formats.robot.urdf import xacro_file
 from clearance.formats.robot.urdf.xacro_file import expanded
+from tests.formats.refusal import refusal
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
 
@@ -118,8 +120,7 @@ def test_it_is_never_evaluated_unasked(tmp_path):
     with pytest.raises(BadSyntax, match=r"xacro evaluates Python in it: `xacro: true` beside urdf"):
         load_case(path)
     (tmp_path / "plain.xacro").write_text("<robot name='a'><link name='b'/></robot>")
-    with pytest.raises(BadSyntax, match="this is a xacro file"):
-        load_robot(tmp_path / "plain.xacro")
+    assert "this is a xacro file" in refusal(load_robot, tmp_path / "plain.xacro", of=BadSyntax)
     (tmp_path / "arm.urdf").write_text(body("<xacro:property name='a' value='1'/><link name='b'/>"))
     with pytest.raises(BadSyntax, match="this is a xacro file, not a URDF file; xacro evaluates"):
         load_robot(tmp_path / "arm.urdf")
@@ -141,8 +142,7 @@ def test_arguments(tmp_path):
     with pytest.raises(BadInput, match=r"robot.xacro_args: arguments of xacro, which is not used"):
         load_case(path)
     path.write_text(CASE.format("xacro: true, xacro_args: {size: [1]}"))
-    with pytest.raises(BadInput, match=r"robot\.xacro_args\.size"):
-        load_case(path)
+    assert "robot.xacro_args.size" in refusal(load_case, path, of=BadInput)
     assert robot_request.checked_args({"a": True, "b": 0.1, "c": "x y"}) == (
         ("a", "true"), ("b", "0.1"), ("c", "x y"),
     )  # fmt: skip
@@ -181,8 +181,7 @@ def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
     assert "arm.srdf.xacro" in [source.path for source in case.sources]
     path.write_text(path.read_text().replace("arm/urdf/arm.urdf.xacro, xacro: true", "plain.urdf"))
     (tmp_path / "plain.urdf").write_bytes(made(tmp_path / "arm/urdf/arm.urdf.xacro").urdf)
-    with pytest.raises(BadSyntax, match="not an SRDF file; `xacro: true` beside urdf"):
-        load_case(path)
+    assert "not an SRDF file; `xacro: true` beside urdf" in refusal(load_case, path, of=BadSyntax)
 
 
 @pytest.mark.parametrize(
@@ -212,23 +211,20 @@ def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
     ],
 )
 def test_what_stops_it_is_told_in_one_line(tmp_path, inner, fault, says):
-    with pytest.raises(fault) as caught:
-        made(write_package(tmp_path, body(inner)))
-    assert says in str(caught.value)
+    assert says in refusal(made, write_package(tmp_path, body(inner)), of=fault)
 
 
 def test_the_place_is_the_included_file(tmp_path):
     path = write_package(tmp_path, parts=PARTS.replace("</robot>", "\n\n"))
-    with pytest.raises(
-        BadSyntax, match=r"^arm.urdf.xacro: parts.xacro: line 7: xacro: no element found$"
-    ):
-        made(path)
+    assert re.search(
+        r"^arm.urdf.xacro: parts.xacro: line 7: xacro: no element found$",
+        refusal(made, path, of=BadSyntax),
+    )
 
 
 def test_an_entity_is_refused(tmp_path):
     document = '<!DOCTYPE robot [<!ENTITY e "x">]>' + body('<link name="&e;"/>')
-    with pytest.raises(BadSyntax, match="an entity is declared"):
-        made(write_package(tmp_path, document))
+    assert "an entity is declared" in refusal(made, write_package(tmp_path, document), of=BadSyntax)
 
 
 @pytest.mark.slow  # the least limit that there is, one second
@@ -237,8 +233,7 @@ def test_work_without_end_is_ended(tmp_path, monkeypatch):
     path = write_package(
         tmp_path, body('<link name="${len([i for i in range(10**12) if 0 > i])}"/>')
     )
-    with pytest.raises(BadSyntax, match="xacro came to no end"):
-        made(path)
+    assert "xacro came to no end" in refusal(made, path, of=BadSyntax)
 
 
 def test_it_has_so_much_memory_and_no_more(tmp_path):

@@ -28,6 +28,7 @@ from tests.formats.making_sdf import (
     sdf,
     world,
 )
+from tests.formats.refusal import refusal
 
 SHAPES = [
     (BOX, cl.box((0.2, 0.4, 0.6))),
@@ -278,9 +279,8 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
     ],
 )  # fmt: skip
 def test_a_fault_is_one_line_with_its_place(tmp_path, document, says):
-    with pytest.raises(BadInput) as caught:
-        content_of(tmp_path, document)
-    told = str(caught.value)
+    said = refusal(content_of, tmp_path, document, of=BadInput)
+    told = said
     assert told.startswith("cell.sdf: ") and says in told
 
 
@@ -350,19 +350,20 @@ def test_a_model_that_is_missing_is_left_out_or_taken_from_elsewhere_where_the_c
     ],
 )
 def test_an_include_that_leads_nowhere_is_refused_with_what_to_say(tmp_path, said, says):
-    with pytest.raises(BadInput) as caught:
-        with_includes(tmp_path, said)
-    assert says in str(caught.value)
+    assert says in refusal(with_includes, tmp_path, said, of=BadInput)
 
 
 def test_includes_of_what_is_no_sdf_file_are_refused(tmp_path):
     with pytest.raises(BadInput, match="includes: the scene stands in the case itself"):
         load_small(tmp_path, CASE + "includes: {'model://crate': skip}\n")
     case = CASE.partition("scene:")[0] + "scene: s.yaml\ntrajectory: path.csv\n"
-    with pytest.raises(BadInput, match=r"includes are given, and s\.yaml is no SDF file"):
-        load_small(
-            tmp_path, case + "includes: {'model://crate': skip}\n", s__yaml="obstacles: []\n"
-        )
+    assert "includes are given, and s.yaml is no SDF file" in refusal(
+        load_small,
+        tmp_path,
+        case + "includes: {'model://crate': skip}\n",
+        s__yaml="obstacles: []\n",
+        of=BadInput,
+    )
 
 
 def test_new_and_convert_leave_models_out_or_take_others_too(tmp_path, monkeypatch, capsys):
