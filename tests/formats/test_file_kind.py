@@ -58,11 +58,8 @@ def test_a_file_says_what_it_holds(tmp_path, kind, name, text):
     ("name", "text", "fault", "says"),
     [
         ("a.yaml", "", BadShape, "a.yaml: the file is empty; a trajectory, a scene or poses"),
-        ("a.csv", "\ufeff \n", BadShape, "a.csv: the file is empty"),
         ("a.yaml", "- 1\n- 2\n", BadInput, "the content of this file is not recognised; --kind says it"),
-        ("a.yaml", "# obstacles: none\na: 'b, world: c'\n", BadInput, "this file is not recognised"),
         ("a.yaml", CASE, BadInput, "this is a case file, not a trajectory, a scene or poses"),
-        ("a.bt", "# Octomap OcTree file\n", BadInput, "this is a mesh, not a trajectory"),
     ],
 )  # fmt: skip
 def test_what_does_not_is_asked_for_or_refused(tmp_path, name, text, fault, says):

@@ -50,9 +50,6 @@ def robots(tmp_path, monkeypatch):
     ("name", "path"),
     [
         ("ur5", "ur/ur5_robot.urdf"),
-        ("ur5_robot", "ur/ur5_robot.urdf"),
-        ("ur3", "ur/ur3.urdf"),
-        ("ur3_robot", "ur/ur3_robot.urdf"),
         ("robots/c/model.urdf", "c/model.urdf"),
     ],
 )
@@ -70,8 +67,6 @@ def test_a_robot_is_called_by_its_file_or_path(robots, tmp_path, name, path):
         ("example-robot-data:robots/c/modle.urdf", MissingFile,
          "brings no file 'robots/c/modle.urdf'; did you mean 'robots/c/model.urdf'? "
          "(`clearance robots example-robot-data` lists its robots)"),
-        ("example-robot-data:link.ob", MissingFile, "no file 'link.ob'; there are none"),
-        ("example-robot-data:model", MissingFile, "brings no robot 'model'"),
         ("example-robot-data:twin", MissingFile, "any of several; one of robots/a/twin.urdf, robots/b/"),
         ("robot_descriptions:panda", Unavailable, "needs the package robot_descriptions; pip install"),
     ],

@@ -111,8 +111,6 @@ def package(folder, name="arms"):
 WORKSPACES = [
     ("ws", "ws/src/robots/arm_files"),
     ("ws", "ws/install/arms/share/arms"),
-    ("ws/install", "ws/install/arms/share/arms"),
-    ("ws", "ws/a/b/c/d/arms"),
 ]
 
 

@@ -56,8 +56,6 @@ def test_every_way_gives_the_same_motion(way):
 @pytest.mark.parametrize(
     ("way", "notes"),
     [
-        ("brackets", ["read in degrees: 'shoulder'; in millimetres: 'lift'"]),
-        ("parentheses", ["read in degrees: 'shoulder'; in millimetres: 'lift'; in milliseconds: 'time'"]),
         (
             "decimal commas",
             ["columns are separated by semicolons, decimals written with commas", "read in degrees: 'shoulder'"],

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import clearance as cl
 from clearance.formats.program.controlled_arm import ControlledArm
 from clearance.formats.program.controller_program import (
     AxisTarget,

@@ -146,14 +146,10 @@ def test_limits(tmp_path, kind, inner, limits):
     [
         ("package://pkg/meshes/part.stl", "dirs/pkg/meshes"),
         ("package://pkg/meshes/part.stl", "dirs/meshes"),
-        ("package://pkg/meshes/part.stl", "dirs"),
-        ("package://pkg/meshes/part.stl", "meshes"),
-        ("model://pkg/meshes/part.stl", "dirs/pkg/meshes"),
         ("meshes/part.stl", "meshes"),
-        ("./meshes/../meshes/part.stl", "meshes"),
+        ("model://pkg/meshes/part.stl", "dirs/pkg/meshes"),
         ("meshes\\part.stl", "meshes"),
         ("file://{folder}/meshes/part.stl", "meshes"),
-        ("{folder}/meshes/part.stl", "meshes"),
     ],
 )
 def test_meshes_are_found(tmp_path, given, place):
@@ -220,11 +216,8 @@ def test_elements_in_each_other_without_end_are_refused(tmp_path):
 @pytest.mark.parametrize(
     "empty",
     [
-        "<collision/>",
-        "<collision><geometry/></collision>",
-        collision('<sphere radius="0"/>'),
         collision('<box size="0 0.0 .0"/>'),
-        collision('<cylinder radius="0" length="-0.0"/>'),
+        "<collision/>",
     ],
 )
 def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, empty):
@@ -258,9 +251,7 @@ URDF = """<robot name="r"><link name="a"/><link name="b"><collision><geometry><s
     [
         ('<limit lower="-1" upper="1" velocity="2.5"/>', 2.5),
         ('<limit lower="-1" upper="1" velocity="0"/>', math.inf),
-        ('<limit lower="-1" upper="1" velocity="nan"/>', math.inf),
         ('<limit lower="-1" upper="1" velocity="fast"/>', math.inf),
-        ('<limit lower="-1" upper="1"/>', math.inf),
         ("", math.inf),
     ],
 )
