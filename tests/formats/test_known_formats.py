@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from clearance.errors import BadInput, BadSyntax
+from clearance import check
+from clearance.case.case_file import load_case
+from clearance.errors import BadInput, BadShape, BadSyntax
 from clearance.extras import LIBRARIES
 from clearance.formats import known_formats
 from clearance.formats.known_formats import (
@@ -16,12 +18,13 @@ from clearance.formats.known_formats import (
     function_at,
     names_of,
     refuse_foreign,
-    suffixes_read,
     written_as,
 )
 from clearance.formats.schema.json_schema import case_schema
 from tests.formats.making import ARM, CASE, cube_stl
-from tests.formats.making_case import load_small
+from tests.formats.making_case import changed, load_small
+from tests.formats.making_urdf import BOX, link, robot
+from tests.formats.refusal import refusal
 
 GUIDE = Path(__file__).resolve().parents[2] / "scripts" / "docs" / "case_file.md"
 
@@ -115,10 +118,6 @@ def test_a_file_is_read_as_its_suffix_says_and_then_its_content(kind, name, cont
     assert known is not None and known.name == format_name
 
 
-def test_nothing_reads_a_mesh_of_no_known_suffix():
-    assert format_of(Kind.MESH, "a.gltf") is None and ".gltf" not in suffixes_read(Kind.MESH)
-
-
 def test_what_cannot_be_written_is_refused():
     assert written_as(Kind.SCENE, "a.YML").name == "YAML"
     with pytest.raises(BadInput, match=r"'a.sdf' has no suffix to write for a scene; one of .yaml"):
@@ -153,12 +152,34 @@ def test_the_schema_names_every_format():
         assert names_of(kind) in told
 
 
-def named(suffix: str) -> str:
-    return CASE.partition("scene:")[0] + f"scene: cell.{suffix}\ntrajectory: path.csv\n"
+@pytest.mark.parametrize(
+    ("case", "content", "says"),
+    [
+        (changed("urdf: arm.urdf", "urdf: f.txt"), SDF, "robot.urdf: f.txt: this is an SDF world or model"),
+        (changed("file: path.csv", "file: f.txt"), JOINT_TRAJECTORY,
+         "f.txt: this is a ROS JointTrajectory, not a trajectory; name it in a case file: trajectory:"),
+        (changed("scene:\n  obstacles:\n  - name: post\n    pose: {xyz: [1.2, 0, 0]}\n"
+                 "    box: {size: [0.1, 0.1, 1]}\n", "scene: f.txt\n"), SCENE,
+         "scene: f.txt: this is a MoveIt scene, not a scene; call it .scene"),
+        (SDF, "", "case.yaml: this is an SDF"),
+    ],
+)  # fmt: skip
+def test_what_a_case_names_is_told_what_it_is(tmp_path, case, content, says):
+    assert says in refusal(load_small, tmp_path, case, f__txt=content, of=BadSyntax)
 
 
-def test_a_scene_of_another_suffix_is_yaml(tmp_path):
-    post = "obstacles: [{name: post, box: {size: [1, 1, 1]}, pose: {xyz: [3, 0, 0]}}]"
-    for suffix in ("yml", "txt"):
-        case = load_small(tmp_path, named(suffix), **{f"cell__{suffix}": post})
-        assert [one.name for one in case.obstacles] == ["post"]
+def test_a_case_without_a_name_has_that_of_its_file_or_folder(tmp_path):
+    unnamed = changed("name: small\n", "")
+    folder = tmp_path / "welding_cell"
+    folder.mkdir()
+    assert load_small(folder, unnamed).name == "welding_cell"
+    (folder / "night_shift.yaml").write_text(unnamed)
+    assert load_case(folder / "night_shift.yaml").name == "night_shift"
+
+
+def test_a_robot_without_joints_needs_times_only(tmp_path):
+    case = load_small(tmp_path, urdf=robot(link(BOX, "base")), trajectory="time\n0\n1\n")
+    assert case.robots[0].trajectory.positions.shape == (2, 0)
+    assert check(case).worst["clearance"] == pytest.approx(0.65, abs=1e-12)
+    with pytest.raises(BadShape, match="there is no joint column"):
+        load_small(tmp_path, trajectory="time\n0\n1\n")

@@ -12,7 +12,6 @@ from clearance.errors import BadInput
 from clearance.formats.cloud.formats import cloud_from_bytes, read_points
 from clearance.formats.cloud.pcd_file import decompressed
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
-from clearance.geometry.point_cloud import PointCloud
 from tests.formats.making_clouds import lzf, pcd, ply, table
 from tests.formats.refusal import refusal
 
@@ -201,22 +200,6 @@ def test_a_public_reader(tmp_path):
         (tmp_path / "scan.las").write_bytes(b"")
         read_points(tmp_path / "scan.las", 0.02)
     assert "radius is 0" in refusal(read_points, tmp_path / "scan.pcd", 0.0, of=BadInput)
-
-
-@pytest.mark.peer
-@pytest.mark.parametrize("form", ["ascii", "binary", "binary_compressed"])
-def test_what_another_program_writes(form, tmp_path):
-    """pypcd4 writes; the points are the same to the last bit."""
-    pypcd4 = pytest.importorskip("pypcd4")
-    points = np.random.default_rng(8).normal(size=(300, 4)).astype(np.float32)
-    made = pypcd4.PointCloud.from_points(points, ("x", "y", "z", "intensity"), (np.float32,) * 4)
-    made.save(tmp_path / "a.pcd", encoding=getattr(pypcd4.Encoding, form.upper()))
-    found = cloud_from_bytes((tmp_path / "a.pcd").read_bytes(), "a.pcd", 0.01).shape
-    if form == "ascii":  # it rounds to ten decimals
-        assert np.abs(np.array(as_set(found.vertices)) - as_set(points[:, :3])).max() < 1e-9
-    else:
-        assert as_set(found.vertices) == as_set(points[:, :3])
-    assert isinstance(found, PointCloud)
 
 
 @pytest.mark.parametrize(

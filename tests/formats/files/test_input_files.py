@@ -3,13 +3,13 @@
 import os
 
 import pytest
-import trimesh
 
-from clearance.case.case_file import load_case
 from clearance.errors import MissingFile
 from clearance.formats.files.found_files import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
 from clearance.formats.files.input_files import InputFiles, read_bytes
 from clearance.report.topics.provenance import inputs
+from tests.formats.making import ARM, cube_stl
+from tests.formats.making_case import changed, load_small
 from tests.formats.refusal import refusal
 
 
@@ -26,43 +26,19 @@ def test_pipes_and_devices_are_refused_without_waiting(tmp_path, name):
         assert "is a pipe or a device; a path to a file on disk" in refusal(read, of=MissingFile)
 
 
-URDF = """<robot name="cart"><link name="ground"/>
-  <link name="slider"><collision><geometry><mesh filename="package://pk/m.stl"/></geometry></collision></link>
-  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
-    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
-
-CASE = """robot: {urdf: cart.urdf, package_dirs: [first, last]}
-scene:
-  obstacles:
-  - {name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}
-trajectory: t.csv
-limits: {fail: 0.05}
-"""
-
-
-def searched(sources):
-    return [one for one in sources if not one.is_file]
-
-
 def test_a_mesh_of_a_package_is_a_search_and_no_input_of_the_report(tmp_path):
-    (tmp_path / "cart.urdf").write_text(URDF)
-    (tmp_path / "case.yaml").write_text(CASE)
-    (tmp_path / "t.csv").write_text("time,rail\n0,0\n1,0.1\n")
     (tmp_path / "first").mkdir()
     (tmp_path / "last" / "pk").mkdir(parents=True)
-    trimesh.creation.box([0.2] * 3).export(tmp_path / "last" / "pk" / "m.stl")
-    case = load_case(tmp_path / "case.yaml")
-    (one,) = searched(case.sources)
+    (tmp_path / "last" / "pk" / "m.stl").write_bytes(cube_stl())
+    found_by = changed("arm.urdf", "arm.urdf, package_dirs: [first, last]")
+    case = load_small(tmp_path, found_by, urdf=ARM.replace("upper.stl", "package://pk/m.stl"))
+    (one,) = (source for source in case.sources if not source.is_file)
     assert leads_to(one.read_from) == one.sha256 and one.path == "(lookup) mesh package://pk/m.stl"
-    assert [row["path"] for row in inputs(case)] == [
-        "cart.urdf",
-        "case.yaml",
-        "last/pk/m.stl",
-        "t.csv",
-    ]
+    read = ["arm.urdf", "case.yaml", "last/pk/m.stl", "path.csv"]
+    assert [row["path"] for row in inputs(case)] == read
     (tmp_path / "first" / "pk").mkdir(parents=True)
     assert leads_to(one.read_from) == one.sha256  # the folder alone is no mesh
-    trimesh.creation.box([0.2] * 3).export(tmp_path / "first" / "pk" / "m.stl")
+    (tmp_path / "first" / "pk" / "m.stl").write_bytes(cube_stl())
     assert leads_to(one.read_from) != one.sha256
 
 

@@ -8,43 +8,15 @@ import pytest
 from clearance.errors import BadInput
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from tests.formats.making import signed_volume
+from tests.formats.making_meshes import NODE, WEDGE, collada, primitive
 from tests.formats.refusal import refusal
-
-WEDGE = "0 0 0 1 0 0 0 2 0 0 0 3"
-WEDGE_TRIANGLES = "0 2 1 0 1 3 0 3 2 1 2 3"
-
-
-def document(
-    asset="",
-    vertices=WEDGE,
-    primitives=None,
-    nodes='<node><instance_geometry url="#g"/></node>',
-    more="",
-) -> bytes:
-    primitives = primitives or (
-        '<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>'
-        f"<p>{WEDGE_TRIANGLES}</p></triangles>"
-    )
-    n = len(vertices.split())
-    return f"""<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset>{asset}</asset>{more}
-<library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="pa" count="{n}">{vertices}</float_array><technique_common>
-<accessor source="#pa" count="{n // 3}" stride="3"><param name="X" type="float"/>
-<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>{primitives}
-</mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode()
 
 
 def load(*args, scale=1.0, **kwargs):
-    return mesh_from_bytes(document(*args, **kwargs), "m.dae", scale)
+    return mesh_from_bytes(collada(*args, **kwargs), "m.dae", scale)
 
 
 Z_UP = "<up_axis>Z_UP</up_axis>"
-SHARED = '<input semantic="VERTEX" source="#v" offset="0"/>'
 
 
 @pytest.mark.parametrize(
@@ -63,18 +35,6 @@ def test_unit_and_up_axis_are_obeyed_once(asset, upper, lower):
     assert mesh.shape.bounds.tolist() == [lower, upper]
     assert signed_volume(mesh.shape) > 0
     assert bool(mesh.notes) == (asset != Z_UP)
-
-
-@pytest.mark.parametrize("axis", ["X_UP", "Y_UP", "Z_UP", None])
-def test_the_ros_way_obeys_the_unit_and_leaves_every_axis_where_it_is(axis):
-    tag = "" if axis is None else f"<up_axis>{axis}</up_axis>"
-    data = document('<unit meter="0.5"/>' + tag)
-    mesh = mesh_from_bytes(data, "m.dae", up_axis="ros")
-    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [0.5, 1, 1.5]]
-    assert any("is ignored, as RViz and MoveIt do" in note for note in mesh.notes) == (
-        axis != "Z_UP"
-    )
-    assert not any("turned from" in note and "not turned" not in note for note in mesh.notes)
 
 
 def test_positions_keep_double_precision():
@@ -107,7 +67,7 @@ def test_nested_nodes_and_instances_are_all_placed():
         f'<node><translate>5 0 0</translate>{inner}</node><node><instance_node url="#n"/></node>'
     )
     library = '<library_nodes><node id="n"><instance_geometry url="#g"/></node></library_nodes>'
-    text = document(Z_UP, nodes=nodes).decode()
+    text = collada(Z_UP, nodes=nodes).decode()
     text = text.replace("<library_visual_scenes>", library + "<library_visual_scenes>")
     mesh = mesh_from_bytes(text.encode(), "m.dae")
     assert mesh.n_triangles == 8
@@ -141,7 +101,7 @@ def test_triangle_strips_turn_every_other_triangle():
 
 def with_accessor(accessor: str, numbers: str, **kwargs) -> bytes:
     """The wedge's document with another accessor over other numbers."""
-    text = document(Z_UP, vertices=numbers, **kwargs).decode()
+    text = collada(Z_UP, vertices=numbers, **kwargs).decode()
     return re.sub(r"<accessor.*</accessor>", accessor, text, flags=re.DOTALL).encode()
 
 
@@ -177,13 +137,6 @@ def test_positions_are_taken_as_the_accessor_says(accessor, numbers):
     assert signed_volume(mesh.shape) == pytest.approx(1)
 
 
-def primitive(kind: str, count: int, inside: str, inputs: str = SHARED) -> str:
-    return f'<{kind} count="{count}">{inputs}{inside}</{kind}>'
-
-
-NODE = '<instance_geometry url="#g"/>'
-
-
 @pytest.mark.parametrize(
     ("data", "says"),
     [
@@ -195,34 +148,34 @@ NODE = '<instance_geometry url="#g"/>'
             with_accessor(f'<accessor source="#pa" count="4" stride="2">{XYZ}</accessor>', WEDGE),
             "stride 2",
         ),
-        (document(Z_UP).replace(b'count="12"', b'count="13"'), "its count is 13"),
-        (document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'), "its count is 5"),
-        (document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")), "count is 2"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "")), "no <p>"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")), "'1_0' is not a whole number"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")), "<p> holds <b>"),
+        (collada(Z_UP).replace(b'count="12"', b'count="13"'), "its count is 13"),
+        (collada(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'), "its count is 5"),
+        (collada(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")), "count is 2"),
+        (collada(Z_UP, primitives=primitive("triangles", 1, "")), "no <p>"),
+        (collada(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")), "'1_0' is not a whole number"),
+        (collada(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")), "<p> holds <b>"),
         (
-            document(
+            collada(
                 Z_UP, primitives=primitive("polygons", 1, "<ph><p>0 1 2</p><h>0 1 3</h></ph>")
             ),
             "holes (<ph>)",
         ),
-        (document('<unit meter="0,01"/>' + Z_UP), "<unit meter='0,01'> is given"),
-        (document('<unit name="inch"/>' + Z_UP), "<unit name='inch'> is given"),
-        (document("<up_axis>W_UP</up_axis>"), "<up_axis> is 'W_UP'; X_UP, Y_UP, Z_UP"),
-        (document(Z_UP).replace(b"<mesh>", b'<asset><unit meter="0.5"/></asset><mesh>'), "units of 1 and 0.5 m"),
+        (collada('<unit meter="0,01"/>' + Z_UP), "<unit meter='0,01'> is given"),
+        (collada('<unit name="inch"/>' + Z_UP), "<unit name='inch'> is given"),
+        (collada("<up_axis>W_UP</up_axis>"), "<up_axis> is 'W_UP'; X_UP, Y_UP, Z_UP"),
+        (collada(Z_UP).replace(b"<mesh>", b'<asset><unit meter="0.5"/></asset><mesh>'), "units of 1 and 0.5 m"),
         (
-            document(
+            collada(
                 Z_UP, nodes=f"<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix>{NODE}</node>"
             ),
             "<matrix>: the last row is [0.0, 0.0, 0.0, 2.0]; 0 0 0 1",
         ),
-        (document(Z_UP, nodes=f"<node><scale>1 nan 1</scale>{NODE}</node>"), "not finite"),
-        (document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1), "entities"),
-        (document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"), "nested more than 100 deep"),
-        (document(Z_UP, nodes='<node id="a"><instance_node url="#a"/></node>'), "place themselves"),
+        (collada(Z_UP, nodes=f"<node><scale>1 nan 1</scale>{NODE}</node>"), "not finite"),
+        (collada(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1), "entities"),
+        (collada(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"), "nested more than 100 deep"),
+        (collada(Z_UP, nodes='<node id="a"><instance_node url="#a"/></node>'), "place themselves"),
         (
-            document(Z_UP, more='<library_geometries><geometry id="g"/></library_geometries>'),
+            collada(Z_UP, more='<library_geometries><geometry id="g"/></library_geometries>'),
             "2 <geometry> elements have the id 'g'",
         ),
     ],

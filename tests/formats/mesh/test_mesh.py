@@ -92,29 +92,6 @@ def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
     assert mesh_from_bytes(binary_stl(CUBE_CORNERS), "m.stl").notes == ()
 
 
-def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
-    lines = CUBE_OBJ.splitlines()
-    faces = [
-        "o first", "usemtl red", lines[8], "usemtl blue", lines[9], "g left right",
-        "f 1/1/1 5/2/1 6/3/1 2/4/1", "o second", "usemtl red", "f 3//1 4//1 8//1 7//1", "s off",
-        "usemtl", lines[12], "l 1 2", "f 2/9 6/9 8/9 4/9",
-    ]  # fmt: skip
-    text = "\n".join(
-        ["# two materials", "mtllib missing.mtl", *lines[:8], "vn 0 0 1", "vt 0 0", *faces]
-    )
-    mesh = mesh_from_bytes(text.encode(), "cube.obj")
-    expected = as_triangle_set(CUBE_CORNERS)
-    whole = mesh_from_bytes(CUBE_OBJ.encode(), "cube.obj")
-    assert mesh.n_triangles == len(expected) == 12
-    assert signed_volume(mesh.shape) == signed_volume(whole.shape) == 1
-    assert mesh.shape.closed
-
-
-def test_obj_may_begin_with_a_byte_order_mark():
-    mesh = mesh_from_bytes(b"\xef\xbb\xbf" + CUBE_OBJ.encode(), "cube.obj")
-    assert mesh.n_triangles == 12
-
-
 def test_obj_points_and_lines_are_told():
     mesh = mesh_from_bytes(f"{CUBE_OBJ}l 1 2 3\np 1 2\n".encode(), "cube.obj")
     left_out = "2 elements of points or lines, which have no surface: not measured"
@@ -223,14 +200,6 @@ def test_parts_that_are_inside_out_or_open_are_noted_and_cavities_stay(what):
     mesh = mesh_from_bytes(binary_stl(np.concatenate(parts)), "m.stl")
     assert mesh.notes == ((note,) if note else ())
     assert volume is None or signed_volume(mesh.shape) == pytest.approx(volume)
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_a_two_sided_mesh_is_not_said_to_be_inside_out(seed):
-    moved = CUBE_CORNERS + np.random.default_rng(seed).uniform(-9, 9, 3).astype(np.float32)
-    both = np.concatenate([moved, moved[::-1, ::-1]])
-    (note,) = mesh_from_bytes(binary_stl(both), "m.stl").notes
-    assert note.startswith("it holds each face once for each side")
 
 
 def test_exact_copies_of_faces_are_left_out_with_a_note():

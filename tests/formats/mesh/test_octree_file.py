@@ -80,10 +80,3 @@ def test_cells_of_two_sizes_side_by_side_stay_closed():
 )  # fmt: skip
 def test_what_is_no_octomap_is_refused(data, told):
     assert told in refusal(mesh_from_bytes, data, "map.bt", of=BadInput)
-
-
-def scene(tree: str) -> str:
-    origin = "origin: {position: {x: 1.0, y: 0, z: 0}}"
-    return (
-        f"world:\n  octomap:\n    header: {{frame_id: world}}\n    {origin}\n    octomap: {tree}\n"
-    )

@@ -85,13 +85,6 @@ def test_what_could_be_meant_otherwise_is_refused(text, fault, says):
     assert says in refusal(read, text, of=fault)
 
 
-LOG = (
-    "status,timestamp,target_q_0,actual_q_0,target_q_1,actual_q_1,current\n"
-    "RUNNING,100,9,0.1,9,0.02,nan\nRUNNING,101,9,0.2,9,0.03,\n"
-)
-TAKEN = "{time: timestamp, shoulder: actual_q_0, lift: actual_q_1}"
-
-
 @pytest.mark.parametrize(
     ("header", "columns"),
     [
@@ -118,26 +111,6 @@ def test_a_time_beside_a_stamp_in_two_columns_is_taken(tmp_path):
     said = "path.csv, columns: {time: __time, shoulder: shoulder}"
     case = load_small(tmp_path, changed("path.csv", said), trajectory=table)
     assert case.robots[0].trajectory.times.tolist() == [0.0, 0.5]
-
-
-def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
-    case = changed("path.csv", f"path.csv, columns: {TAKEN}")
-    made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=LOG)
-    trajectory = made.robots[0].trajectory
-    assert trajectory.joint_names == ("shoulder", "lift")
-    assert trajectory.times.tolist() == [100, 101]
-    assert trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
-    told = "path.csv: columns not read: 'status', 'target_q_0', 'target_q_1', 'current'"
-    assert told in made.notes
-
-
-def test_a_joint_that_is_misspelt_is_renamed_and_not_left_out(tmp_path):
-    other = TWO_JOINTS.replace("lift", "joint_of_lift")
-    own = "time,shoulder,joint_of_lfit,joint_of_lift_effort\n0,0.1,20,4\n"
-    with pytest.raises(UnknownJoint, match="unknown joint 'joint_of_lfit'") as caught:
-        load_small(tmp_path, urdf=other, trajectory=own)
-    told = "columns: {time: time, shoulder: shoulder, joint_of_lift: joint_of_lfit} maps each joint"
-    assert told in str(caught.value)
 
 
 NOT_TAKEN = [

@@ -20,7 +20,6 @@ from clearance.formats.motion.requests import (
     read_trajectory,
 )
 from clearance.formats.schema.timed import Choice
-from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_messages import (
     MESSAGE,
     POINTS,
@@ -104,9 +103,8 @@ def test_of_several_one_is_chosen(text):
 
 
 def test_the_list_says_where_each_is():
-    said = refusal(parse, ROS2 + "---\n" + dumped(SECOND), of=BadInput)
     told = "1: line 1, 2 points of 2 joints; 2: line 34, 1 points of 2 joints"
-    assert told in said
+    assert told in refusal(parse, ROS2 + "---\n" + dumped(SECOND), of=BadInput)
     assert "; and 12 more" in refusal(parse, dumped([MESSAGE] * 20), of=BadInput)
 
 
@@ -148,10 +146,8 @@ def point(**fields: object) -> str:
     ],
 )  # fmt: skip
 def test_each_fault_is_one_line_with_its_place(text, fault, says):
-    said = refusal(parse, text, of=fault)
-    told = said
-    assert says in told
-    assert told.startswith("path.yaml: ")
+    told = refusal(parse, text, of=fault)
+    assert says in told and told.startswith("path.yaml: ")
 
 
 @pytest.mark.parametrize(
@@ -187,8 +183,3 @@ def test_aliases_make_no_more_of_a_file_than_it_holds():
     nested = "t0: &t0 []\n" + "".join(f"t{i}: &t{i} [*t{i - 1}]\n" for i in range(1, 3000))
     with pytest.raises(BadShape, match="aliases nest deeper than the file"):
         parse(nested + "trajectory: *t2999\n")
-
-
-def as_case(folder, text: str, given: str = "file: path.yaml", suffix: str = "yaml"):
-    case = changed("file: path.csv", given)
-    return load_small(folder, case, urdf=TWO_JOINTS, **{f"path__{suffix}": text})

@@ -75,15 +75,6 @@ def test_a_table_in_other_units_with_semicolons_is_the_same_table():
     )
 
 
-def test_the_case_says_millimetres_of_all_lengths(tmp_path):
-    rows = "time,x,y,z,qx,qy,qz,qw\n0,4000,0,0,0,0,0,1\n1,4000,1000,0,0,0,0,1\n"
-    case = load_cell(
-        tmp_path, "moves: door.csv", "moves: {file: door.csv, units: {length: mm}}", door=rows
-    )
-    assert case.obstacles[0].moves.positions.tolist() == [[4, 0, 0], [4, 1, 0]]
-    assert any("door.csv: read in millimetres" in note for note in case.notes)
-
-
 @pytest.mark.parametrize(
     "header, said",
     [

@@ -65,13 +65,6 @@ def test_a_hole_is_more_than_ten_usual_intervals(times, starts):
     assert tracks["j"].holes.tolist() == starts
 
 
-def test_a_hole_is_told_with_its_joints_its_length_and_what_is_usual():
-    (hole,) = read(states(with_hole(), "shoulder", ("shoulder", "lift"))).trajectory.holes
-    assert (hole.joints, hole.means) == (("shoulder", "lift"), None)
-    assert (hole.start, hole.end, hole.usual) == pytest.approx((1.0, 3.0, STEP))
-    assert hole.text == "no position of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
-
-
 def test_joints_that_are_recorded_at_different_rates_have_their_own_holes():
     """The arm's messages are a tenth of a second apart, the finger's a second but for one of 15."""
     arm = states(np.arange(400) * 0.1, "shoulder")

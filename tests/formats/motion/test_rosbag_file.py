@@ -29,7 +29,6 @@ from tests.formats.making_bags import (
     without_definitions,
     write_bag,
 )
-from tests.formats.motion.test_columns import FINGERS
 
 MOVE = planned([0.1, 0.0], [0.3, 0.05])
 STATES = [state(i, [0.1 * i, 0.0]) for i in range(3)]
@@ -201,19 +200,6 @@ def test_a_case_names_a_bag(tmp_path, capsys):
     told = capsys.readouterr().err.strip()
     assert f"{bag.name}: the bag has no trajectories or joint states of topic '/t'" in told
     assert told.count("\n") == 0
-
-
-def test_a_recorded_joint_that_leaves_the_one_it_follows_is_refused(tmp_path):
-    names = ["shoulder", "lift", "other"]
-    for name, other in (("on", -0.01), ("off", 0.03)):
-        states = [state(i, [0.1 * i, 0.01, other], names) for i in range(3)]
-        bag = write_bag(tmp_path / name, "mcap", {"/s": states})
-        write_case(tmp_path, changed("path.csv", str(bag.relative_to(tmp_path))), urdf=FINGERS)
-        if name == "on":
-            notes = check(tmp_path / "case.yaml").record.case.notes
-            assert any("agree with the joints that they follow: 'other'" in one for one in notes)
-    with pytest.raises(BadInput, match=r"joint 'other' follows 'lift', and is 0\.04 m off"):
-        check(tmp_path / "case.yaml")
 
 
 @pytest.mark.parametrize("container", CONTAINERS)

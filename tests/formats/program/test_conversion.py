@@ -147,13 +147,6 @@ def test_a_line_to_axes_ends_where_they_have_the_tool():
     assert to.frame == "base" and to.xyz == pytest.approx([x, 0.0, 0.245 + 0.2 + 0.44 + 0.1])
 
 
-def test_the_start_is_the_first_target_of_axes_and_its_way_in_is_unknown():
-    found = made(HOME)
-    assert list(found.program.start.values()) == list(AXES.axes) and found.starts_anywhere
-    start = {f"joint_{i}": 0.0 for i in range(1, 7)}
-    assert not made(HOME, start=start).starts_anywhere
-
-
 def test_a_first_pose_begins_at_the_axes_beside_it_if_these_have_the_tool_there():
     one, near = arm("heron6"), (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
     tool = at(0.0, 0.05, 0.1)
@@ -209,13 +202,6 @@ def test_a_turn_seen_from_the_path_is_about_one_axis_or_refused(case):
         assert turn_on_path(start, through, end) == told
     else:
         assert re.search(told, refusal(turn_on_path, start, through, end))
-
-
-def test_a_joint_move_has_the_time_or_the_speed_of_axes_that_it_states():
-    (move,) = made(replace(HOME, share=None, axis_speed=0.8, axis_acceleration=0.7)).program.moves
-    assert (move.ptp.joint_speed, move.ptp.joint_acceleration) == (0.8, 0.7)
-    (move,) = made(replace(HOME, axis_speed=0.8, time=3.0)).program.moves
-    assert move.ptp.time == 3.0 and move.ptp.joint_speed is None
 
 
 def test_times_rest_on_accelerations_unless_all_moves_say_them_or_their_time():

@@ -83,19 +83,10 @@ def test_all_values_that_the_files_lack_are_asked_for_at_once(name, text, asked)
     )
 
 
-def test_a_word_with_a_dollar_that_a_refusal_asks_for_may_be_skipped():
-    text = test_fanuc.listing(
-        test_fanuc.FRAMES + "$SSR.$SINGLESTEP=0 ;\nL P[2] 100mm/sec FINE ;", test_fanuc.POINTS
-    )
-    assert len(check("a.ls", text, skip=["$SSR.$SINGLESTEP"], **test_fanuc.CASE).moves) == 1
-
-
 HOLDS = "of the case, which is taken to hold that all the time, unless a wait needs another"
-DECIDES = HOLDS.replace("case,", "case decides,")
 WAY = "the way not taken is not measured;"
 INPUT, UNTIL = f"DI[1] {HOLDS}", "which is taken to hold that until these files change it"
 NEXT = "LBL[1] ;\nL P[3] 9mm/sec FINE ;"
-AXES = "PTP {A1 n,A2 0,A3 0,A4 0,A5 0,A6 0}"
 
 
 @pytest.mark.parametrize(
@@ -116,18 +107,6 @@ def test_each_variable_of_the_case_that_moves_rest_on_stands_in_the_headline(bod
     found = check("CELL.LS", text, variables=given, **test_fanuc.CASE)
     rest = [one for one in found.doubts if one.startswith("the moves rest on ")]
     assert rest == [f"the moves rest on {one}" for one in told]
-
-
-def test_each_variable_of_a_case_of_krl_that_moves_rest_on_stands_in_the_headline():
-    branch = f"n=10\nIF $IN[1] THEN\nn=170\nENDIF\n{AXES}"
-    for body, name, told in (
-        (branch, "$in[1]", f"line 8: {WAY} $IN[1] {DECIDES}"),
-        (AXES, "n", f"the moves rest on N of the case, {UNTIL}"),
-    ):
-        beside = {"weld.dat": test_krl.POINTS.encode()}
-        value = False if name == "$in[1]" else 9
-        found = check("weld.src", f"{test_krl.HEAD}{body}\nEND\n", beside, variables={name: value})
-        assert found.doubts == (told,)
 
 
 def test_a_kept_value_that_decides_where_moves_go_stands_in_the_headline():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.formats.program.controller_program import AxisTarget, ControllerWait
+from clearance.formats.program.controller_program import ControllerWait
 from clearance.formats.program.tokens import Line
 from tests.formats.program.reading import read
 from tests.formats.refusal import refusal
@@ -157,11 +157,6 @@ LIN_REL {{Z 10}} #TOOL"""
         moves_of(body.replace("LIN {X 9, Y 0, Z 0, A 0, B 90, C 0}", circle))
 
 
-def test_where_the_robot_is_is_named_as_what_is_not_read():
-    body = FRAMES + "E6POS p\np = $POS_ACT\np.Z = p.Z + 10\nLIN p\n"
-    assert "not known: $POS_ACT, where the robot is" in refusal(program, body)
-
-
 def test_whole_numbers_round_and_divide_as_such():
     points = POINTS.replace("ENDDAT", "DECL INT n=7\nDECL REAL half=2.0\nENDDAT")
     body = f"""INT m
@@ -230,14 +225,6 @@ def test_the_case_says_what_the_files_name_only():
     assert place(line) == pytest.approx([1.1, 0.0, 0.05]) and line.tool[2, 3] == 0.05
     assert (line.zone, ptp.zone, both.zone) == (0.01, 0.02, 0.02)  # the larger one where both are
     assert any("GRIP (line 16)" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("encode", ["utf-8-sig", "latin-1", "crlf"])
-def test_texts_of_controllers_are_read_in_their_encodings(encode):
-    text = f"{HEAD}PTP XHOME ; Grundstellung über dem Tisch\nEND"
-    data = text.replace("\n", "\r\n").encode() if encode == "crlf" else text.encode(encode)
-    (move,) = read("weld.src", data, {"weld.dat": POINTS.encode()}).moves
-    assert isinstance(move.to, AxisTarget) and move.line.number == 7
 
 
 LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
@@ -433,16 +420,6 @@ def test_operators_bind_as_the_controller_has_it(condition, is_true):
 def test_a_parameter_may_be_an_array_of_several_indices():
     body = "double(GRID[])\nPTP XHOME\nEND\nDEF double(a[,], b[], n:IN)\nn=1"
     assert len(program(body).moves) == 1
-
-
-def test_truths_and_numbers_are_not_mixed():
-    with pytest.raises(cl.ClearanceError, match="line 8: 'AND' has no value for 1 and True"):
-        program("n=1\nIF n==1 AND TRUE THEN\nPTP XHOME\nENDIF\n")
-
-
-def test_names_that_are_like_an_unknown_one_are_sought_only_to_be_told(monkeypatch):
-    monkeypatch.setattr("clearance.formats.program.variables.nearest_name", lambda *_: 1 / 0)
-    assert len(program("n=nowhere\nb[1].x=elsewhere\nPTP XHOME").moves) == 1
 
 
 MACHINE = """DEFDAT $MACHINE PUBLIC

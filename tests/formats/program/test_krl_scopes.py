@@ -55,15 +55,6 @@ def test_a_subprogram_is_known_in_its_own_file_only_unless_it_is_global():
         heights(f"{FRAMES}{what}b()", OWN, b_src=B, c_src=C.replace("LIN", ";LIN"))
 
 
-def test_the_case_names_the_subprograms_of_the_file():
-    quiet = "DEF c()\nWAIT FOR $IN[1]\nEND\n"
-    beside = {"b.src": B.encode()}
-    text = f"DEF a()\n{FRAMES}c()\nLIN {at(7)}\nEND\n{quiet}DEF d()\n{FRAMES}LIN {at(5)}\nEND\n"
-    assert len(read("a.src", text, beside, skip=["c"]).moves) == 1
-    (move,) = read("a.src", text, beside, entry="d").moves
-    assert move.to.pose[1, 3] == pytest.approx(0.005)
-
-
 def test_data_are_known_in_their_own_file_only_unless_they_are_global():
     own, of_all = (f"DECL E6POS PT={at(y)}" for y in (10, 300))
     a, config = data("a", own), data("$CONFIG", of_all)

@@ -89,13 +89,6 @@ def test_calls_and_loops_become_moves_with_their_lines():
     assert "SetDO (line 27)" in told and "without moves: line 18" in told and "PERS data" in told
 
 
-def test_a_positioner_that_is_activated_or_not_moves_nothing():
-    line = f"MoveL {P},v5,fine,tool0;"
-    plain = moves_of(f"{line}\n{line}")
-    units = moves_of(f"ActUnit STN_1;\n{line}\nDeactUnit STN_1;\n{line}")
-    assert [move.kind for move in units] == [move.kind for move in plain]
-
-
 def test_a_zone_is_that_of_the_point_unless_the_tool_turns():
     _, over, _, over_low, _, _, arc, _ = read("a.mod", CELL).moves
     assert over.zone == 0.075  # how the tool stands before is not known
@@ -208,13 +201,6 @@ def test_numbers_are_cut_and_rounded_to_their_digits():
     assert move.to.pose[:3, 3] == pytest.approx([0.0123, 0.0124, -0.001])
 
 
-def test_encodings_are_read():
-    move = f"MoveAbsJ [[0,0,0,0,0,0],{NONE}],v5,fine,tool0; ! für"
-    text = f"MODULE M\nPROC main()\n! Stück\n{move}\nENDPROC\nENDMODULE"
-    for data in (text.encode("latin-1"), b"\xef\xbb\xbf" + text.encode()):
-        assert [one.line.number for one in read("a.PRG", data.replace(b"\n", b"\r\n")).moves] == [4]
-
-
 FAULTS = {
     f"MoveL {P},v100,fine,tool0": "line 4: 'ENDPROC' is given; ',', or ';' is needed",
     f"MoveL {P},v100,fine;": "line 3: MoveL has 3 of its arguments",
@@ -247,14 +233,6 @@ def test_what_the_file_does_not_decide_is_refused_with_its_line(body):
     assert FAULTS[body] in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    "end", ["MoveL p10_Table, v100", "MoveL p10_Table, v100, fine, gun\\WObj:=table;"]
-)
-def test_a_module_that_is_cut_off_is_refused(end):
-    told = r"line 26: the file ends; |line 24: PROC has no ENDPROC; "
-    assert re.search(told, refusal(read, "a.mod", CELL[: CELL.index(end) + len(end)]))
-
-
 GLUE = f"MoveL {P},v100,fine,tool0;"
 SYNC = {
     'MoveLSync P,v100,fine,tool0,"x";': "line 3: procedure 'x' moves the robot, or may: it is in no file",
@@ -277,11 +255,6 @@ def test_a_procedure_that_a_move_calls_moves_nothing_and_changes_what_is_then_no
     with pytest.raises(cl.ClearanceError, match=r"^a\.mod: ") as caught:
         moves_of(body.replace("P,", f"{P},") + more, data)
     assert SYNC[body] in str(caught.value)
-
-
-def test_a_procedure_of_outputs_that_a_move_calls_is_run_beside():
-    body = f'MoveLSync {P},v100,fine,tool0,"glue_on";\n{GLUE}\nENDPROC\nPROC glue_on() SetDO do1,1;'
-    assert len(moves_of(body)) == 2
 
 
 UNDECIDED = {
@@ -365,19 +338,6 @@ def test_a_trap_that_stops_the_robot_and_lets_it_go_on_moves_nothing():
         assert re.search(
             r"trap 't' moves the robot, or may: \w+ at line 9", refusal(read, "a.mod", text % more)
         )
-
-
-def test_tools_and_work_objects_that_no_file_has_are_asked_of_the_case():
-    move = f"MoveL {P},v100,fine,tGun\\WObj:=wJig;"
-    said = refusal(moves_of, move)
-    assert "line 3: the tool is not known: 'tGun' is in no file" in said
-    assert said.endswith(
-        "program: {tools: {tGun: {xyz: […], rpy: […]}}, frames: {wJig: {xyz: […], rpy: […]}}} in m and rad"
-    )
-    (found,) = moves_of(move, tools={"tgun": {"xyz": [0, 0, 0.2]}}, frames={"wJig": {}})
-    assert found.tool[2, 3] == 0.2
-    with pytest.raises(cl.ClearanceError, match="the tool is not known: 'tGun' has no value"):
-        moves_of(move, "VAR tooldata tGun;", frames={"wJig": {}})
 
 
 def test_orientations_are_multiplied():

@@ -75,11 +75,6 @@ def test_calls_and_loops_become_moves_with_their_lines():
         assert what in told
 
 
-def test_a_rotation_vector_is_axis_times_angle():
-    (move,) = moves_of(TOOL + "movel(p[0, 0, 0, 0, 0, 1.5707963267948966])")
-    assert np.allclose(move.to.pose[:3, :3], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
-
-
 def test_arcs_blends_and_joint_targets():
     text = TOOL + "movec(p[1,0,0,0,0,0], p[1,1,0,0,0,0], mode=1, r=0.02)\nmovep([0,0,0,0,0,0])"
     arc, line = moves_of(text)
@@ -102,11 +97,6 @@ def test_where_the_tool_is_is_known_after_a_move_that_stops():
     assert place(moves_of(text)[1]) == pytest.approx([1.0, 0.0, 0.1])
     with pytest.raises(cl.ClearanceError, match=r"line 3: the target is not known: get_actual_tcp"):
         moves_of(text.replace("0,0])\n", "0,0], r=0.01)\n"))
-
-
-def test_a_pose_in_a_frame_is_not_called_as_the_frame():
-    text = TOOL + "t = p[1,0,0,0,0,0]\nmovel(pose_trans(t, p[0,1,0,0,0,0]))\nmovel(t)\n"
-    assert [move.to.name for move in moves_of(text)] == ["", "t"]
 
 
 def test_the_installations_tool_is_asked_for():
@@ -212,14 +202,6 @@ UNDECIDED = {
 def test_what_only_the_controller_decides_is_never_taken_for_known(case):
     told = "is not known: ('x' is given a value at|thread 'f' may change it)|decides on set_tcp"
     assert re.search(told, refusal(moves_of, TOOL + UNDECIDED[case]))
-
-
-def test_a_loop_of_many_passes_ends():
-    assert len(moves_of("i = 0\nwhile i < 50:\ni = i + 1\n" + Q + "\nend")) == 50
-
-
-def test_the_function_that_is_asked_for_runs_once():
-    assert len(moves_of(f"def f():\n{Q}\nend\nf()", entry="f")) == 1
 
 
 def test_what_moves_nothing_is_left_out_by_name():

@@ -11,8 +11,8 @@ from clearance.world.notice import Severity
 from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_glb import document_of, glb
+from tests.formats.making_meshes import collada, primitive
 from tests.formats.making_urdf import joint, link, robot
-from tests.formats.mesh.test_collada_file import document
 from tests.formats.refusal import refusal
 
 BAR = CUBE * [0.1, 0.2, 1.0] + [0.0, 0.0, 0.5]
@@ -24,12 +24,9 @@ LYING = BAR[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
 
 def dae(corners: np.ndarray, up: str = "Y_UP") -> bytes:
     numbers = " ".join(map(str, corners.ravel().tolist()))
-    primitives = (
-        f'<triangles count="{len(CUBE_TRIANGLES)}"><input semantic="VERTEX" source="#v" offset="0"/>'
-        f"<p>{' '.join(map(str, CUBE_TRIANGLES.ravel()))}</p></triangles>"
-    )
-    asset = f'<unit meter="1"/><up_axis>{up}</up_axis>'
-    return document(asset, numbers, primitives)
+    triangles = " ".join(map(str, CUBE_TRIANGLES.ravel()))
+    faces = primitive("triangles", len(CUBE_TRIANGLES), f"<p>{triangles}</p>")
+    return collada(f'<unit meter="1"/><up_axis>{up}</up_axis>', numbers, faces)
 
 
 def shape(kind: str, file: str) -> str:

@@ -35,56 +35,47 @@ def body(name, inside="", *, joint=JOINT, geom=BALL):
 
 
 CHAIN = body("a", body("b", body("c")))
+NO_PARENTS = '<option timestep="0.001"><flag contact="enable" filterparent="disable"/></option>'
+SILENT = '<geom name="{}" size="0.1" contype="0" conaffinity="0"/>'
+NESTED = body(
+    "a",
+    body("b", body("c", geom=SILENT.format("c")), geom=SILENT.format("b")),
+    geom=SILENT.format("a"),
+)
+ASKED = '<contact><pair geom1="b" geom2="a"/><exclude body1="a" body2="b"/></contact>'
+HAND = body("hand", body("camera", joint="") + body("finger") + body("eye", joint=JOINTS))
+THREE = "".join(
+    body(name, geom=f'<geom size="0.1" contype="{kind}" conaffinity="{meets}"/>')
+    for name, kind, meets in (("a", 1, 0), ("b", 2, 1), ("c", 4, 8))
+)
+ON_FLOOR = '<geom type="plane" size="1 1 1"/>' + body("seen", geom=SILENT.format("s"))
+ON_FLOOR += body("high", geom='<geom size="0.1" contype="2" conaffinity="2"/>') + body("low")
 
 
-def test_a_body_and_its_parent_are_not_measured(tmp_path):
-    found = why(load_mjcf(tmp_path, mjcf(CHAIN)))
-    assert found == {"a b": ADJACENT, "a c": None, "b c": ADJACENT}
-
-
-def test_unless_the_model_says_that_parents_are_no_exception(tmp_path):
-    flag = '<option timestep="0.001"><flag contact="enable" filterparent="disable"/></option>'
-    assert {*why(load_mjcf(tmp_path, mjcf(CHAIN, flag))).values()} == {None}
-
-
-def test_what_is_welded_to_a_parent_or_moved_by_two_joints_is_filtered_and_told(tmp_path):
-    tool = body("hand", body("camera", joint="") + body("finger") + body("eye", joint=JOINTS))
-    loaded = load_mjcf(tmp_path, mjcf(tool))
-    assert why(loaded) == {
-        "hand camera": RIGID, "hand finger": ADJACENT, "hand eye": PARENT, "camera finger": PARENT,
-        "camera eye": PARENT, "finger eye": None,
-    }  # fmt: skip
-    told = f"leaves out ({PARENT}): hand - eye, camera - finger, camera - eye"
-    assert any(note.endswith(told) for note in loaded.notes)
-
-
-def test_pairs_that_are_asked_for_are_measured_whatever_else_is_said(tmp_path):
-    geoms = [f'<geom name="{name}" size="0.1" contype="0" conaffinity="0"/>' for name in "abc"]
-    nested = body("a", body("b", body("c", geom=geoms[2]), geom=geoms[1]), geom=geoms[0])
-    asked = '<contact><pair geom1="b" geom2="a"/><exclude body1="a" body2="b"/></contact>'
-    loaded = load_mjcf(tmp_path, mjcf(nested, asked))
-    assert why(loaded) == {"a b": None}  # nothing that collides is left of c
-    assert any(note.endswith("measures, as <pair> says: a - b") for note in loaded.notes)
-
-
-def test_bits_that_do_not_meet_and_excluded_bodies_are_told(tmp_path):
-    one = body("a", geom='<geom size="0.1" contype="1" conaffinity="0"/>')
-    two = body("b", geom='<geom size="0.1" contype="2" conaffinity="1"/>')
-    three = body("c", geom='<geom size="0.1" contype="4" conaffinity="8"/>')
-    excluded = '<contact><exclude body1="b" body2="a"/></contact>'
-    loaded = load_mjcf(tmp_path, mjcf(one + two + three, excluded))
-    assert why(loaded) == {"a b": EXCLUDE, "a c": BITS, "b c": BITS}
-    assert sum("self_clearance without srdf leaves out" in note for note in loaded.notes) == 2
-
-
-def test_bits_of_the_floor_count_and_bodies_without_a_shape_are_not_told(tmp_path):
-    seen = body("seen", geom='<geom size="0.1" contype="0" conaffinity="0"/>')
-    high = body("high", geom='<geom size="0.1" contype="2" conaffinity="2"/>')
-    floor = '<geom type="plane" size="1 1 1"/>'
-    loaded = load_mjcf(tmp_path, mjcf(floor + seen + high + body("low")))
-    assert why(loaded) == {"world high": BITS, "world low": None, "high low": BITS}
-    (note,) = (one for one in loaded.notes if "leaves out" in one)
-    assert note.endswith(f"({BITS}): world - high, high - low")
+@pytest.mark.parametrize(
+    ("model", "found", "told"),
+    [
+        (mjcf(CHAIN), {"a b": ADJACENT, "a c": None, "b c": ADJACENT}, []),
+        (mjcf(CHAIN, NO_PARENTS), {"a b": None, "a c": None, "b c": None}, []),
+        (mjcf(HAND), {"hand camera": RIGID, "hand finger": ADJACENT, "hand eye": PARENT, "camera finger": PARENT,
+                      "camera eye": PARENT, "finger eye": None},
+         [f"leaves out ({PARENT}): hand - eye, camera - finger, camera - eye"]),
+        # nothing that collides is left of c
+        (mjcf(NESTED, ASKED), {"a b": None}, ["measures, as <pair> says: a - b"]),
+        (mjcf(THREE, '<contact><exclude body1="b" body2="a"/></contact>'),
+         {"a b": EXCLUDE, "a c": BITS, "b c": BITS},
+         [f"leaves out ({EXCLUDE}): a - b", f"leaves out ({BITS}): a - c, b - c"]),
+        # bits of the floor count, and bodies without a shape are not told
+        (mjcf(ON_FLOOR), {"world high": BITS, "world low": None, "high low": BITS},
+         [f"leaves out ({BITS}): world - high, high - low"]),
+    ],
+    ids=["parents", "parents too", "welded and moved by two joints", "pair", "exclude and bits", "floor"],
+)  # fmt: skip
+def test_which_pairs_are_not_measured_and_why(tmp_path, model, found, told):
+    loaded = load_mjcf(tmp_path, model)
+    assert why(loaded) == found
+    notes = [one for one in loaded.notes if "leaves out (" in one or "measures, as" in one]
+    assert [note.partition("srdf ")[2] for note in notes] == told
 
 
 class RandomModel:
@@ -196,15 +187,6 @@ PATH = "time,j\n0,0\n1,0.5\n"
 def load(folder, joints, text=ARM):
     case = changed("urdf: arm.urdf", f"urdf: toy.xml, joints: {{{joints}}}")
     return load_small(folder, case, trajectory=PATH, toy__xml=text)
-
-
-def test_joints_rest_where_a_keyframe_says_and_a_note_says_so(tmp_path):
-    case = load(tmp_path, "state: home")
-    assert case.robots[0].fixed_positions == {"k": 0.25}
-    said = "toy.xml: by state 'home' rest k 0.25; the case or the trajectory says more of j"
-    assert said in case.notes
-    assert load(tmp_path, "state: key1").robots[0].fixed_positions == {"k": 1.0}
-    assert load(tmp_path, "state: home, k: 0.1").robots[0].fixed_positions == {"k": 0.1}
 
 
 @pytest.mark.parametrize(

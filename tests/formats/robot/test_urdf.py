@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadSyntax, NothingToMeasure
+from clearance.errors import NothingToMeasure
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.notice import Severity
 from clearance.world.placed_robot import PlacedRobot
@@ -15,7 +15,6 @@ from clearance.world.trajectory import Trajectory
 from tests.formats.making import ARM, CUBE, CUBE_TRIANGLES, binary_stl, cube_stl, signed_volume
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_urdf import BOX, collision, joint, link, load_robot, robot
-from tests.formats.refusal import refusal
 
 
 def world_from_link(robot, **positions):
@@ -161,17 +160,6 @@ def test_meshes_are_found(tmp_path, given, place):
     assert arm.bodies[0].origin == f"{place}/part.stl"
 
 
-def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
-    extra = (
-        "<inertial><mass value='heavy'/></inertial><!-- note --><material/><contact/>"
-        + collision("<!-- the shape --><box size='1 1 1'/>")
-    )
-    urdf = robot(
-        link(extra), "<gazebo><x/></gazebo><transmission/><material name='m'/><!-- end -->"
-    )
-    assert load_robot(tmp_path, urdf).bodies[0].shape.n_faces == 6
-
-
 def test_what_is_not_read_stands_in_a_note_or_where_it_may_be_a_shape_in_a_warning(tmp_path):
     axis_free = joint(
         "j", "a", "b", inner='<limit lower="-1" upper="1" velocity="2,5"/><stiffness value="3"/>'
@@ -206,11 +194,6 @@ def test_a_default_namespace_changes_nothing(tmp_path):
         assert found.link_names == expected.link_names
         assert [body.shape.n_faces for body in found.bodies] == [6, 6]
         assert [j.name for j in found.joints] == [j.name for j in expected.joints]
-
-
-def test_elements_in_each_other_without_end_are_refused(tmp_path):
-    deep = "<x>" * 100_000 + "</x>" * 100_000
-    assert "not XML" in refusal(load_robot, tmp_path, robot(link(BOX), deep), of=BadSyntax)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import math
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -104,17 +103,6 @@ def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
     assert note.endswith("defaults size:=0.2")
 
 
-def test_of_many_defaults_those_that_choose_links_are_named_first(tmp_path):
-    """A gripper that is off, or seven joints, make another robot; the rest are mostly names and files."""
-    path = tmp_path / "arm.xacro"
-    names = {f"name_{i}": f"value_{i}" for i in range(12)} | {"dof": "7", "add_gripper": "false"}
-    args = "".join(f'<xacro:arg name="{k}" default="{v}"/>$(arg {k})' for k, v in names.items())
-    path.write_text(body(f'{args}<link name="b"/>'))
-    (note,) = [note for note in made(path).notes if "xacro evaluated it" in note]
-    assert "; defaults dof:=7, add_gripper:=false, name_0:=value_0, " in note
-    assert note.endswith("name_5:=value_5 and 6 more")
-
-
 def test_it_is_never_evaluated_unasked(tmp_path):
     path = write_case(tmp_path, "name: arm")
     with pytest.raises(BadSyntax, match=r"xacro evaluates Python in it: `xacro: true` beside urdf"):
@@ -124,14 +112,6 @@ def test_it_is_never_evaluated_unasked(tmp_path):
     (tmp_path / "arm.urdf").write_text(body("<xacro:property name='a' value='1'/><link name='b'/>"))
     with pytest.raises(BadSyntax, match="this is a xacro file, not a URDF file; xacro evaluates"):
         load_robot(tmp_path / "arm.urdf")
-
-
-def test_a_comment_makes_no_xacro_file(tmp_path):
-    box = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-    (tmp_path / "a.urdf").write_text(
-        f"<robot name='a'><!-- <xacro:x/> --><link name='b'>{box}</link></robot>"
-    )
-    assert load_robot(tmp_path / "a.urdf").link_names == ("b",)
 
 
 def test_arguments(tmp_path):
@@ -212,19 +192,6 @@ def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
 )
 def test_what_stops_it_is_told_in_one_line(tmp_path, inner, fault, says):
     assert says in refusal(made, write_package(tmp_path, body(inner)), of=fault)
-
-
-def test_the_place_is_the_included_file(tmp_path):
-    path = write_package(tmp_path, parts=PARTS.replace("</robot>", "\n\n"))
-    assert re.search(
-        r"^arm.urdf.xacro: parts.xacro: line 7: xacro: no element found$",
-        refusal(made, path, of=BadSyntax),
-    )
-
-
-def test_an_entity_is_refused(tmp_path):
-    document = '<!DOCTYPE robot [<!ENTITY e "x">]>' + body('<link name="&e;"/>')
-    assert "an entity is declared" in refusal(made, write_package(tmp_path, document), of=BadSyntax)
 
 
 @pytest.mark.slow  # the least limit that there is, one second

@@ -29,14 +29,6 @@ def place(obstacle):
     return obstacle.world_from_body[:3, 3].tolist()
 
 
-def test_objects_of_a_message_stand_where_they_are(tmp_path):
-    made = obstacles_of(tmp_path, MESSAGE)
-    assert list(made) == ["post", "tool"] and place(made["post"]) == [1, 2, 0]
-    box = cl.box((0.1, 0.1, 1.0))
-    assert np.array_equal(made["post"].body.shape.vertices, box.vertices)
-    assert made["tool"].mount.on == "tip" and made["tool"].mount.pose[2, 3] == 0.1
-
-
 def test_lists_are_read_too_and_frames_followed(tmp_path):
     made = obstacles_of(tmp_path, LISTS)
     assert {name: place(one) for name, one in made.items()} == {
@@ -302,11 +294,6 @@ def _left_out(case):
     return {(out.link, out.obstacle) for out in measured_pairs(case)[1]}
 
 
-def test_a_name_that_has_two_rows_in_a_matrix_is_refused(tmp_path):
-    with pytest.raises(BadInput, match="two entry_names have the name 'base'"):
-        content_of(tmp_path, allowing("base", "base") + LISTS)
-
-
 def test_meshes_are_taken_from_the_message_and_from_files(tmp_path):
     (tmp_path / "cube.stl").write_bytes(cube_stl())
     corners = "[[0, 0, 0], {x: 1.5, y: 0, z: 0}, [0, 1, 0], [0, 0, 1]]"
@@ -396,8 +383,7 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
     ],
 )  # fmt: skip
 def test_a_fault_is_one_line_with_its_field(tmp_path, document, says):
-    said = refusal(content_of, tmp_path, document, of=BadInput)
-    told = said
+    told = refusal(content_of, tmp_path, document, of=BadInput)
     assert told.startswith("cell.yaml: ") and says in told
 
 
@@ -416,6 +402,5 @@ def test_a_fault_is_one_line_with_its_field(tmp_path, document, says):
 )  # fmt: skip
 def test_a_fault_of_text_is_one_line_with_its_line(tmp_path, old, new, says):
     document = SECOND[: -len(old)] + new if old == ".\n" else SECOND.replace(old, new, 1)
-    said = refusal(content_of, tmp_path, document, "cell.scene", of=BadInput)
-    told = said
+    told = refusal(content_of, tmp_path, document, "cell.scene", of=BadInput)
     assert told.startswith("cell.scene: ") and says in told

@@ -6,7 +6,7 @@ import pytest
 import clearance as cl
 from clearance.case.case_file import load_case
 from clearance.cli import run
-from clearance.errors import BadInput, MissingFile
+from clearance.errors import BadInput
 from clearance.formats.scene.sdf import scope
 from clearance.geometry.pose import pose_from_rpy
 from clearance.world.notice import Severity
@@ -43,14 +43,6 @@ SHAPES = [
 def test_a_shape_is_what_python_makes(tmp_path, element, shape):
     (made,) = obstacles_of(tmp_path, sdf(model(link(collision(element))))).values()
     assert made.name == "m/l/c" and np.array_equal(made.body.shape.vertices, shape.vertices)
-
-
-def test_a_mesh_is_found_beside_the_file_and_scaled(tmp_path):
-    (tmp_path / "cube.stl").write_bytes(cube_stl())
-    mesh = "<mesh><uri>cube.stl</uri><scale>1 2 -3</scale></mesh>"
-    (made,) = obstacles_of(tmp_path, sdf(model(link(collision(mesh))))).values()
-    corners = sorted(made.body.shape.vertices.tolist())
-    assert corners == sorted((CUBE * [1, 2, -3]).tolist())
 
 
 def test_a_glb_lies_as_in_gazebo_which_does_not_turn_it(tmp_path):
@@ -265,6 +257,8 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
         (sdf(world("<population/>")), "<population> places models at random"),
         (sdf(world(include(uri="https://x/y"))), "nothing is fetched"),
         (sdf(world(include(uri="cell.sdf"))), "cell.sdf includes itself"),
+        (sdf(world(include(uri="model://none"))), "there is no model"),
+        (sdf(world(include(uri="a" * 5000))), "there is no model"),
         (sdf(model("<pose relativeto='x'/>", link(collision()))), "model 'm' pose: relativeto='x' is not read"),
         (sdf(model(link(at(1), at(2), collision()))), "link 'l': two <pose> are given; one"),
         (sdf(model(link("<collision name='c'>0 0 1</collision>"))), "collision 'c': the text '0 0 1' is not read"),
@@ -273,15 +267,8 @@ def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
     ],
 )  # fmt: skip
 def test_a_fault_is_one_line_with_its_place(tmp_path, document, says):
-    said = refusal(content_of, tmp_path, document, of=BadInput)
-    told = said
+    told = refusal(content_of, tmp_path, document, of=BadInput)
     assert told.startswith("cell.sdf: ") and says in told
-
-
-@pytest.mark.parametrize("uri", ["model://none", "none", "a" * 5000, "model://" + "b" * 300])
-def test_what_is_not_there_is_named(tmp_path, uri):
-    with pytest.raises(MissingFile, match="there is no model"):
-        content_of(tmp_path, sdf(world(include(uri=uri))))
 
 
 def test_files_that_include_each_other_many_times_end(tmp_path, monkeypatch):
