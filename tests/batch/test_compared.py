@@ -59,16 +59,6 @@ def test_an_obstacle_that_moved_is_told_case_by_case(folder, capsys):
     assert (code, lines[0]) == (0, "since the baseline: 4 cases: 4 better")
 
 
-def test_less_that_is_known_and_new_suspect_input_alarm(folder, capsys):
-    assert batch("new", "--samples-only") == 1
-    code, lines = compared(capsys)
-    assert code == 1 and lines[0].startswith(
-        "since the baseline: NEW, WORSE OR LESS KNOWN in 4 cases"
-    )
-    known = "less is known: the motion was proven, and now only the samples are measured"
-    assert lines[1] == f"{known} (t000 and 3 more)"
-
-
 def test_a_pose_in_place_of_a_motion_is_less(folder, capsys):
     path = folder / "t000.csv"
     path.write_text("".join(path.read_text().splitlines(keepends=True)[:2]))

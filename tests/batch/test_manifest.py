@@ -47,12 +47,6 @@ def test_case_files_are_named_from_the_folder_that_they_share(folder):
     assert names([str(folder / "*" / "case.yaml")]) == ["a/case", "b/case"]
 
 
-def test_manifests_and_case_files_go_together(folder):
-    (folder / "one.yaml").write_text(CELL)
-    found = names([str(folder / "batch.yaml"), str(folder / "one.yaml")])
-    assert found == ["t000", "t001", "t002", "one"]
-
-
 def test_options_of_the_manifest_and_of_the_command_line(folder):
     text = 'cell: cell.yaml\ntrajectories: "t*.csv"\nneed: minimum\nlimits: {fail: 0.1}\n'
     options = items_of(written(folder, text), dict(warn=0.4, accept=("units",)))[0].options
@@ -118,8 +112,3 @@ def test_the_same_files_asked_about_in_two_ways_are_two_cases(folder):
     (folder / "limits.yaml").write_text(f"{usual}{others['limits']}")
     with pytest.raises(DuplicateName, match=r"'t000': .*t000.csv, asked in two ways"):
         items_of(given[:2])
-
-
-def test_a_gap_of_nothing_is_refused_and_not_taken_for_the_usual_one(folder):
-    with pytest.raises(BadInput, match=r"certify_gap: 0\.0 is given; a length above 0"):
-        items_of([str(folder / "batch.yaml")], dict(certify_gap=0.0))

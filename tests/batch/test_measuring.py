@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from clearance.batch import measuring
 from clearance.batch.keys import program
-from clearance.batch.measuring import Task, TaskResult, measure, read_item
-from clearance.batch.rows import curve_of, row_of
+from clearance.batch.measuring import Task, TaskResult, measure
 from clearance.errors import Incomplete
-from clearance.record.row_status import status_counts
-from clearance.run import answer
 from tests.batch.batches import items_of, write_cell
 
 NEAREST = [0.5, 0.02, 0.2, 0.4, 0.01, 0.3, 0.25, 0.6, 0.1]
@@ -55,16 +51,3 @@ def test_a_fault_of_the_program_in_one_case_is_told_of_that_alone(items, monkeyp
 def test_a_process_of_another_program_measures_nothing(items):
     with pytest.raises(Incomplete, match="another version of clearance"):
         measure(Task(items, 1e9, "another", "a batch"))
-
-
-@pytest.mark.parametrize("certify", [False, True])
-def test_the_row_of_a_case_is_made_without_the_table_of_its_steps(tmp_path, certify):
-    (item,) = items_of([str(write_cell(tmp_path, [0.02]))], dict(certify=certify))
-    run = answer(item.options.question(read_item(item).case))
-    row = row_of(run)
-    assert "steps" not in vars(run.record)
-    assert row["measured"] == "violated"
-    told = status_counts(run.record)
-    assert [name for name, number in told.items() if number][-1] == row["measured"]
-    known = run.record.clearances
-    assert np.float32(np.nanmin(known)) >= np.min(curve_of(run.record))

@@ -61,29 +61,6 @@ def test_only_what_has_changed_is_measured(manifest, tmp_path):
     assert told.measured == ["t001"] and statuses(found)["t001"] == "violated"
 
 
-def test_a_change_of_the_cell_is_a_change_of_all(manifest, tmp_path):
-    run_here(manifest, tmp_path / "out")
-    (manifest.parent / "cell.yaml").write_text(CELL.replace("fail: 0.05", "fail: 0.25"))
-    told, found = run_here(manifest, tmp_path / "out")
-    assert len(told.measured) == 5 and statuses(found)["t001"] == "violated"
-    (manifest.parent / "cell.yaml").write_text(CELL)
-    told, found = run_here(manifest, tmp_path / "out")
-    assert told.measured == [] and statuses(found)["t001"] == "near"
-
-
-def test_a_case_file_is_known_by_all_that_it_was_made_from(tmp_path):
-    write_cell(tmp_path / "in", NEAREST)
-    for i in range(2):
-        (tmp_path / "in" / f"case{i}.yaml").write_text(CELL + f"trajectory: t00{i}.csv\n")
-    (tmp_path / "in" / "batch.yaml").write_text('cases: "case*.yaml"\n')
-    manifest = tmp_path / "in" / "batch.yaml"
-    told, _ = run_here(manifest, tmp_path / "out")
-    assert told.measured == ["case0", "case1"]
-    assert run_here(manifest, tmp_path / "out")[0].measured == []
-    write_path(tmp_path / "in" / "t001.csv", 0.01)
-    assert run_here(manifest, tmp_path / "out")[0].measured == ["case1"]
-
-
 def test_packed_cases_are_taken_and_measured_again_where_they_change(tmp_path):
     """Each is unpacked while it is measured; its zip is the file that it was made from."""
     write_cell(tmp_path / "in", [0.2, 0.04])
@@ -157,27 +134,6 @@ def test_the_key_is_of_all_that_decides_a_row(manifest):
     others += [{"need": "steps"} | BESIDE.get(name, {}) | {name: EVERY[name][0]} for name in names]
     keys = {key_of(items_of([str(manifest)], one)[0], files) for one in others}
     assert len(keys | {key}) == len(names) + 2 > 12
-
-
-@pytest.mark.slow
-def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
-    own = tmp_path / "t.yaml"
-
-    def run_with(xyz: float, tolerance=own):
-        own.write_text(f"obstacles: {{wall: {{xyz: {xyz}}}}}\n")
-        return run_here(manifest, tmp_path / "out", changes=dict(tolerance=tolerance))
-
-    told, found = run_with(0.001)
-    assert len(told.measured) == 5
-    first = column(found, "proven")
-    assert run_with(0.001)[0].measured == []
-    told, found = run_with(0.01)
-    assert len(told.measured) == 5
-    for was, now in zip(first, column(found, "proven"), strict=True):
-        assert now == pytest.approx(was - 0.009, abs=2e-4)
-    told, found = run_with(0.01, tolerance=None)
-    assert len(told.measured) == 5 and column(found, "expected") == [None] * 5
-    assert column(found, "proven") == column(found, "lower_bound")
 
 
 def test_a_recorded_run_is_part_of_what_a_row_is_of(manifest, tmp_path):

@@ -14,7 +14,7 @@ from clearance.batch.options import CaseOptions
 from clearance.batch.rows import VERDICT, error_row
 from clearance.batch.store import FILE, FORMAT, Store, merge, open_store
 from clearance.cli import run
-from clearance.errors import BadInput, Incomplete, MissingFile, Unwritable
+from clearance.errors import BadInput, Incomplete, MissingFile
 from clearance.run import CheckOptions
 from clearance.world.rules import Waiver
 from tests.batch.batches import ANSWER, answer_bytes, n_rows, run_here, write_cell
@@ -54,14 +54,6 @@ def test_a_row_of_odd_values_comes_back(tmp_path):
         (found,) = store.rows(["k"])
     expected = {"key": "k"} | row(**ODD) | {"lower_bound": None}
     assert found == expected and list(found) == ["key", *VERDICT.names]
-
-
-def test_a_row_that_is_kept_again_is_replaced(tmp_path):
-    with open_store(tmp_path) as store:
-        store.put(rows=[("k", row(text="one")), ("l", row())])
-        store.put(rows=[("k", row(text="two"))])
-        assert [one["text"] for one in store.rows(["l", "k"])] == ["none", "two"]
-        assert len(store) == 2
 
 
 def test_what_is_put_together_is_there_as_a_whole_or_not_at_all(tmp_path):
@@ -143,16 +135,6 @@ def test_a_store_of_another_format_is_one_line(manifest, tmp_path, refusal):
     assert f"a store of format {FORMAT + 1}; a new folder" in told
 
 
-def test_a_folder_of_something_else_is_no_store(tmp_path):
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "thesis.tex").write_text("…")
-    with pytest.raises(Unwritable, match="is a folder of something else"):
-        open_store(tmp_path / "mine")
-    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["thesis.tex"]
-    with pytest.raises(Unwritable, match="there is no such folder"):
-        open_store(tmp_path / "nothing", make=False)
-
-
 def test_what_a_process_that_was_ended_left_at_the_beginning_is_no_hindrance(tmp_path):
     (tmp_path / ".store.lock").write_text("")
     (tmp_path / FILE).write_text("")
@@ -178,15 +160,6 @@ def test_on_a_full_disk_what_was_kept_stays(manifest, tmp_path, monkeypatch):
     assert 0 < kept < 5
     told, found = run_here(manifest, tmp_path / "out")
     assert len(told.measured) == 5 - kept and found.n_cases == 5
-
-
-def test_a_store_that_cannot_be_written_can_be_asked(manifest, tmp_path, monkeypatch):
-    run_here(manifest, tmp_path / "out")
-    with open_store(tmp_path / "out", make=False) as store:
-        store._db.execute("PRAGMA query_only = 1")
-        assert len(store) == 5
-        with pytest.raises(Unwritable, match="cannot write here"):
-            store.put(rows=[("k", row())])
 
 
 def test_a_part_knows_what_the_store_has_and_is_merged(manifest, tmp_path, monkeypatch):
