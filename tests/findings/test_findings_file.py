@@ -41,7 +41,6 @@ def changed(**changes: object) -> str:
 @pytest.mark.parametrize(
     ("damaged", "fault", "told"),
     [
-        (lambda text: "", BadSyntax, "not JSON"),
         (lambda text: text[:-40], BadSyntax, "not JSON"),
         (lambda text: "[" * 100_000, BadSyntax, "not JSON"),
         (lambda text: text.replace("0.06", "NaN"), BadSyntax, "NaN"),
@@ -51,7 +50,6 @@ def changed(**changes: object) -> str:
         (lambda text: changed(format=FORMAT + 1), BadInput, f"format {FORMAT + 1}"),
         (lambda text: changed(findings=[{"id": 1}]), BadInput, "findings[0]"),
         (lambda text: changed(measured={}), BadInput, "measured"),
-        (lambda text: changed(case=7), BadInput, "case"),
     ],
 )
 def test_what_is_no_such_file_is_refused_in_one_line(damaged, fault, told, tmp_path):

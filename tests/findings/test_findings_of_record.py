@@ -15,7 +15,6 @@ from clearance.simulate.answers import rule_pairs
 from clearance.simulate.measure import refine
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity
-from clearance.world.rules import Rule
 from tests.findings.gates import HALF, load_gates
 from tests.report.made import findings_of
 from tests.report.records import record
@@ -66,15 +65,6 @@ def test_every_rule_that_judges_something_has_a_finding():
         rules = [rule.name for rule in run("dual_arm_handover", None, need).record.rules]
         assert sorted(finding.rule for finding in found) == sorted(rules) and len(rules) == 4
         assert {finding.status for finding in found} == {"clear"}
-
-
-@pytest.mark.slow
-def test_a_rule_of_which_nothing_is_near_has_a_finding_without_bodies():
-    rules = (Rule(("lbr_iiwa_link_7", "floor"), name="floor", fail=0.001, warn=0.001),)
-    found = run("iiwa_pipe_rack", Limits(0.06, 0.09, rules=rules), "limit").findings
-    told = {finding.rule: finding for finding in found}
-    floor = told["floor"]
-    assert floor.status == "clear" and floor.proven is not None and floor.proven >= 0.001
 
 
 def test_each_witness_point_is_on_the_body_that_it_is_of(tmp_path):

@@ -80,49 +80,35 @@ CASES = {
 def test_every_answer_says_the_same(name, tmp_path):
     one, status, exit_code = CASES[name]
     verdict = verdict_of(one)
-    assert (verdict.status, verdict.exit_code, verdict.passed) == (
-        status,
-        exit_code,
-        exit_code == 0,
-    )
+    assert (verdict.status, verdict.exit_code) == (status, exit_code)
+    assert verdict.passed == (exit_code == 0)
     run, summary = run_of(one), summary_of(one)
-    assert (run.status, run.passed, run.verdict) == (status, exit_code == 0, verdict)
-    assert (summary["verdict"], summary["passed"], summary["exit_code"]) == (
-        status,
-        verdict.passed,
-        exit_code,
-    )
-    assert (
-        summary["verdict_text"] == verdict.headline()
-        and "at the samples only" in verdict.headline()
-    )
+    assert (run.status, run.passed, run.verdict) == (status, verdict.passed, verdict)
+    said = (summary["verdict"], summary["passed"], summary["exit_code"])
+    assert said == (status, verdict.passed, exit_code)
+    assert summary["verdict_text"] == verdict.headline()
+    assert "at the samples only" in verdict.headline()
     assert summary["basis"] == "samples" and summary["not_checked"] == ["self-collision"]
     write_junit(one, tmp_path / "junit.xml")
     suite = valid_suite(tmp_path / "junit.xml")
     assert (int(suite.get("failures")) == 0) == verdict.passed
     whole = suite.find("testcase[@classname='verdict']")
-    assert (whole.find("failure") is None) == verdict.passed
-    told = (
-        whole.find("failure").get("message") if not verdict.passed else whole.findtext("system-out")
-    )
+    failure = whole.find("failure")
+    assert (failure is None) == verdict.passed
+    told = whole.findtext("system-out") if failure is None else failure.get("message")
     assert "at the samples only" in told and "self-collision not checked" in told
     headline, second, *_ = printed(one)
-    assert (
-        headline.startswith(verdict.headline(str.upper))
-        and second.strip()
-        == "self-collision not checked [CL531]; not measured: 1 excluded link: base"
-    )
+    assert headline.startswith(verdict.headline(str.upper))
+    unmeasured = "self-collision not checked [CL531]; not measured: 1 excluded link: base"
+    assert second.strip() == unmeasured
     badge = header(content_of(one))
     assert "at the samples only" in badge.badge and "Self-collision not checked" in repr(badge)
     failing = {1: "violated", 3: "violated", 2: "suspect", 0: "near"}[exit_code]
     shade = "contact" if status == "contact" else failing
     assert badge.badge_kind == shade and data_in(page_of(one))["sampled"]
     assert not any(text.endswith(" never") for text in printed(one))
-    doubts = [
-        *(one.line for one in verdict.suspects),
-        *verdict.warnings,
-        "self-collision not checked",
-    ]
+    suspects = [one.line for one in verdict.suspects]
+    doubts = [*suspects, *verdict.warnings, "self-collision not checked"]
     assert all(one in text for one in doubts for text in (verdict.text(), str(run)))
     assert "Nothing was left out" not in page_of(one)
     assert "measured against every obstacle; self-collision not checked." in page_of(

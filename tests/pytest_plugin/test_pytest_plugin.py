@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -22,7 +21,6 @@ from clearance.pytest_plugin import assert_clear
 from clearance.simulate.measure import refine
 from clearance.world.notice import Notice, Severity
 from clearance.world.placed_robot import SelfClearance
-from clearance.world.rules import Allowance
 from tests.findings.gates import load_gates, write_gates
 from tests.made_cases import arm, at
 
@@ -67,8 +65,10 @@ def inside(pytester, monkeypatch):
     return run
 
 
-def write_case(folder: Path, gates=BROKEN, name: str = "cell.clearance.yaml", **changes) -> Path:
-    return write_gates(folder, gates, **changes).rename(folder / name)
+def write_case(
+    folder: Path, gates=BROKEN, *extra: str, name="cell.clearance.yaml", **changes
+) -> Path:
+    return write_gates(folder, gates, *extra, **changes).rename(folder / name)
 
 
 def test_a_case_is_a_test_a_rule_and_one_for_the_verdict(inside, pytester):
@@ -96,7 +96,7 @@ def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester
 def test_each_case_has_a_report_of_its_own(inside, pytester):
     for folder, name, gates in (("weld", "a-x", BROKEN), ("weld-a", "x", CLEAR)):
         (pytester.path / folder).mkdir()
-        write_case(pytester.path / folder, gates, f"{name}.clearance.yaml")
+        write_case(pytester.path / folder, gates, name=f"{name}.clearance.yaml")
     result = inside("--clearance-out", "reports")
     result.assert_outcomes(passed=2, failed=2)
     assert "_ weld/a-x.clearance.yaml: verdict _" in result.stdout.str()
@@ -120,10 +120,8 @@ def test_a_case_that_is_refused_leaves_no_older_report_green(inside, pytester):
     [
         ("cases: ['no_*.yaml']", "no file is called 'no_*.yaml'"),
         ("cases: ['../*.yaml']", "a pattern below the folder of the list, without `..`"),
-        ("cases: 7", "no list of cases"),
         ("cases: [a.yaml]\nname: x", "no list of cases"),
         ("- 1", "no mapping"),
-        ("a: [", "not YAML"),
     ],
 )
 def test_a_bad_list_is_one_line(text, told, tmp_path):
@@ -145,28 +143,15 @@ def test_options_of_a_check_are_taken(inside, pytester):
     assert inside("--clearance-fail-mm", "-2").ret == pytest.ExitCode.USAGE_ERROR
 
 
-def test_a_bad_case_fails_in_one_line(inside, pytester):
-    path = write_case(pytester.path)
-    path.write_text(path.read_text().replace("limits:", "limit:"))
-    result = inside()
-    result.assert_outcomes(failed=2)
-    assert "unknown key 'limit'; did you mean 'limits'?" in result.stdout.str()
-    assert "Traceback" not in result.stdout.str()
-
-
 def test_what_is_waived_is_skipped_and_an_unused_waiver_fails(inside, pytester):
     (pytester.path / "waivers.yaml").write_text(
         "- {between: [box, gate_a], at_least: 0.002, reason: gives way, by: N. N., until: 9999-01-01}\n"
     )
-    write_gates(pytester.path, BROKEN, "waivers: [waivers.yaml]").rename(
-        pytester.path / "cell.clearance.yaml"
-    )
+    write_case(pytester.path, BROKEN, "waivers: [waivers.yaml]")
     result = inside("-rs")
     result.assert_outcomes(passed=1, skipped=1)
     assert "by N. N.: gives way" in result.stdout.str()
-    write_gates(pytester.path, CLEAR, "waivers: [waivers.yaml]").rename(
-        pytester.path / "cell.clearance.yaml"
-    )
+    write_case(pytester.path, CLEAR, "waivers: [waivers.yaml]")
     result = inside()
     result.assert_outcomes(passed=1, failed=1)
     assert "is not needed" in result.stdout.str()
@@ -188,18 +173,17 @@ from clearance.pytest_plugin import assert_clear
 
 def test_of_a_case(clearance_case):
     run = clearance_case("cell/case.yaml")
-    assert run.record.need == {need!r}
+    assert run.record.need == "minimum"
     assert_clear(run, between=("box", "gate_b"), at_least=0.05)
     with pytest.raises(AssertionError, match="3.000 mm, below the fail limit"):
         assert_clear(run)
 """
 
 
-@pytest.mark.parametrize("need", ["limit", "minimum"])
-def test_the_fixture_checks_a_case_by_its_path(need, inside, pytester):
+def test_the_fixture_checks_a_case_by_its_path(inside, pytester):
     write_gates(pytester.path / "cell", BROKEN)
-    pytester.makepyfile(TESTS.format(need=need))
-    inside("--clearance-need", need).assert_outcomes(passed=1)
+    pytester.makepyfile(TESTS)
+    inside("--clearance-need", "minimum").assert_outcomes(passed=1)
 
 
 def test_what_is_refused_in_a_test_shows_the_line_of_the_test_alone(inside, pytester):
@@ -218,19 +202,6 @@ def test_of_no_case(clearance_case):
     lines = told.stdout.str()
     assert "did you mean 'gate_a'?" in lines and "there is no file 'none.yaml'" in lines
     assert "kept.py" not in lines and "collected.py" not in lines and "in __init__" not in lines
-
-
-@pytest.mark.slow  # two workers import all that measures
-@pytest.mark.cold
-def test_with_several_workers(pytester, monkeypatch):
-    alone(monkeypatch)
-    for i, gates in enumerate((CLEAR, BROKEN)):
-        write_case(pytester.path / f"weld_{i}", gates, "case.yaml")
-    (pytester.path / "all.clearance.yaml").write_text("cases: ['weld_*/case.yaml']\n")
-    plugins = ("-p", "xdist.plugin", "-p", "clearance.pytest_plugin")
-    result = pytester.runpytest_subprocess(*plugins, "-n", "2", "--dist", "loadgroup")
-    result.assert_outcomes(passed=2, failed=2)
-    assert "box - gate_a at 0.350 s" in result.stdout.str()
 
 
 @pytest.mark.cold
@@ -261,17 +232,10 @@ def test_what_keeps_its_distance_is_clear(run):
     ("asked", "told"),
     [
         ({}, "below the fail limit of 5 mm: box - gate_a"),
-        (
-            {"between": ("box", A)},
-            "box - gate_a: 3.000 mm at 0.350 s, step 7; the fail limit is 5 mm",
-        ),
-        (
-            {"at_least": 0.004},
-            "box - gate_a: 3.000 mm at 0.350 s, step 7; at least 4 mm was asked for",
-        ),
+        ({"between": ("box", A)}, "box - gate_a: 3.000 mm at 0.350 s, step 7; the fail limit is 5 mm"),
         ({"between": ("box", B), "at_least": 0.2}, "box - gate_b: 100.0 mm at"),
     ],
-)
+)  # fmt: skip
 def test_what_comes_nearer_is_told(run, asked, told):
     with pytest.raises(AssertionError) as error:
         assert_clear(run, **asked)
@@ -386,38 +350,19 @@ def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_mea
 @pytest.mark.parametrize(
     ("between", "told"),
     [
-        (
-            ("l1", "l2"),
-            "no pair is measured between ['l1', 'l2']: l2 - l1 (self-collision not checked)",
-        ),
+        (("l1", "l2"), "no pair is measured between ['l1', 'l2']: l2 - l1 (self-collision not checked)"),
         (("[l]0", "o0"), "'[l]0' matches l0 alone: no geometry"),
-        (("l0", "*"), "'l0' matches l0 alone: no geometry"),
         (("basis", "*"), "no body is called 'basis'"),
     ],
-)
+)  # fmt: skip
 def test_a_pattern_of_what_is_not_measured_says_why(swaying, between, told):
     with pytest.raises(BadInput, match=re.escape(told)):
         assert_clear(swaying, between=between)
 
 
-def test_a_body_whose_every_pair_is_allowed_is_there(tmp_path):
-    run = cl.check(load_gates(tmp_path, CLEAR))
-    case = dataclasses.replace(run.record.case, allow=(Allowance(("box", A)),))
-    told = f"no pair is measured between ['box', {A!r}]: box - {A} (allowed by ['box', {A!r}])"
-    with pytest.raises(BadInput, match=re.escape(told)):
-        assert_clear(cl.check(case), between=("box", A), at_least=0.0)
-
-
-def test_contact_is_never_clear(tmp_path):
-    run = cl.check(load_gates(tmp_path, {A: (0.0, 0.0)}, limits="{fail: 0}"))
-    with pytest.raises(AssertionError, match="contact at"):
-        assert_clear(run, between=("box", A), at_least=0.0)
-
-
 def test_pytest_collects_nothing_else(inside, pytester):
     write_gates(pytester.path, BROKEN)
     assert inside().ret == pytest.ExitCode.NO_TESTS_COLLECTED
-    shutil.rmtree(pytester.path / "reports", ignore_errors=True)
 
 
 def test_a_listed_case_that_is_a_link_to_nowhere_is_not_left_out(tmp_path):
