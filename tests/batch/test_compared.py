@@ -34,13 +34,6 @@ def edit(path, old, new):
     path.write_text(text.replace(old, new))
 
 
-def test_the_same_again_is_unchanged(folder, capsys):
-    assert batch("new") == 1
-    code, lines = compared(capsys)
-    assert (code, lines) == (0, ["since the baseline: 4 cases: 4 unchanged"])
-    assert compared(capsys, "--quiet") == (0, [])
-
-
 def test_an_obstacle_that_moved_is_told_case_by_case(folder, capsys):
     """6 cm nearer: what keeps its limits is worse and does not alarm."""
     edit(folder / "cell.yaml", "xyz: [1, 0, 0]", "xyz: [0.94, 0, 0]")

@@ -136,23 +136,6 @@ def test_the_key_is_of_all_that_decides_a_row(manifest):
     assert len(keys | {key}) == len(names) + 2 > 12
 
 
-def test_a_recorded_run_is_part_of_what_a_row_is_of(manifest, tmp_path):
-    """Recorded 10 mm farther than asked, so nearer by as much; the same file again is known."""
-    own = tmp_path / "run.csv"
-    asked = dict(motion="recorded", recorded=own, unproven_ok=True)
-
-    def run_with(farther: float):
-        own.write_text(f"time,rail\n0,0\n1,{0.3 + farther}\n2,0.4\n")
-        return run_here(manifest, tmp_path / "out", changes=asked)
-
-    (manifest.parent / "batch.yaml").write_text("cell: cell.yaml\ntrajectories: t000.csv\n")
-    told, found = run_with(0.13)  # 0.8 - 0.43 m, where 0.4 m was asked for
-    assert told.measured == ["t000"] and column(found, "clearance") == [pytest.approx(0.37)]
-    assert run_with(0.13)[0].measured == []
-    told, found = run_with(0.14)
-    assert told.measured == ["t000"] and column(found, "clearance") == [pytest.approx(0.36)]
-
-
 def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path):
     own = tmp_path / "t.yaml"
     own.write_text("obstacles: {wall: {xyz: 0.001}}\n")
@@ -242,24 +225,6 @@ def test_a_mesh_that_appears_nearer_is_measured(nearer, manifest, tmp_path):
     assert told.measured == [] and statuses(again) == statuses(before)
 
 
-@pytest.mark.cold  # xacro runs in a process of its own
-@pytest.mark.slow  # and is started twice
-def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypatch):
-    pytest.importorskip("xacro")
-    sized = URDF.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
-    sized = sized.replace('size="0.2 0.2 0.2"', 'size="$(optenv CART_LENGTH 0.2) 0.2 0.2"')
-    (manifest.parent / "cart.urdf.xacro").write_text(sized)
-    cell = manifest.parent / "cell.yaml"
-    cell.write_text(CELL.replace("cart.urdf", "cart.urdf.xacro, xacro: true"))
-    monkeypatch.delenv("CART_LENGTH", raising=False)
-    _, before = run_here(manifest, tmp_path / "out")
-    told, _ = run_here(manifest, tmp_path / "out")
-    assert told.measured == [] and statuses(before)["t003"] == "clear"
-    monkeypatch.setenv("CART_LENGTH", "1.5")
-    told, now = run_here(manifest, tmp_path / "out")
-    assert len(told.measured) == len(NEAREST) and statuses(now)["t003"] == "contact"
-
-
 @pytest.mark.slow
 def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
     _, found = run_here(manifest, tmp_path / "out")
@@ -269,16 +234,3 @@ def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeyp
     monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
     _, cut = run_here(manifest, tmp_path / "cut")
     assert set(column(cut, "incomplete")) == {"1 of 1 findings are not listed"}
-
-
-@pytest.mark.slow
-def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
-    manifest = write_cell(tmp_path / "in", [0.2])
-    cell = tmp_path / "in" / "cell.yaml"
-    cell.write_text(cell.read_text() + "tolerance: {base: {xyz: 0.3}}\n")
-    run_here(manifest, tmp_path / "store")
-    (row,) = cases(tmp_path / "store")
-    assert (row["status"], row["measured"], row["exit_code"]) == ("not proven", "near", 1)
-    assert any("with the tolerances" in reason for reason in row["reasons"])
-    page = (tmp_path / "store" / "batch.html").read_text()
-    assert '"not proven"' in page and ".tag.not" in page

@@ -130,14 +130,6 @@ def test_an_expired_waiver_is_told_though_a_case_has_no_answer(of_cell, folder, 
     assert "waivers[0]) has expired on 2026-10-31" in told and "is not needed" not in told
 
 
-def test_a_cell_that_cannot_be_read_is_an_error_of_its_cases(folder, capsys):
-    (folder / "waivers.yaml").write_text(waiver(until="2026-10-31"))
-    (folder / "cell.yaml").write_text("robot: [\n")
-    assert batch() == 1
-    told = capsys.readouterr().out
-    assert told.startswith("ERROR  3 cases: 3 error") and "has expired on 2026-10-31" in told
-
-
 def test_a_waiver_is_a_change_of_its_cases_alone(folder, capsys):
     (folder / "waivers.yaml").write_text(waiver(case="t002"))
     batch()
@@ -162,3 +154,11 @@ def test_a_waiver_that_another_cell_needs_is_not_needed_for_that(folder, capsys)
     asked = ["batch", "batch.yaml", "far/batch.yaml", "--out", "store", "--jobs", "1"]
     assert run([*asked, "--today", DAY]) == 1
     assert capsys.readouterr().out.startswith("UNUSED WAIVER  4 cases: 4 clear")
+
+
+def test_a_cell_that_cannot_be_read_is_an_error_of_its_cases(folder, capsys):
+    (folder / "waivers.yaml").write_text(waiver(until="2026-10-31"))
+    (folder / "cell.yaml").write_text("robot: [\n")
+    assert batch() == 1
+    told = capsys.readouterr().out
+    assert told.startswith("ERROR  3 cases: 3 error") and "has expired on 2026-10-31" in told

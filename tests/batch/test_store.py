@@ -1,6 +1,5 @@
 """The database of a batch: what is committed comes back, what is damaged or of something else is one line."""
 
-import os
 import sqlite3
 from contextlib import closing
 from datetime import date
@@ -109,23 +108,6 @@ def test_a_file_of_something_else_is_one_line(content, manifest, tmp_path, capsy
         err = capsys.readouterr().err
         assert err.startswith("error: ") and err.count("\n") == 1 and FILE in err
         assert "damaged" in err or "no store" in err
-
-
-def test_a_database_of_something_else_is_one_line_and_stays(manifest, tmp_path, capsys):
-    (tmp_path / "out").mkdir()
-    changed(tmp_path / "out", "CREATE TABLE mine (x)")
-    assert run(["batch", str(manifest), "--out", str(tmp_path / "out")]) == 2
-    err = capsys.readouterr().err
-    assert "this is no store" in err and err.count("\n") == 1
-    changed(tmp_path / "out", "INSERT INTO mine VALUES (1)")
-
-
-def test_a_store_that_is_cut_off_is_one_line(manifest, tmp_path, capsys):
-    run_here(manifest, tmp_path / "out")
-    os.truncate(tmp_path / "out" / FILE, 9000)
-    assert run(["batch", str(manifest), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 2
-    err = capsys.readouterr().err
-    assert "the store is damaged" in err and "a new folder" in err and err.count("\n") == 1
 
 
 def test_a_store_of_another_format_is_one_line(manifest, tmp_path, refusal):

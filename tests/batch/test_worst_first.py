@@ -26,13 +26,6 @@ def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch)
     assert "contact     t001: contact 30.00 mm deep: slider - wall" in told
 
 
-def test_a_depth_with_noise_is_shown_on_the_page_as_everywhere_else(tmp_path):
-    _, found = run_here(write_cell(tmp_path / "in", [-0.01]), tmp_path / "out")
-    i = found.rows.schema.get_field_index("penetration")
-    found = BatchAnswer(found.rows.set_column(i, "penetration", pa.array([0.04000000000000001])))
-    assert page_data(found, tmp_path / "out")["clearance"] == [-40.0]
-
-
 def test_cases_with_warnings_are_named(tmp_path, capsys):
     _, found = run_here(write_cell(tmp_path / "in", [0.4, 0.5, 0.6]), tmp_path / "out")
     i = found.rows.schema.get_field_index("warnings")

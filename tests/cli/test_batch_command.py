@@ -34,15 +34,6 @@ def test_the_exit_code_is_that_of_the_worst(folder, capsys):
     assert capsys.readouterr().out == ""
 
 
-@pytest.mark.parametrize(("typed", "told"), [([], "batch"), (["check"], "batch check")])
-def test_a_hint_names_the_command_that_was_typed(typed, told, folder, refusal, capsys):
-    err = refusal("batch", *typed, "batch.yaml", "--out", "store", "--shard", "5/2")
-    assert "'5/2' is no part; i/n with i from 1 to n" in err
-    assert err.endswith(f"(see clearance {told} --help) [CL710]\n")
-    assert run(["batch", "--help"]) == 0
-    assert "--shard" in capsys.readouterr().out
-
-
 def test_tolerances_of_a_file_decide_and_status_sees_another(folder, capsys):
     (folder / "batch.yaml").write_text("cell: cell.yaml\ntrajectories: t000.csv\n")
     own = folder / "t.yaml"
@@ -86,13 +77,6 @@ def test_a_store_that_cannot_be_written_is_one_line(folder, capsys):
     assert batch("batch.yaml", "--out", "store") == 2
     told = capsys.readouterr().err
     assert told.startswith("error: store: cannot write here: ") and told.count("\n") == 1
-
-
-def test_of_many_names_the_nearest_are_told(folder, refusal):
-    write_cell(folder, [0.5] * 60)
-    batch("batch.yaml", "--out", "store", "--quiet")
-    told = refusal("view", "store", "weld")
-    assert "there is no case 'weld'; valid are 60 names, the nearest: t" in told and len(told) < 200
 
 
 def test_view_writes_the_page_of_one_case_and_links_it(folder, refusal, capsys):

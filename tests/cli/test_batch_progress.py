@@ -3,9 +3,6 @@
 from clearance.batch.item import Item
 from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.run import BatchWatch
-from clearance.cli.batch_run import shown_progress
-from clearance.progress import never_silent
-from tests.counted_end import counted_end
 
 ITEMS = [Item(i, name, f"{name}.yaml", None, None) for i, name in enumerate("abcd")]
 
@@ -25,14 +22,3 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
     watch.note([], [Fault(3, "unreadable")])
     assert watch.line.startswith("4 of 4 cases measured, ")
     assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
-
-
-def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch, capsys):
-    end = counted_end(monkeypatch, 2)
-    with never_silent(lambda: "batch"), shown_progress(False) as watch:
-        watch.begin(ITEMS)
-        end.pass_all()
-    assert capsys.readouterr().err.splitlines() == [
-        "0 of 4 cases measured, 10 s so far",
-        "0 of 4 cases measured, 20 s so far",
-    ]

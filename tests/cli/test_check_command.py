@@ -59,13 +59,6 @@ def test_every_need_is_certified_and_json_is_all_that_is_printed(folder, capsys,
     assert not peer or told["cross_check"]["agrees"]
 
 
-def test_report_and_junit_are_where_they_were_asked_for(folder, capsys):
-    assert check(capsys, "--out", "deep/report", "--junit", "junit.xml")[0] == 0
-    written = {path.name for path in (folder / "deep/report").iterdir()}
-    assert {"steps.csv", "steps.parquet", "summary.json", "report.html"} <= written
-    assert (folder / "junit.xml").read_bytes().startswith(b"<?xml")
-
-
 @pytest.mark.peer
 @pytest.mark.parametrize("limit", ["50", "150"])
 def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, capsys, monkeypatch, limit):

@@ -56,15 +56,6 @@ def check(*arguments: str) -> int:
     return run(["check", *arguments])
 
 
-def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, refusal, capsys):
-    given = ("broken/case.yaml", "--waivers", "waivers.yaml", "--today", "2026-11-01")
-    assert check(*given, "--json") == 0
-    summary = json.loads(capsys.readouterr().out)
-    assert "waivers.yaml" in [one["path"] for one in summary["inputs"]]
-    assert summary["n_waivers"] == 1 and "gives way" in summary["waived"][0]
-    assert "would overwrite" in refusal("check", *given, "--summary", "waivers.yaml")
-
-
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -183,19 +174,6 @@ def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(
         assert told.out == ""
 
 
-def test_a_comparison_fails_by_suspect_input_alone(reports, capsys):
-    text = (reports / "clear" / "case.yaml").read_text()
-    (reports / "clear" / "case.yaml").write_text(text.replace("xyz: [0.5,", "xyz: [5000,"))
-    assert check("clear/case.yaml", "--out", "of_suspect", "--baseline", "of_clear") == 2
-    told = capsys.readouterr().out
-    assert told.startswith("SUSPECT") and "since the baseline: NEW suspect input" in told
-    assert run(["compare", "of_clear", "of_suspect"]) == 1
-    told = capsys.readouterr().out
-    assert told.lstrip().startswith("since the baseline: NEW suspect input; ")
-    assert "new: suspect units: CHECK UNITS" in told
-    assert run(["compare", "of_suspect", "of_clear", "--quiet"]) == 0
-
-
 ASKED = ("--junit", "junit.xml", "--summary", "own.md", "--out", "r", "--quiet")
 
 
@@ -244,19 +222,6 @@ def test_what_is_refused_makes_no_file_of_a_word_that_is_not_understood(place, c
     assert capsys.readouterr().err.count("::error file=clear/case.yaml") == 1
 
 
-def test_the_hook_tells_all_that_fails(place, capsys):
-    text = (place / "broken" / "case.yaml").read_text()
-    text = text.replace("xyz: [0.5,", "xyz: [5000,") + "waivers: [../waivers.yaml]\n"
-    (place / "broken" / "case.yaml").write_text(text)
-    (place / "waivers.yaml").write_text(WAIVER.replace("2027", "2020"))
-    assert run(["pre-commit", "broken/case.yaml"]) == 2
-    first, *lines = capsys.readouterr().out.splitlines()
-    assert first == "broken/case.yaml: SUSPECT (would be VIOLATED)"
-    assert lines[0].startswith("  3.000 mm, below the fail limit of 5 mm: box - gate_a")
-    assert lines[1].startswith("  suspect units: CHECK UNITS: obstacle 'gate_b'")
-    assert lines[2].startswith("  unused waiver: waiver box - gate_a") and len(lines) == 3
-
-
 def test_warnings_that_fail_are_told_as_what_fails(place, capsys, monkeypatch):
     text = (place / "clear" / "case.yaml").read_text()
     (place / "clear" / "case.yaml").write_text(text.replace("xyz: [0.5,", "xyz: [18,"))
@@ -290,3 +255,16 @@ def test_a_refused_case_leaves_nothing_green(place, capsys, monkeypatch):
         assert suite.get("errors") == "1" and fault.get("message") == told
         for summary in (place / "own.md", step):
             assert summary.read_text().splitlines()[-3] == f"### {given.name}: ERROR"
+
+
+def test_the_hook_tells_all_that_fails(place, capsys):
+    text = (place / "broken" / "case.yaml").read_text()
+    text = text.replace("xyz: [0.5,", "xyz: [5000,") + "waivers: [../waivers.yaml]\n"
+    (place / "broken" / "case.yaml").write_text(text)
+    (place / "waivers.yaml").write_text(WAIVER.replace("2027", "2020"))
+    assert run(["pre-commit", "broken/case.yaml"]) == 2
+    first, *lines = capsys.readouterr().out.splitlines()
+    assert first == "broken/case.yaml: SUSPECT (would be VIOLATED)"
+    assert lines[0].startswith("  3.000 mm, below the fail limit of 5 mm: box - gate_a")
+    assert lines[1].startswith("  suspect units: CHECK UNITS: obstacle 'gate_b'")
+    assert lines[2].startswith("  unused waiver: waiver box - gate_a") and len(lines) == 3

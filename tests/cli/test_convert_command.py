@@ -103,12 +103,6 @@ def test_a_motion_of_which_samples_do_not_say_all_is_refused(
     assert says in told and "name the file itself in a case" in told
 
 
-def test_a_table_of_places_without_turns_is_told_to_be_of_joints(tmp_path, capsys):
-    (tmp_path / "a.csv").write_text("time,x,y,z\n0,0,0,0\n1,1,0,0\n")
-    assert convert(tmp_path / "a.csv", tmp_path / "b.yaml") == 0
-    assert "x, y and z are joints; poses also need qx, qy, qz, qw" in capsys.readouterr().out
-
-
 def test_a_late_first_point_stays_one_in_a_message(tmp_path):
     (tmp_path / "a.yaml").write_text(LATE)
     assert convert(tmp_path / "a.yaml", tmp_path / "b.json") == 0

@@ -154,29 +154,6 @@ def test_input_that_is_suspect_is_refused(capsys):
     assert not any(Path("made").iterdir())
 
 
-def test_meshes_beside_the_scene_are_not_overwritten_unasked(capsys):
-    Path("cell.scene").write_text(FIRST)
-    Path("made/cell.scene.mesh0.off").write_text("mine")
-    assert convert("cell.scene", "made/scene.yaml") == 2
-    assert "made/cell.scene.mesh0.off: already exists" in capsys.readouterr().err
-    assert not Path("made/scene.yaml").exists()
-    assert convert("cell.scene", "made/scene.yaml", "--force") == 0
-    assert Path("made/cell.scene.mesh0.off").read_text().startswith("OFF")
-    assert "3 obstacles; made/cell.scene.mesh0.off" in capsys.readouterr().out
-
-
-def test_what_is_read_is_never_written(capsys):
-    Path("s.scene").write_text(FIRST)
-    Path("s.scene.mesh0.off").symlink_to("s.scene")
-    assert convert("s.scene", "s.yaml", "--force") == 2
-    told = capsys.readouterr().err.replace(f"{Path.cwd()}/", "")
-    assert "would overwrite 's.scene', which this run reads" in told
-    assert Path("s.scene").read_text() == FIRST and not Path("s.yaml").exists()
-    Path("ours.yaml").write_text(OURS)
-    assert convert("ours.yaml", "ours.yaml", "--force") == 2
-    assert Path("ours.yaml").read_text() == OURS
-
-
 def test_packages_of_a_scene_are_found_in_the_folders_that_are_named(capsys):
     (Path("packages") / "parts").mkdir(parents=True)
     Path("cube.stl").rename("packages/parts/cube.stl")

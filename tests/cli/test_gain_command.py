@@ -30,12 +30,6 @@ def test_a_change_that_is_enough_is_told_and_written(slot, tmp_path, capsys):
     assert run(["check", str(out / "case.yaml")]) == 0
 
 
-def test_a_margin_is_kept_and_said_not_to_be_in_the_case(slot, capsys):
-    code, text, _ = said(capsys, slot, "--kind", "base", "--margin-mm", "3")
-    assert code == 0 and "moved 23.001 mm" in text and "by 3 mm more than its limit" in text
-    assert "not written into the changed case" in text
-
-
 def test_a_shift_keeps_within_its_room(slot, capsys):
     code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,19,0")
     assert code == 1 and "no change within what is allowed is large enough" in text
@@ -77,11 +71,6 @@ def test_a_slow_down_is_told(tmp_path, capsys):
     assert code == 0 and " % longer for its path: 0." in text and "bound     at least " in text
     assert "takes longer" in (tmp_path / "out" / "gain.html").read_text()
     assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
-
-
-def test_a_folder_that_holds_an_input_is_refused_before_any_search(slot, refusal):
-    options = ("--kind", "base", "--out", slot.parent, "--force")
-    assert "would overwrite" in refusal("gain", slot, *options)
 
 
 @pytest.mark.parametrize(

@@ -68,13 +68,6 @@ def test_links_that_touch_at_every_step_are_a_comment_and_a_contact_until_it_is_
     assert answer["left_out"] == {"neighbours": 2, "allowed": 1}
 
 
-def test_what_stands_on_something_is_proposed_with_them(capsys):
-    text = new("--srdf", "folder.srdf", "--scene", "scene.yaml")
-    rows = [line for line in text.splitlines() if line.startswith("# - [")]
-    assert rows == ["# - [base, table]", "# - [arm, base]", "# - [hand, base]"]
-    assert checked(uncovered(text), capsys)[0] == 0
-
-
 def test_where_nothing_touches_or_links_are_not_asked_about_nothing_is_proposed():
     assert "touch at every step" not in new(robot="plain.urdf")
     Path("scene.yaml").write_text(FOOT.replace("-0.2]", "-0.3]"))

@@ -9,9 +9,8 @@ import pytest
 from clearance import check
 from clearance.case.case_file import load_case
 from clearance.cli import run
-from tests.cart import CASE, PATH, files, write_cart
+from tests.cart import files, write_cart
 
-VELOCITIES = "time,rail,rail/velocity\n0,0,0.1\n0.3333,0.30000000000000004,1e-7\n2,0.7,0\n"
 TWO = """robots:
 - {name: left, urdf: cart.urdf, trajectory: path.csv}
 - {name: right, urdf: cart.urdf, base: {xyz: [0, 2, 0]}, trajectory: {file: path.csv, start: 0.5}}
@@ -37,17 +36,6 @@ def test_all_are_written_and_named_and_nothing_else(folder, capsys):
     assert told == [f"  written     {name}" for name in names]
     given = {"cart.urdf", "case.yaml", "path.csv"}
     assert set(files(folder)) == {*given, *names}
-
-
-@pytest.mark.parametrize(("path", "name"), [(PATH, "back.yaml"), (VELOCITIES, "back.csv")])
-def test_the_trajectory_back_gives_the_same_results(folder, path, name):
-    Path("path.csv").write_text(path)
-    assert run(["check", "case.yaml", "--out", "first", "--trajectory", name]) == 0
-    Path("second.yaml").write_text(CASE.replace("path.csv", name))
-    assert run(["check", "second.yaml", "--out", "second"]) == 0
-    first, second = files(folder / "first"), files(folder / "second")
-    for same in ("steps.parquet", "steps.csv", "contacts.csv", "worst_moments.yaml"):
-        assert first[same] == second[same]
 
 
 def test_several_robots_are_documents_in_the_order_of_the_case(folder, refusal):

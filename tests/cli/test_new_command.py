@@ -184,16 +184,6 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
     assert warned in capsys.readouterr().out
 
 
-def test_limits_are_those_that_are_given(refusal, capsys):
-    given = (*USUAL, "--fail-mm", "7.5")
-    assert new(*given, "--warn-mm", "20") == 0
-    assert "fail limit" not in capsys.readouterr().out
-    limits = load_case("out/case.yaml").limits
-    assert (limits.fail, limits.warn) == (0.0075, 0.02)
-    told = refusal("new", "out", "--robot", "cell/arm.urdf", *given, "--warn-mm", 2, "--force")
-    assert "the warn limit 2 mm is below the fail limit 7.5 mm" in told
-
-
 def test_how_a_file_was_read_stays_in_the_case(capsys):
     words = ["--trajectory", "cell/degrees.csv", "--scene", "cell/planning.yaml", "--check"]
     assert new(*words) == 0
@@ -350,15 +340,6 @@ def test_nothing_is_overwritten_unasked(refusal):
     assert new(*USUAL, "--force") == 0
     assert Path("out/notes.txt").read_text() == "mine too"
     assert Path("out/scene.yaml").read_text() != "mine"
-
-
-def test_a_case_in_the_folder_of_its_files(monkeypatch):
-    monkeypatch.chdir("cell")
-    words = ["--robot", "arm.urdf", "--trajectory", "path.csv", "--scene", "world.sdf", "--force"]
-    assert run(["new", ".", *words]) == 0
-    assert Path("scene.yaml").read_text().startswith("# Made by")
-    assert "urdf: arm.urdf" in Path("case.yaml").read_text()
-    assert "name: cell" in Path("case.yaml").read_text()
 
 
 def test_paths_are_relative_where_that_is_short_and_means_one_place(tmp_path):

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from clearance.cli import run
 from clearance.errors import Unwritable
 from clearance.files import refuse_inputs
-from tests.cart import CASE, PATH, ROOT, files, write_cart
+from tests.cart import CASE, ROOT, write_cart
 from tests.formats.making import cube_stl
 
 WITH_MESH = CASE.replace("box: {size: [0.2, 1, 1]}", "mesh: {file: workspace.stl}")
@@ -91,15 +90,3 @@ def test_a_command_that_would_write_over_its_input_or_nowhere_is_refused(
     folder: Path, refusal: Callable[..., str], words: str, said: str
 ) -> None:
     assert said in refusal(*(word if word != "''" else "" for word in words.split()))
-
-
-def test_an_input_far_from_the_case_is_one_as_well(
-    folder: Path, capsys: pytest.CaptureFixture, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    """Its path is shown without its folder where it shares nothing with the case's but the root."""
-    far = tmp_path_factory.mktemp("far")
-    (far / "steps.csv").write_text(PATH)
-    Path("case.yaml").write_text(CASE.replace("path.csv", str(far / "steps.csv")))
-    assert run(["check", "case.yaml", "--out", str(far)]) == 2
-    assert READS in capsys.readouterr().err
-    assert files(far) == {"steps.csv": PATH.encode()}

@@ -6,12 +6,10 @@ from pathlib import Path
 import pytest
 from ruamel.yaml import YAML
 
-from clearance.cli import run
 from clearance.errors import BadInput
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
 from tests.formats.making import CASE
-from tests.formats.making_cell import CELL
 from tests.report.schemas import printed_schema
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -92,19 +90,3 @@ def test_what_it_takes_is_taken(errors, old, new):
 )
 def test_what_it_marks_is_refused(errors, old, new):
     assert_refused(errors, CASE, old, new)
-
-
-def test_a_case_in_which_nothing_moves_is_marked_and_refused(errors):
-    text = CELL.replace(", trajectory: path.csv", "").replace("moves: door.csv", "on: left/tip")
-    assert errors(text)
-    with pytest.raises(BadInput, match="'trajectory' is missing"):
-        validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
-
-
-def test_a_shell_is_told_how_a_command_line_may_go_on(monkeypatch, capsys):
-    monkeypatch.setenv("_CLEARANCE_COMPLETE", "zsh_complete")
-    for words, told in (("clearance wor", "workspace"), ("clearance check --watc", "--watch")):
-        monkeypatch.setenv("COMP_WORDS", words)
-        monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
-        assert run([]) == 0
-        assert told in capsys.readouterr().out.splitlines()

@@ -74,12 +74,6 @@ def test_what_was_never_seen_is_measured_unless_it_is_trusted(folder, capsys):
     assert code == 2 and "with geometry: collision_or_visual" in json.loads(out)["reasons"][0]
 
 
-def test_a_pair_of_links_can_be_allowed_in_either_order(folder, capsys):
-    for pair in ("[base, hand]", "[hand, base]"):
-        code, out, _ = check(folder, capsys, allow=f"allow: [{pair}]")
-        assert code == 0 and json.loads(out)["worst"]["obstacle"] == "far"
-
-
 @pytest.mark.parametrize(
     ("asked", "told"),
     [

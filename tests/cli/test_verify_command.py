@@ -92,14 +92,6 @@ def test_a_case_that_is_elsewhere_is_given(home, refusal, capsys):
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_receipt_that_is_cut_off_and_none_at_all(home, refusal):
-    receipt = home / "out" / "receipt.bin"
-    receipt.write_bytes(receipt.read_bytes()[:-1])
-    assert "damaged or cut off" in refusal("verify", home / "out")
-    receipt.unlink()
-    assert "--receipt" in refusal("verify", home / "out")
-
-
 @pytest.mark.parametrize(
     "options",
     [

@@ -28,8 +28,6 @@ from clearance.world.rules import Waiver
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from tests.findings.gates import load_gates, write_gates, write_way
-from tests.findings.test_verdict import WARNING, made
-from tests.report.made import model_of
 from tests.report.records import arm
 
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)}
@@ -163,12 +161,6 @@ def test_plain_text_stays_text_in_markdown(text):
     assert not re.search(r"https?:/|www\.", plain(text), re.IGNORECASE)
 
 
-def test_plain_text_is_read_where_nobody_renders_it():
-    for text in ("gate_a - panda_link8 at 0.201 s, step 8 [CL501]", "M&M's: 50 %, -3.5 mm, #2"):
-        assert plain(text) == text
-    assert plain("a|b <c> *d*") == r"a\|b \<c\> \*d\*"
-
-
 def test_names_from_files_do_not_break_out_of_the_table(run):
     finding = dataclasses.replace(
         run.findings[0], body_a="a|b\n| x |", body_b="<script>", rule="`r`"
@@ -200,9 +192,3 @@ def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):
     assert lines[0].startswith("::warning title=clearance%3A gates::waived: 3.000 mm, below")
     table = markdown(waived.report)
     assert "| violated, waived |" in table and "with 2 waivers" in table
-
-
-def test_markdown_names_a_warning_once_whether_it_fails_or_not():
-    for strict in (False, True):
-        text = markdown(model_of(made(notices=(WARNING,), strict=strict)))
-        assert text.count("links without a collision shape: antenna") == 1

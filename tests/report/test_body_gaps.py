@@ -3,8 +3,6 @@
 import dataclasses
 import functools
 
-import pytest
-
 import clearance as cl
 from clearance.cli import run
 from clearance.record.record import Record
@@ -42,20 +40,9 @@ def test_pairs_that_both_stand_are_left_out(tmp_path):
     assert pairs == {("upper", "post")}
 
 
-def test_what_moves_on_both_sides_is_a_gap():
-    both = dataclasses.replace(run_of(swing()).pair_minima[0], link="tool", obstacle="elbow")
-    (told,) = body_gaps_of([dataclasses.replace(both, clearance=0.3)], frozenset({"post"}))
-    assert told["may_catch"] == ["body"]
-
-
 def test_on_the_command_line(tmp_path, refusal, capsys):
     file = write_case(tmp_path, CASE.replace("xyz: [1.2, 0, 0]", "xyz: [0.2, 0.6, 0]"))
     run(["check", str(file), "--body-gaps"])
     assert "body gaps   " in capsys.readouterr().out
     told = refusal("check", file, "--body-gaps", "--need", "minimum")
     assert "body gaps need the least of every pair" in told
-
-
-@pytest.mark.parametrize(("part", "width"), [("body", 0.5), ("head", 0.3), ("finger", 0.025)])
-def test_the_widths_are_those_of_the_table(part, width):
-    assert WIDTHS[part] == width

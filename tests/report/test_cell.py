@@ -32,43 +32,13 @@ def summary(run):
     return json.loads(json_text(run.summary))
 
 
-def test_tables_have_the_sides_of_any_two_bodies_and_the_rule(run, tmp_path):
-    run.save(tmp_path / "out")
-    steps = pyarrow.csv.read_csv(tmp_path / "out" / "steps.csv")
-    assert {"body_a", "body_b", "a_x", "b_z", "rule", "nearest_clearance"} <= set(
-        steps.column_names
-    )
-    assert not {"link", "obstacle"} & set(steps.column_names)
-    contacts = pyarrow.csv.read_csv(tmp_path / "out" / "contacts.csv")
-    assert contacts.column_names[:4] == ["step", "time", "body_a", "body_b"]
-    pairs = pyarrow.parquet.read_table(tmp_path / "out" / "pairs.parquet").to_pylist()
-    least = {}
-    for row in pairs:
-        assert (row["clearance"] is None) == (row["rule"] is None)
-        if row["rule"] is not None:
-            key = row["body_a"], row["body_b"], row["rule"]
-            least[key] = min(least.get(key, row["clearance"]), row["clearance"])
-    minima = {(one.link, one.obstacle, one.rule): one.clearance for one in run.pair_minima}
-    assert least.items() <= minima.items()
-    assert {key[:2] for key in minima} == {key[:2] for key in least}
-
-
 def test_one_robot_among_what_stands_keeps_its_names_first_and_has_the_others_too(tmp_path):
     robots = (sliding("left", [(0, 0), (1, 1)]),)
     obstacles = (box("post", (0.2, 0.2, 2)),)
     run = cl.check(cell((), robots, obstacles, ()), need="pairs")
     run.save(tmp_path / "out")
-    old = [
-        "link",
-        "obstacle",
-        "link_x",
-        "link_y",
-        "link_z",
-        "obstacle_x",
-        "obstacle_y",
-        "obstacle_z",
-    ]
-    new = ["body_a", "body_b", "a_x", "a_y", "a_z", "b_x", "b_y", "b_z"]
+    old = "link obstacle link_x link_y link_z obstacle_x obstacle_y obstacle_z".split()
+    new = "body_a body_b a_x a_y a_z b_x b_y b_z".split()
     steps = pyarrow.csv.read_csv(tmp_path / "out" / "steps.csv")
     assert steps.column_names[:11] == ["step", "time", "clearance", *old]
     assert [steps[name] for name in old] == [steps[name] for name in new]
@@ -82,13 +52,7 @@ def test_one_robot_among_what_stands_keeps_its_names_first_and_has_the_others_to
 def test_padding_alone_is_no_contact_anywhere(tmp_path):
     """The bodies are 1 mm apart and padded by 3 mm: violated by 2 mm, in contact nowhere."""
     robots = (sliding("left", [(0, 0), (1, 0)], padding={"tool": 0.003}),)
-    obstacles = (
-        box(
-            "post",
-            (0.1, 0.1, 1),
-            pose=[[1, 0, 0, 0.101], [0, 1, 0, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]],
-        ),
-    )
+    obstacles = (box("post", (0.1, 0.1, 1), at(0.101, z=0.5)),)
     run = cl.check(cell((), robots, obstacles, ()))
     assert run.status == "violated" and run.worst["clearance"] == pytest.approx(-0.002)
     (minimum,) = run.pair_minima
@@ -98,10 +62,6 @@ def test_padding_alone_is_no_contact_anywhere(tmp_path):
     assert set(replay.status.tolist()) == {2}
     text = re.sub(r"<script.*?</script>", "", page_of(run, replay), flags=re.DOTALL)
     assert 'class="cell violated"' in text and 'class="cell contact"' not in text
-    assert (
-        "below the fail limit" not in run.verdict.reasons[0]
-        or "contact" not in run.verdict.reasons[0]
-    )
     assert "-2.000 mm" in run.verdict.reasons[0].replace("-2.001", "-2.000")
 
 
@@ -122,15 +82,10 @@ def test_the_verdict_says_how_far_clocks_may_be_apart_and_both_times(slack, told
     """The times are written into the record by hand: what is said of them is asked here."""
     found = cl.check(cell((), carries=()))
     worst = dataclasses.replace(found.record.worst, time_b=2.5)
-    record = dataclasses.replace(
-        found.record,
-        case=dataclasses.replace(found.record.case, clock=Clock(slack)),
-        worst=worst,
-        worst_sample=worst,
-    )
-    run = dataclasses.replace(
-        found, record=record, session=dataclasses.replace(found.session, record=record)
-    )
+    case = dataclasses.replace(found.record.case, clock=Clock(slack))
+    record = dataclasses.replace(found.record, case=case, worst=worst, worst_sample=worst)
+    session = dataclasses.replace(found.session, record=record)
+    run = dataclasses.replace(found, record=record, session=session)
     assert run.verdict.headline().endswith(told)
     summary = run.summary
     assert summary["clocks"] == told and summary["worst"]["time_b"] == 2.5
@@ -149,16 +104,12 @@ def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_pa
     allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
     obstacles = (box("post", (0.1, 0.1, 2), at(0.6)),)
     run = cl.check(cell((), robots, obstacles, (), allow=allow), certify=certify)
-    assert any(
-        "nothing is measured from 1.000 s to 2.500 s" in text for text in run.verdict.warnings
-    )
-    run.save(tmp_path / "out")
-    json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert any("nothing is measured from 1.000 s to 2.500 s" in one for one in run.verdict.warnings)
     replay = replay_of(run.session)
     assert replay.steps[replay.known == 0].tolist() == [2]
     assert replay.nearest[replay.known == 0].tolist() == [[-1, -1]]
     assert (
-        "Infinity" not in page_of(run, replay).split('<script id="data"')[1].split("</script>")[0]
+        "Infinity" not in page_of(run, replay).partition('<script id="data"')[2].partition("</s")[0]
     )
     write_junit(run, tmp_path / "junit.xml")
     assert printed(run)

@@ -9,11 +9,8 @@ import pytest
 
 import clearance as cl
 from clearance.world.budget import Budget, ObstacleTolerance
-from clearance.world.rules import Allowance
-from clearance.world.timing import Window
-from tests.made_cases import at
 from tests.report.browser import Page, executable, opened
-from tests.report.cells import box, cell, sliding, with_a_hole
+from tests.report.cells import cell, with_a_hole
 
 pytestmark = [
     pytest.mark.browser,
@@ -72,41 +69,6 @@ def test_the_limit_lines_go_in_steps_with_the_rule_that_judges(page):
     for (x, y), fence in zip(lines, (5.0, 500.0), strict=True):
         assert x == sorted(x) and y[0] == y[-1] == fence
         assert min(y) < fence
-
-
-def test_a_click_on_a_hand_moves_the_replay_to_where_it_takes_the_part(page):
-    page.run("document.querySelector('.bar.hand1').click()")
-    page.settle()
-    assert page.run("window.clearance.state().step") == 3
-    page.run("document.querySelector('.rules tbody tr[data-step]').click()")
-    assert page.errors == []
-
-
-def test_a_click_on_a_cell_shows_the_pair_with_its_rule(page):
-    page.run(
-        "Array.from(document.querySelectorAll('.cell'))"
-        ".find((c) => c.title.startsWith('right/tool - part')).click()"
-    )
-    page.settle()
-    text = readout(page)
-    assert "0.500 mm clear" in text and "by rule handover" in text
-    curve = page.run("window.clearance.chart.told.curves.at(-1).y")
-    assert len(curve) == 7
-
-
-def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path):
-    robots = (
-        sliding("left", [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]),
-        sliding("right", [(0, 3), (3, 3)]),
-    )
-    allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
-    case = cell((), robots, (box("post", (0.1, 0.1, 2), at(0.6)),), (), allow=allow)
-    with opened(cl.check(case), tmp_path) as page:
-        show(page, 2)
-        assert "nothing measured" in readout(page) and "no pair is left" in readout(page)
-        low, high = page.run("window.clearance.chart.range")
-        assert low == 0.0 and 500.0 < high < 550.0
-        assert page.errors == []
 
 
 def test_nothing_is_drawn_as_proven_with_tolerances_where_a_recording_is_not_measured(tmp_path):

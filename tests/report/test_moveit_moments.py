@@ -7,7 +7,7 @@ import clearance as cl
 from clearance.report import moveit_moments
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
-from tests.report.made import model_of, run_of
+from tests.report.made import model_of
 from tests.report.records import record
 
 WIDE = (cl.Rule(("*", "*"), name="wide", fail=0.0, warn=9.0),)
@@ -20,23 +20,6 @@ def moments_text(made) -> str:
 
 def read(text: str):
     return YAML(typ="safe", pure=True).load(text)
-
-
-def test_the_worst_comes_first_and_all_pairs_below_a_limit_follow():
-    run = record(limits=LIMITS)
-    told = read(moments_text(run))
-    worst, minima = (
-        told["moments"][0],
-        {(one.link, one.obstacle): one for one in run_of(run).pair_minima},
-    )
-    assert worst["clearance"] == run.worst.clearance and worst["step"] == run.worst.step
-    names = [(m["bodies"][0]["link_name"], m["bodies"][1]["id"]) for m in told["moments"]]
-    below = {pair for pair, one in minima.items() if one.clearance < LIMITS.warn}
-    assert set(names) == below and len(names) == len(below) > 1
-    assert [m["clearance"] for m in told["moments"]] == sorted(
-        minima[pair].clearance for pair in below
-    )
-    assert told["n_left_out"] == 0 and told["verdict"] == "contact"
 
 
 def test_what_is_too_much_is_left_out_and_counted(monkeypatch):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 
 import numpy as np
 import pyarrow.csv
@@ -32,6 +31,7 @@ from tests.report.made import (
     finding_list_of,
     findings_of,
     model_of,
+    page_of,
     printed,
     run_of,
     summary_of,
@@ -69,11 +69,8 @@ SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
 )  # fmt: skip
 def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     verdict, run = verdict_of(one), run_of(one)
-    assert (verdict.status, verdict.exit_code, verdict.headline(str.upper)) == (
-        status,
-        exit_code,
-        text,
-    )
+    assert (verdict.status, verdict.exit_code) == (status, exit_code)
+    assert verdict.headline(str.upper) == text
     assert (run.status, run.passed) == (status, exit_code == 0)
     summary = summary_of(one)
     assert (summary["verdict"], summary["exit_code"]) == (status, exit_code)
@@ -82,9 +79,7 @@ def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     cases = valid_suite(tmp_path / "junit.xml").iter("testcase")
     failing = {case.get("classname") for case in cases if case.find("failure") is not None}
     assert ("verdict" in failing) == bool(exit_code)
-    assert ("tolerances" in failing) == (
-        (status == "not proven" and exit_code == 1) or status == "suspect"
-    )
+    assert ("tolerances" in failing) == (text.startswith("FAIL") or status == "suspect")
 
 
 def test_only_the_limit_that_is_not_proven_is_annotated_as_accepted(tmp_path):
@@ -103,18 +98,6 @@ def test_only_the_limit_that_is_not_proven_is_annotated_as_accepted(tmp_path):
     assert len(told) == 1 and "not proven to keep the fail limit of 200 mm" in told[0]
 
 
-def test_its_name_does_not_depend_on_numbers_or_bodies():
-    open_run = run_of(OPEN)
-    (worst,) = open_run.session.least_left(OPEN.budget[0])
-    moved = dataclasses.replace(worst.moment, link="fore", clearance=0.002)
-    left = {OPEN.budget[0].rule: (dataclasses.replace(worst, moment=moved),)}
-    other = run_of(with_budget(NEAR, 0.003), left=left)
-    first, second = (
-        next(f for f in findings_of(one) if f.kind == TOLERANCES) for one in (open_run, other)
-    )
-    assert first.id == second.id and first.body_a != second.body_a
-
-
 def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
     (finding,) = [one for one in findings_of(ACCEPTED) if one.kind == TOLERANCES]
     assert finding.broken and not finding.fails
@@ -125,19 +108,12 @@ def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
     first, *others = told
     assert first.startswith("::warning ") and "accepted: not proven to keep the fail limit" in first
     assert not any(line.startswith("::error") for line in others)
-    lines = annotation_lines(model_of(OPEN), tmp_path)
-    lines = [line for line in lines if line.startswith("::error")]
-    assert (
-        len(lines) == 1
-        and "not proven to keep the fail limit of 0 mm with the tolerances" in lines[0]
-    )
 
 
 def test_what_was_not_worked_out_is_not_clear():
     (finding,) = [one for one in findings_of(NO_ANSWER) if one.kind == TOLERANCES]
-    assert (
-        finding.text == "the remaining clearance with tolerances was not computed" and finding.fails
-    )
+    assert finding.text == "the remaining clearance with tolerances was not computed"
+    assert finding.fails
 
 
 def test_findings_are_kept_and_compared(tmp_path):
@@ -146,23 +122,18 @@ def test_findings_are_kept_and_compared(tmp_path):
         path.write_text(findings_text(finding_list_of(one)))
         assert read_findings(path) == finding_list_of(one)
     less = with_budget(NEAR, 0.0015)
-    rows = {
-        row.finding.kind: row for row in compared(finding_list_of(OPEN), finding_list_of(less)).rows
-    }
-    assert rows[TOLERANCES].change == "better"
-    other = dataclasses.replace(
-        OPEN.case.tolerance, obstacles={"post": ObstacleTolerance(surface=0.001)}
-    )
-    other = dataclasses.replace(OPEN, case=dataclasses.replace(OPEN.case, tolerance=other))
-    rows = {
-        row.finding.kind: row
-        for row in compared(finding_list_of(OPEN), finding_list_of(other)).rows
-    }
-    assert (
-        rows[TOLERANCES].change == "not comparable"
-        and rows[TOLERANCES].why == "its tolerances have changed"
-    )
-    assert rows["clearance"].change == "unchanged"
+    assert changes_since_open(less)[TOLERANCES].change == "better"
+    surface = {"post": ObstacleTolerance(surface=0.001)}
+    given = dataclasses.replace(OPEN.case.tolerance, obstacles=surface)
+    other = dataclasses.replace(OPEN, case=dataclasses.replace(OPEN.case, tolerance=given))
+    row = changes_since_open(other)[TOLERANCES]
+    assert (row.change, row.why) == ("not comparable", "its tolerances have changed")
+    assert changes_since_open(other)["clearance"].change == "unchanged"
+
+
+def changes_since_open(now) -> dict:
+    rows = compared(finding_list_of(OPEN), finding_list_of(now)).rows
+    return {row.finding.kind: row for row in rows}
 
 
 def test_the_steps_have_columns_of_it(tmp_path):
@@ -182,14 +153,6 @@ def test_the_report_has_a_table_of_what_takes_it(tmp_path):
     assert [row["kind"] for row in read] == ["position", "base", "surface"]
     assert read[1]["tolerance"] == 0.002 and read[1]["second_tolerance"] == 0.001
     assert read[1]["second_unit"] == "rad" and read[1]["second_at_most"] is None
-    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
-    worst = summary["tolerances"]["rules"][0]["worst"][0]
-    assert [one["name"] for one in worst["sources"]] == [
-        "position of joint lift",
-        "base of arm_0",
-        "surface of post",
-    ]
-    assert summary["tolerances"]["verdict"] == "not proven"
 
 
 def test_a_report_without_tolerances_has_nothing_of_them(tmp_path):
@@ -228,15 +191,12 @@ def test_sources_are_named_by_robot_joint_and_moment(run):
     assert "tracking of joint left/j at the release (1 s)" in told
 
 
-def test_an_exact_grasp_is_said(run, tmp_path):
+def test_an_exact_grasp_is_said(run):
     exact = cl.check(passing(0.2, exact_grasp=True), certify=False)
     said = "Grasps taken as exact: part by left/bar."
     assert said in exact.verdict.with_tolerances and said not in run.verdict.with_tolerances
-    exact.save(tmp_path)
-    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    assert summary["carries"][0]["grasp"] == "exact"
-    assert said in summary["tolerances"]["lines"]
-    assert said in (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert exact.summary["carries"][0]["grasp"] == "exact"
+    assert said in exact.summary["tolerances"]["lines"] and said in page_of(exact)
 
 
 @pytest.mark.parametrize(("parts", "least"), [(2000, [3, 1, 2, 2, 4, 4, 6, 7]), (4, [1, 2, 4, 6])])
@@ -263,20 +223,17 @@ def test_a_bound_of_the_motion_is_drawn_level_from_step_to_step(parts, least, mo
     ("changes", "told"),
     [
         ({}, "the motion that is measured"),
-        (
-            {"holes": (), "unproven": (UnprovenSpan("movel", 0.3, 1.1, "why"),)},
-            "the motion, less its unproven stretches",
-        ),
+        ({"holes": (), "unproven": (UnprovenSpan("movel", 0.3, 1.1, "why"),)},
+         "the motion, less its unproven stretches"),
         ({"holes": ()}, "the motion"),
     ],
-)
+)  # fmt: skip
 def test_a_motion_of_which_a_part_is_not_measured_or_proven_is_not_called_proven(changes, told):
     case = with_a_hole()
     (placed,) = case.robots
     assert placed.trajectory is not None
-    placed = dataclasses.replace(
-        placed, trajectory=dataclasses.replace(placed.trajectory, **changes)
-    )
+    asked = dataclasses.replace(placed.trajectory, **changes)
+    placed = dataclasses.replace(placed, trajectory=asked)
     errors = Budget(obstacles={"post": ObstacleTolerance(surface=0.001)})
     run = cl.check(dataclasses.replace(case, robots=(placed,), tolerance=errors))
     assert any(f"; proven for {told}." in line for line in run.verdict.with_tolerances)

@@ -118,21 +118,11 @@ def test_no_older_answer_of_any_command_outlasts_one_that_is_refused(name, folde
 
 
 @pytest.mark.parametrize(
-    ("option", "place"),
-    [("--trajectory", "path.csv"), ("--trajectory", "case.yaml"), ("--png", "notes.txt")],
+    ("option", "place", "more"),
+    [("--trajectory", "path.csv", []), ("--png", "notes.txt", ["--no-such-option"])],
 )
-@pytest.mark.parametrize("more", [[], ["--no-such-option"]])
 def test_a_file_that_may_be_an_input_or_anything_else_stays_as_it_is(option, place, more, folder):
     (folder / "notes.txt").write_text("mine")
     (folder / "case.yaml").write_text(BAD)
     first = files(folder)
     assert run(["check", "case.yaml", option, place, *more]) == 2 and files(folder) == first
-
-
-def test_a_gain_that_would_overwrite_its_own_case_leaves_it_as_it_is(folder):
-    (folder / "case.yaml").write_text(GREEN)
-    assert run(["gain", "case.yaml", "--kind", "obstacle", "--out", "out"]) == 0
-    first = files(folder)
-    again = ["gain", "out/case.yaml", "--kind", "obstacle", "--out", "out"]
-    for arguments in (again, [*again, "--force"], [*again, "--force", "--no-such-option"]):
-        assert run(arguments) == 2 and files(folder) == first
