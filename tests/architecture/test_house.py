@@ -1,12 +1,14 @@
-"""The rules of the house that a program can check: imports, style, docstrings, names."""
+"""The rules of the house that a program can check: imports, style, docstrings, names, seeded faults."""
 
 from __future__ import annotations
 
 import ast
 import functools
+import os
 import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +16,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import clearance
+from tests import guards
 from tests.docs.plain_words import unclear
 
 ROOT = Path(__file__).parents[2]
@@ -202,3 +205,51 @@ def ties(room: str, other: str) -> list[str]:
 def test_tests_and_benchmarks_import_nothing_of_each_other(room, other):
     """Inputs that both draw are made in `scripts/makers`."""
     assert ties(room, other) == []
+
+
+FAULTS = {
+    f"{table.stem}/{name}": row
+    for table in sorted((ROOT / "scripts" / "mutations").glob("*.toml"))
+    for name, row in tomllib.loads(table.read_text(encoding="utf-8")).items()
+}
+
+
+def text_of(room: str) -> str:
+    return "\0".join(path.read_text(encoding="utf-8") for path in (ROOT / room).rglob("*.py"))
+
+
+def test_each_fault_is_listed_once_and_says_what_is_wrong():
+    assert len(FAULTS) >= 60 and len({name.partition("/")[2] for name in FAULTS}) == len(FAULTS)
+    assert [name for name, row in FAULTS.items() if not row["fault"].endswith(".")] == []
+    assert [name for name, row in FAULTS.items() if row["before"] == row["after"]] == []
+
+
+def test_the_text_that_a_fault_replaces_is_in_the_package_once():
+    package = text_of("clearance")
+    counts = {name: package.count(row["before"]) for name, row in FAULTS.items()}
+    assert {name: n for name, n in counts.items() if n != 1} == {}
+
+
+def test_the_tests_that_find_a_fault_are_there():
+    """A test that is renamed is renamed in the tables too; one that goes leaves its faults to another."""
+    known = set(re.findall(r"^def (test_\w+)\(", text_of("tests"), re.MULTILINE))
+    missing = {name: set(row["killed_by"]) - known for name, row in FAULTS.items()}
+    assert {name: tests for name, tests in missing.items() if tests} == {}
+    assert all(row["killed_by"] for row in FAULTS.values())
+
+
+def test_this_test_has_no_mark_and_so_starts_no_process(request):
+    """What `guards` does to any test that is not marked; the refusals are taken back, since they are wanted."""
+    assert not {mark.name for mark in request.node.iter_markers()}
+    start = subprocess.run
+    for deed in (lambda: start([sys.executable, "-c", ""]), lambda: os.system("true")):
+        with pytest.raises(guards.UnmarkedDeed):
+            deed()
+    assert len(guards.refused) == 2
+    guards.refused.clear()
+
+
+def test_a_case_beside_the_repository_is_not_read_without_the_mark():
+    with pytest.raises(guards.UnmarkedDeed):
+        open(guards.SHARED_CASES / "no_such_case")
+    guards.refused.clear()

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 import numpy as np
 import pytest
 
-from clearance.batch import dask_engine
-from clearance.errors import BadInput
-from tests.batch.batches import answer_bytes, run_here, write_cell
+from clearance.batch import dask_engine, workers
+from clearance.batch.engine import Queue
+from clearance.batch.measuring import measure
+from clearance.batch.workers import local_workers
+from clearance.errors import BadInput, Incomplete
+from tests.batch.batches import answer_bytes, items_of, run_here, write_cell
 from tests.batch.clusters import (
     ended,
     finished,
@@ -107,3 +111,55 @@ def test_of_two_commands_on_one_store_the_second_waits_and_both_answer(undisturb
     cached = sorted(out[out.index("cached") :].split()[1] for out, _ in said)
     assert cached == ["0", str(N_CASES - 1)]
     assert answer_bytes(tmp_path / "out") == expected
+
+
+N_MEASURED, DEATHS = 20, 2
+
+
+@pytest.fixture
+def items(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "DEATHS", DEATHS)  # fewer are started
+    return items_of([str(write_cell(tmp_path, [0.5] * N_MEASURED))])
+
+
+def measure_or_die(task):
+    """Dies of the case that is called so, at once."""
+    if any(item.name == os.environ["DEADLY"] for item in task.items):
+        os._exit(9)
+    return measure(task)
+
+
+def work_or_die(pipe):
+    workers.measure = measure_or_die
+    WORK(pipe)
+
+
+def die(pipe):
+    os._exit(9)
+
+
+WORK = workers._work
+
+
+def test_a_case_that_takes_its_workers_with_it_is_at_fault_and_costs_no_other(items, monkeypatch):
+    monkeypatch.setenv("DEADLY", "t007")
+    monkeypatch.setattr(workers, "_work", work_or_die)
+    started = []
+    start = workers.Worker.__init__
+    monkeypatch.setattr(
+        workers.Worker, "__init__", lambda self: (started.append(self), start(self))[1]
+    )
+    with local_workers(2) as engine:
+        found = list(engine.results(Queue(items, "batch")))
+    measured = sorted(one.number for done in found for one in done.measured)
+    assert measured == [i for i in range(N_MEASURED) if i != 7]
+    (fault,) = (one for done in found for one in done.faults)
+    assert (fault.number, fault.text[:24]) == (7, "the worker processes tha")
+    assert len(started) == 2 + 1 + DEATHS  # of its first task, then of it alone
+    assert not any(one.process.is_alive() for one in started)
+
+
+def test_workers_that_die_as_they_start_are_told_in_one_line(items, monkeypatch):
+    monkeypatch.setattr(workers, "_work", die)
+    with local_workers(1) as engine, pytest.raises(Incomplete, match="--jobs 1 needs none"):
+        list(engine.results(Queue(items, "batch")))

@@ -5,7 +5,7 @@ import pytest
 
 from clearance.cli import run
 from tests.batch.batches import answer_bytes, write_cell
-from tests.report.junit_schema import valid_suite
+from tests.report.schemas import valid_suite
 
 DAY = "2026-11-01"
 

@@ -6,7 +6,7 @@ from clearance.batch import engine
 from clearance.batch.engine import LocalEngine
 from clearance.cli import run
 from tests.batch.batches import ANSWER, answer_bytes, write_cell, write_path
-from tests.report.junit_schema import valid_suite
+from tests.report.schemas import valid_suite
 
 GREEN = [0.5, 0.4, 0.6, 0.7]
 

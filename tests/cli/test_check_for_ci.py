@@ -12,7 +12,7 @@ import pytest
 from clearance.cli import run
 from clearance.report.withdrawn import withdraw_report
 from tests.findings.gates import write_gates
-from tests.report.junit_schema import valid_suite
+from tests.report.schemas import valid_suite
 
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.1)}
 WORSE = {"gate_a": (-0.5, 0.0025), "gate_b": (0.5, 0.1)}

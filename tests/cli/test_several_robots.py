@@ -1,4 +1,4 @@
-"""Commands that take cases, with a case of several robots: one stands on another, one carries a part."""
+"""Commands that take cases: of several robots, and of suspect input."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from clearance.cli import run
 from clearance.geometry import boolean
 from clearance.run import CheckOptions
 from tests import cells
+from tests.formats.making import CASE, write_case
 from tests.formats.making_cell import load_cell
 
 
@@ -63,3 +64,22 @@ def test_a_limit_of_the_command_line_holds_for_rules_that_give_none(tmp_path, op
     told["default"] = limits.of_rule(0)
     for name, level in levels.items():
         assert (1000 * told[name].fail, 1000 * told[name].warn) == pytest.approx(level)
+
+
+@pytest.fixture
+def asked(tmp_path, capsys):
+    """The error output of `profile sweep` on a case whose times are in milliseconds."""
+
+    def ask(case: str, *options: str) -> str:
+        path = write_case(tmp_path, case, trajectory="time,shoulder\n0,0\n900,0.5\n")
+        asked = [str(path), "--plane", "xy", "--out", str(tmp_path / "s.svg"), *options]
+        assert run(["profile", "sweep", *asked]) == (0 if "accept: [units]" in case else 2)
+        return capsys.readouterr().err
+
+    return ask
+
+
+def test_a_sweep_says_what_is_suspect_and_not_accepted_quiet_or_not(asked):
+    assert "suspect: small: CHECK UNITS: no joint moves faster" in asked(CASE)
+    assert "CHECK UNITS" not in asked(CASE + "accept: [units]\n")
+    assert "suspect: small: CHECK UNITS: no joint moves faster" in asked(CASE, "--quiet")

@@ -15,7 +15,7 @@ from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
-from tests.report.step_rows import rows_of
+from tests.report.records import rows_of
 
 
 def pairs_of(record: Samples) -> list[Pair]:

@@ -25,8 +25,7 @@ from clearance.simulate.answers.rule_pairs import MeasuredRule, SampleMoments
 from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.simulate.replay import replay
 from clearance.simulate.session import MeasuringSession
-from tests.report.budgets import SOURCES
-from tests.report.records import measure
+from tests.report.records import SOURCES, measure
 
 
 @dataclass(frozen=True, eq=False)

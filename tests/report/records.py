@@ -1,6 +1,7 @@
 """A small record made without any file: an arm of three boxes and a gripper that swings past a post
 and dips into a table. Clearances are the true distances from the corners of the links to the boxes
-of the scene, so witness points and clearances fit together, and no engine is needed."""
+of the scene, so witness points and clearances fit together, and no engine is needed. Budgets made by hand say what
+tolerances would leave of it."""
 
 from __future__ import annotations
 
@@ -10,14 +11,16 @@ from functools import partial
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.record.budget import ErrorSource, RuleBudget
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
 from clearance.record.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES
-from clearance.record.table import Table
+from clearance.record.table import Names, Table
 from clearance.simulate.answers.rule_pairs import SampleMoments, measured_rule
 from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.world.body import Body, Obstacle
+from clearance.world.budget import Budget
 from clearance.world.case import Case, Limits, Omission, Source
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
@@ -27,7 +30,6 @@ from clearance.world.rules import DEFAULT
 from clearance.world.timeline import timeline_of
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at
-from tests.report.step_rows import rows_of
 
 LIMITS = Limits(fail=0.01, warn=0.06)
 
@@ -246,3 +248,55 @@ def disagreeing() -> CrossCheck:
     """A cross-check with one step that differs."""
     wrong = Disagreement(17, 0.125, 0.1249, "fore", "post", "gripper", "post", "clearance differs")
     return CrossCheck("python-fcl", 240, 1e-4, 17, 1e-9, 2e-13, (wrong,))
+
+
+def rows_of(columns: dict[str, list]) -> Table:
+    """The table with these columns, of numbers or of names."""
+    return Table({name: _column(values) for name, values in columns.items()})
+
+
+def _column(values: list) -> np.ndarray | Names:
+    if not isinstance(values[0], str):
+        return np.array(values)
+    names = list(dict.fromkeys(values))
+    return Names(np.array([names.index(value) for value in values]), names)
+
+
+SOURCES = (
+    ErrorSource("arm_0", "position", "lift", ((0.001, "rad"),), 0.0012, 0.0004, (0.0021,)),
+    ErrorSource("arm_0", "base", "", ((0.002, "m"), (0.001, "rad")), 0.0008, 0.0003, (0.0035, None)),
+    ErrorSource("post", "surface", "", ((0.0005, "m"),), 0.0005, 0.0001, (0.00123456,)),
+)  # fmt: skip
+"""What takes most first: 2.5 mm together."""
+
+
+def with_budget(
+    made: Record, taken: float = 0.0025, *, between: bool = False, ok: bool = False, **changes
+) -> Record:
+    """The record with tolerances that take so much [m] of each step's clearance, and a third of it as expected.
+
+    Args:
+        between: the motion is certified. ok: a limit that is not proven may pass.
+        changes: replace fields of the `RuleBudget`s.
+    """
+    budget = Budget(unproven_ok=ok, sources=("preset typical: read somewhere",))
+    case = dataclasses.replace(made.case, tolerance=budget)
+    budgets = tuple(_of_rule(made, rule, taken, between, changes) for rule in made.rules)
+    left = {name: getattr(budgets[0], name) for name in ("proven", "expected")}
+    steps = made.rows.with_columns(
+        {name: np.where(np.isfinite(values), values, np.nan) for name, values in left.items()}
+    )
+    return dataclasses.replace(made, case=case, budget=budgets, table=steps)
+
+
+def _of_rule(made, rule, taken, between, changes) -> RuleBudget:
+    nominal = rule.measurement.clearance
+    proven = nominal - taken
+    budget = RuleBudget(
+        rule.name,
+        rule.limits,
+        proven,
+        nominal - taken / 3,
+        proven - 0.0001 if between else None,
+    )
+    return dataclasses.replace(budget, **changes)

@@ -28,10 +28,9 @@ from clearance.report.topics import certainty
 from clearance.run import Run
 from clearance.world.case import Limits
 from tests.findings.test_verdict import CASES, made
-from tests.report.budgets import with_budget
 from tests.report.cells import cell
 from tests.report.made import model_of, page_of, printed, run_of
-from tests.report.records import disagreeing, record, with_contacts
+from tests.report.records import disagreeing, record, with_budget, with_contacts
 
 HERE = Path(__file__).parent / "golden"
 

@@ -23,9 +23,8 @@ from tests.findings.test_verdict import made
 from tests.made_cases import arm, at
 from tests.profiles.moving import slab, sliding
 from tests.report.browser import Page, chromium, executable, opened
-from tests.report.budgets import with_budget
 from tests.report.made import replay_of, run_of, write
-from tests.report.records import record
+from tests.report.records import record, with_budget
 
 pytestmark = [
     pytest.mark.browser,

@@ -1,4 +1,6 @@
-"""The picture of the worst moment: pixels held against rays, the camera, what hides what, and the same bytes."""
+"""The picture of the worst moment and the model: pixels held against rays, what hides what, the same bytes."""
+
+from __future__ import annotations
 
 import io
 import json
@@ -10,13 +12,23 @@ import pytest
 from PIL import Image
 
 import clearance as cl
+from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.report import picture
 from clearance.report.glb import glb_of
 from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of
 from clearance.report.raster import Screen, surface
-from clearance.report.still import COLOURS, Camera, at_gap, overview, rgb, still_of
+from clearance.report.still import (
+    COLOURS,
+    MOST_POINTS,
+    Camera,
+    as_solids,
+    at_gap,
+    overview,
+    rgb,
+    still_of,
+)
 from tests.findings.test_verdict import CASES
-from tests.made_cases import at
+from tests.made_cases import at, flying
 from tests.profiles.moving import slab, turning
 from tests.report.cells import box
 from tests.report.made import replay_of, run_of
@@ -181,3 +193,40 @@ def test_trimesh_finds_names_places_and_colours():
     for side, end in zip(("first", "second"), still.line, strict=True):
         pose, _ = scene.graph[f"witness line: {side} point"]
         assert np.abs(pose[:3, 3] - y_up[:3, :3] @ end).max() < 1e-6
+
+
+def scanned() -> cl.Case:
+    """A small box that goes past a wall of points, and a block beside it that is nearest."""
+    u, v = np.meshgrid(np.linspace(-1.0, 1.0, 60), np.linspace(-1.0, 1.0, 60))
+    wall = np.stack([u, np.full_like(u, 0.8), v], axis=-1).reshape(-1, 3)
+    way = np.linspace([-0.5, 0, 0, 0, 0, 0], [0.5, 0, 0, 0, 0, 0], 5)
+    case = flying("scanned", cl.box([0.1, 0.1, 0.1]), [(cl.box([0.1, 0.1, 0.1]), below())], way)
+    scan = cl.Obstacle(cl.Body("scan", cl.PointCloud(wall, 0.02)))
+    return replace(case, obstacles=(*case.obstacles, scan))
+
+
+def below() -> np.ndarray:
+    pose = np.eye(4)
+    pose[2, 3] = -0.3
+    return pose
+
+
+@pytest.mark.slow
+def test_stills_show_points_as_solids():
+    """In a picture and in a model; of many points some."""
+    run = cl.check(scanned())
+    record, replay = run.record, run.session.replay()
+    still = still_of(replay)
+    sizes = sorted(len(triangles) for _, triangles in still.shapes)
+    assert sizes[-1] == 8 * 3600
+    assert png_of(record, replay, run.verdict).startswith(b"\x89PNG")
+    shape = mesh_from_bytes(glb_of(record, replay, record.worst), "moment.glb")
+    assert shape.n_triangles > 8 * 3600
+    points = (
+        np.random.default_rng(1).uniform(-1.0, 1.0, (2 * MOST_POINTS + 1, 3)).astype(np.float32)
+    )
+    vertices, triangles = as_solids(points, np.empty((0, 3), dtype=np.int32))
+    assert len(triangles) == 8 * (len(points) // 3 + 1)
+    assert np.abs(vertices[:6] - points[0]).max() == pytest.approx(0.002, rel=1e-3)
+    solid = cl.Polyhedron.from_triangles(vertices[:6], triangles[:8])
+    assert solid.closed and solid.volume > 0.0

@@ -24,9 +24,7 @@ from tests.budget.part_cases import passing
 from tests.findings.test_verdict import UNITS, made
 from tests.made_cases import at
 from tests.profiles.moving import slab, turning
-from tests.report.budgets import with_budget
 from tests.report.cells import box, with_a_hole
-from tests.report.junit_schema import valid_suite
 from tests.report.made import (
     finding_list_of,
     findings_of,
@@ -39,7 +37,8 @@ from tests.report.made import (
     write,
     write_junit,
 )
-from tests.report.records import record
+from tests.report.records import record, with_budget
+from tests.report.schemas import valid_suite
 
 LIMITS = Limits(warn=0.02)
 NEAR = made(LIMITS)

@@ -1,11 +1,17 @@
-"""A case of a batch says all that its own check says beside its status: in the terminal, page, JUnit and table."""
+"""A case of a batch says all that its own check says, in every answer; what is worst stands first."""
 
+from __future__ import annotations
+
+import pyarrow as pa
 import pytest
+from pytest import approx
 
+from clearance.batch import engine
+from clearance.batch.answer import BatchAnswer
 from clearance.batch.page import page_data, page_of
 from clearance.run import check
 from tests.batch.batches import cases, printed, run_here, write_cell
-from tests.report.junit_schema import valid_suite
+from tests.report.schemas import valid_suite
 
 HELD = "time,rail\n" + "".join(f"{i / 100:.2f},0\n" for i in range(201) if not 60 < i < 140)
 
@@ -86,3 +92,29 @@ def test_a_nearer_moment_than_the_most_critical_one_is_told(tmp_path):
     assert any(line.startswith("nearest of all 39.99 mm") for line in page["notes"][0])
     shown = page_of(found, tmp_path / "store")
     assert "Critical mm" in shown and "Least mm" not in shown
+
+
+def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(engine, "SECONDS", 1e9)  # one task, however slow the machine
+    manifest = write_cell(tmp_path / "in", [-0.01, -0.03, 0.5, -0.02])
+    _, found = run_here(manifest, tmp_path / "out")
+    assert [row["case"] for row in found.worst] == ["t001", "t003", "t000"]
+    assert found.critical["case"] == "t001"
+    depths = {row["case"]: row["penetration"] for row in cases(tmp_path / "out")}
+    right = {"t000": approx(0.01), "t001": approx(0.03), "t002": None, "t003": approx(0.02)}
+    assert depths == right
+    page = page_data(found, tmp_path / "out")
+    assert page["clearance"] == approx([-10.0, -30.0, 400.0, -20.0], abs=0.002)
+    assert page["touches"] == [1, 1, 0, 1]
+    told = "\n".join(printed(found, tmp_path / "out", capsys))
+    assert "critical    t001: contact, at most 30.00 mm deep, slider - wall" in told
+    assert "contact     t001: contact 30.00 mm deep: slider - wall" in told
+
+
+def test_cases_with_warnings_are_named(tmp_path, capsys):
+    _, found = run_here(write_cell(tmp_path / "in", [0.4, 0.5, 0.6]), tmp_path / "out")
+    i = found.rows.schema.get_field_index("warnings")
+    column = pa.array([["a start"], [], ["a hole"]], found.rows.schema.field(i).type)
+    found = BatchAnswer(found.rows.set_column(i, "warnings", column))
+    told = printed(found, tmp_path / "out", capsys)
+    assert any(line.endswith("warnings    2 cases, see the page: t000, t002") for line in told)

@@ -1,4 +1,6 @@
-"""A run in a notebook, and without one: the page of its report, and its steps as a table of pandas."""
+"""A run in a notebook, and without one; rules that judge nothing are warned of."""
+
+from __future__ import annotations
 
 import html
 import pickle
@@ -11,6 +13,7 @@ import pytest
 import clearance as cl
 from clearance import extras
 from clearance.errors import BadDimension, BadInput, Unavailable
+from tests.formats.making_case import CASE, load_small
 from tests.report.browser import chromium, executable
 
 
@@ -87,3 +90,36 @@ def test_the_page_plays_within_a_notebook(run, kernel, tmp_path):
         tab.open(path.as_uri(), f"{inside}?.clearance")
         assert tab.run(f"{inside}.document.querySelectorAll('canvas').length") > 0
         assert not tab.errors
+
+
+OWN = "{name: own, between: [upper, post], fail: 0.2}"
+ALL = '{name: all, between: ["*", "*"], fail: 0.001}'
+
+
+@pytest.mark.parametrize(
+    "rules, idle, why",
+    [
+        (f"rules: [{OWN}, {ALL}]}}", ["own"], "pair: its pairs are judged by later rules"),
+        (f"rules: [{ALL}, {OWN}]}}", [], ""),
+        (
+            f"rules: [{OWN}]}}\nallow: [[upper, post]]",
+            ["own"],
+            "pair: upper - post is not measured (allowed by ['upper', 'post'])",
+        ),
+    ],
+)
+def test_a_rule_without_pairs_is_warned_of(tmp_path, rules, idle, why):
+    case = CASE.replace("limits: {fail: 0.005, warn: 0.02}", f"limits: {{fail: 0.005, {rules}")
+    record = cl.check(load_small(tmp_path, case), certify=False).record
+    told = [one.text for one in record.notices if one.kind == "rules"]
+    assert [text.split("'")[1] for text in told] == idle
+    assert all(why in text for text in told)
+
+
+def test_a_rule_of_neighbours_alone_says_that_they_are_excused(tmp_path):
+    case = CASE.replace("urdf: arm.urdf", "urdf: arm.urdf, self_clearance: true")
+    rule = "rules: [{between: [base, upper], fail: 0.2}]}"
+    case = case.replace("limits: {fail: 0.005, warn: 0.02}", f"limits: {{fail: 0.005, {rule}")
+    record = cl.check(load_small(tmp_path, case), certify=False).record
+    (text,) = [one.text for one in record.notices if one.kind == "rules"]
+    assert text.endswith("pair: upper - base is not measured (excused: Adjacent)")

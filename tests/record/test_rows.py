@@ -1,4 +1,4 @@
-"""Records: plain data, its status by hand, and the folder of resumable rows, which goes through no link."""
+"""Tables in columns, the status of a row, and the folder of resumable rows, which goes through no link."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ import pytest
 from clearance.errors import Unwritable
 from clearance.record.rows import folder as rows_folder
 from clearance.record.rows.folder import LOCK, MARK
-from clearance.record.rows.resumable import open_resumable_rows
+from clearance.record.rows.resumable import IN_MEMORY, open_resumable_rows
 from clearance.record.status import STATUSES, status_codes, status_of
+from clearance.record.table import Names, Table
 from clearance.world.case import Limits
 
 
@@ -184,3 +185,20 @@ def test_what_is_at_a_limit_keeps_it_and_at_0_it_is_broken() -> None:
     assert [STATUSES[code] for code in status_codes(clearances, Limits(0.005, 0.02), apart)] == told
     (code,) = status_codes(np.zeros(1), Limits(), np.zeros(1, dtype=bool))
     assert STATUSES[code] == "violated" and status_of(0.0, Limits()) == "contact"
+
+
+FIRST = Table({"gap": np.array([0.5, np.nan]), "move": Names(np.array([1, -1]), ["a", "b"])})
+SECOND = Table({"gap": np.array([0.25]), "move": Names(np.array([0]), ["c", "b"])})
+ROWS = [{"gap": 0.5, "move": "b"}, {"gap": None, "move": None}, {"gap": 0.25, "move": "c"}]
+
+
+def test_batches_with_other_names_are_one_table():
+    table = IN_MEMORY.table("table", 3, [FIRST, SECOND])
+    assert [table.row(i) for i in range(3)] == table.arrow().to_pylist() == ROWS
+    assert table.names("move").places_in(["c", "d", "b"]).tolist() == [2, -1, 0]
+
+
+def test_names_are_the_same_in_pyarrow_however_many_rows_there_are(monkeypatch):
+    few = FIRST.arrow()
+    monkeypatch.setattr("clearance.record.table.FEW", 0)
+    assert FIRST.arrow().equals(few)

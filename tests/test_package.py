@@ -1,7 +1,10 @@
-"""What runs without the optional libraries, and the one line that says which extra is missing."""
+"""The package: its public names, what runs without optional libraries, the digest of its sources."""
 
 from __future__ import annotations
 
+import ast
+import importlib
+import inspect
 import subprocess
 import sys
 import tomllib
@@ -11,9 +14,75 @@ import pytest
 
 import clearance as cl
 from clearance import extras
+from clearance.batch import keys
 from clearance.cli import ExitCode, run
 from clearance.formats.files.input_files import resolved
+from clearance.package_digest import digest_of_sources
 from clearance.planar.dxf import read_dxf
+from clearance.receipt import remade_report
+from clearance.record import fingerprint
+from tests.cells import cell
+
+STUB = ast.parse(Path(cl.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+ROOM_OF = {
+    alias.name: f"clearance.{node.module}"
+    for node in STUB.body
+    if isinstance(node, ast.ImportFrom)
+    for alias in node.names
+}
+LISTED = next(
+    ast.literal_eval(node.value)
+    for node in STUB.body
+    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
+)
+
+
+def test_the_stub_lists_what_it_imports_and_the_package_offers_the_same():
+    assert sorted(LISTED) == LISTED == sorted([*ROOM_OF, "__version__"])
+    assert sorted(cl.__all__) == LISTED and set(ROOM_OF) <= set(dir(cl))
+
+
+@pytest.mark.parametrize("name", sorted(ROOM_OF))
+def test_each_name_is_what_its_room_calls_so(name):
+    assert getattr(cl, name) is getattr(importlib.import_module(ROOM_OF[name]), name)
+
+
+def test_an_unknown_name_is_an_attribute_error_that_names_it():
+    with pytest.raises(AttributeError, match="distanse"):
+        cl.distanse  # noqa: B018
+
+
+@pytest.mark.cold
+def test_importing_the_package_imports_no_large_library():
+    heavy = ("numpy", "numba", "scipy", "pyarrow", "pydantic", "lxml", "click", "clearance.formats")
+    script = f"import sys, clearance; print([name for name in {heavy!r} if name in sys.modules])"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[]\n"
+
+
+def public_functions():
+    """Each public function, and each method that a public class has of its own, with its name."""
+    for name in sorted(ROOM_OF):
+        value = getattr(cl, name)
+        if not inspect.isclass(value):
+            yield name, value
+            continue
+        for method, made in vars(value).items():
+            made = getattr(made, "__func__", getattr(made, "fget", made))
+            if inspect.isfunction(made) and not method.startswith("_"):
+                yield f"{name}.{method}", made
+
+
+@pytest.mark.parametrize(("name", "function"), list(public_functions()))
+def test_each_public_function_says_what_it_takes_and_gives(name, function):
+    signature = inspect.signature(function)
+    said = {one.name: one.annotation for one in signature.parameters.values()}
+    said["return"] = signature.return_annotation
+    open_ones = [one for one, type_ in said.items() if type_ is signature.empty]
+    assert set(open_ones) <= {"self", "cls"}, name
+
 
 ROOT = Path(__file__).parents[1]
 CASE = ROOT / "scenes" / "box_box" / "case.yaml"
@@ -144,3 +213,51 @@ def test_a_fault_of_our_own_is_no_missing_library():
 
 def test_what_is_installed_is_found():
     assert extras.is_installed("clearance") and not extras.is_installed("no_such_library")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name, content in (("a.py", "x = 1\n"), ("rooms/b.py", "y = 2\n"), ("rooms/p.yaml", "z: 3")):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(content)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda folder: (folder / "rooms/b.py").write_text("y = 3\n"),
+        lambda folder: (folder / "rooms/p.yaml").write_text("z: 4"),
+        lambda folder: (folder / "rooms/page.html").write_text("<p>"),
+        lambda folder: (folder / "rooms/b.py").rename(folder / "b.py"),
+        lambda folder: (folder / "a.py").unlink(),
+    ],
+)
+def test_whatever_is_changed_it_is_another(folder, change):
+    before = digest_of_sources(folder)
+    change(folder)
+    assert digest_of_sources(folder) != before
+
+
+def test_what_decides_nothing_does_not_change_it(folder):
+    before = digest_of_sources(folder)
+    (folder / "rooms/NOTES.md").write_text("notes")
+    (folder / "rooms/b.cpython-311.pyc").write_bytes(b"compiled")
+    assert digest_of_sources(folder) == before
+
+
+@pytest.mark.parametrize(
+    "room, told",
+    [
+        (keys, keys.program.__wrapped__),
+        (remade_report, remade_report.maker),
+        (fingerprint, lambda: fingerprint.fingerprint(cell(0), (), (), ())),
+    ],
+    ids=["rows of a batch", "report of a receipt", "rows of a long run"],
+)
+def test_what_other_sources_made_is_not_taken_for_ones_own(room, told, monkeypatch):
+    before = told()
+    assert told() == before
+    monkeypatch.setattr(room, "package_digest", lambda: "0" * 64)
+    assert told() != before
