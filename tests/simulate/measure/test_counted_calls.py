@@ -21,9 +21,9 @@ import pytest
 import clearance as cl
 from clearance.geometry.pose import inverse
 from clearance.world.case import Case
-from tests.made_cases import at, ball, faces_of
+from clearance.world.robot import JointKind
+from tests.made_cases import arm, at, ball, faces_of, resampled
 
-SCENES = Path(__file__).parents[3] / "scenes"
 TABLE = Path(__file__).with_name("counted_calls.json")
 
 N_STEPS = 1024
@@ -77,16 +77,30 @@ def calls_of(ask: Callable[[], object]) -> dict[str, int]:
     return calls.n
 
 
-def scene(name: str) -> Case:
-    """A case of `scenes`."""
-    return cl.load_case(SCENES / name / "case.yaml")
+def scene() -> Case:
+    """An arm of three links that have limits, among boxes."""
+    posts = [(cl.box((0.1, 0.1, 1.0)), at(x, y)) for x, y in ((0.9, 0.2), (-0.5, 0.6))]
+    positions = np.linspace([0.0, 0.1, 0.2], [1.0, -0.4, 0.3], 200)
+    case = arm("arm", [cl.box((0.2, 0.1, 0.1))] * 3, posts, positions)
+    (one,) = case.robots
+    joints = tuple(
+        replace(joint, kind=JointKind.REVOLUTE, lower=-3.0, upper=3.0) for joint in one.robot.joints
+    )
+    return replace(case, robots=(replace(one, robot=replace(one.robot, joints=joints)),))
+
+
+def _of_its_links() -> Case:
+    """The arm alone: links of one robot come nearest."""
+    case = scene()
+    own = replace(case.robots[0], self_clearance=cl.SelfClearance())
+    return replace(case, robots=(own,), obstacles=())
 
 
 def _lacks_a_face() -> Case:
-    """The Panda's scene with a ball in it that has a hole, far from what moves."""
-    whole = ball(0.05, 1)
+    """The scene with a ball in it that has a hole, far from what moves."""
+    whole = ball(0.5, 1)
     holed = cl.Polyhedron(whole.vertices, faces_of(whole)[1:])
-    case = scene("panda_shelf")
+    case = scene()
     far = cl.Obstacle(cl.Body("holed", holed), at(-3.0))
     return replace(case, obstacles=(*case.obstacles, far))
 
@@ -107,8 +121,8 @@ AWAY = at(2.0, 0.1, 0.3)
 
 
 QUESTIONS: dict[str, Callable[[], Callable[[], object]]] = {
-    "Checker.distance": lambda: _of_checker(scene("panda_shelf")),
-    "Checker.distance, links of one robot": lambda: _of_checker(scene("dual_arm_handover")),
+    "Checker.distance": lambda: _of_checker(scene()),
+    "Checker.distance, links of one robot": lambda: _of_checker(_of_its_links()),
     "Checker.distance, a mesh with a hole": lambda: _of_checker(_lacks_a_face()),
     "distance": lambda: lambda: cl.distance(*BOXES, pose_b=AWAY),
     "Query.distance": _of_query,
@@ -118,13 +132,12 @@ QUESTIONS: dict[str, Callable[[], Callable[[], object]]] = {
 
 def calls_of_further_steps(certify: bool) -> dict[str, int]:
     """The calls of `N_STEPS` further steps of `check`."""
-    case = scene("panda_shelf")
+    case = scene()
     trajectory = case.robots[0].trajectory
     found = []
     for n in (N_STEPS, 2 * N_STEPS):
         times = np.linspace(trajectory.times[0], trajectory.times[-1], n)
-        columns = [np.interp(times, trajectory.times, column) for column in trajectory.positions.T]
-        longer = case.with_trajectory(times, np.stack(columns, axis=1))
+        longer = resampled(case, times)
         found.append(calls_of(lambda case=longer: checked(case, certify)))
     return {whose: found[1][whose] - n for whose, n in found[0].items()}
 
