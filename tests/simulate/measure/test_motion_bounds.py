@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
@@ -19,30 +18,24 @@ from clearance.kernels.motion.interval_motion_bound import (
     interval_motion_bound_of,
 )
 from clearance.kernels.motion.joint_motion_bound import (
-    loosened,
     motion_bound_of,
     motion_bound_of_box,
     motion_bound_of_box_along,
-    orientation_rounding,
 )
-from clearance.kernels.motion.joint_path import OUTWARD, BallPath, JointPath, part_of
-from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, place_by_link
+from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
 from clearance.kernels.motion.world import World
 from clearance.world.case import Case
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import (
     link_poses,
     links_of_robot,
-    poses_by_link,
     values_by_link,
 )
 from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
-from clearance.world.slerp import aligned, arcs_between
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
-from tests.made_cases import at, random_robot
-from tests.simulate.measure.test_ball_joints import Scene, between, chain, orientations, poses
+from tests.made_cases import random_robot
 
 SHAPE = box((0.3, 0.1, 0.2))
 
@@ -260,75 +253,3 @@ def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
     ends = link_poses(placed, positions)[:, 200, :, 3]
     bound = ways(surface_of(speck), np.array([200]), links_of([placed]), positions)
     assert np.linalg.norm(ends[1] - ends[0]) <= bound[1] <= 0.1 * 1.001
-
-
-KINDS = st.lists(st.sampled_from([FIXED, TURNING, SLIDING, BALL]), max_size=4)
-
-
-@examples(60)
-@given(
-    st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]),
-    st.sampled_from([1.0, 1.0 - 1e-6, 0.5]),
-)  # fmt: skip
-def test_no_body_moves_farther_than_its_columns_say(seed, above, below, size, length):
-    random = np.random.default_rng(seed)
-    links, n = chain([*above, BALL, *below], random, shift=random.choice([0.0, 0.5, 50.0]))
-    positions = random.uniform(-2.0, 2.0, n) + size * random.uniform(-1.0, 1.0, (12, n))
-    for column in links.columns[links.kinds == BALL]:
-        turned = orientations(random, 12, min(size, np.pi))
-        turned = aligned(turned) if random.random() < 0.7 else turned
-        positions[:, column : column + 4] = length * turned
-    link = len(links.parents) - 1
-    body = SHAPE.transformed(at(0.4, 0.0, -0.2)) if random.random() < 0.5 else SHAPE
-    corners = np.column_stack([body.vertices, np.ones(8)])
-    world = corners @ poses_by_link(links, positions)[:, link].transpose(0, 2, 1)
-    moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
-    scene = Scene(links, [body], [link], np.empty((0, 2), np.int64), positions)
-    assert (moved <= ways_in(surface_of(body), scene.world, positions)).all()
-
-
-def bound_about(surface, links, link, balls, middle):
-    place_by_link(links, middle.positions, middle.poses)
-    box = box_of(surface, 0)
-    bound = motion_bound_of(box, links, link, middle)
-    rounding = orientation_rounding(box, links, link, balls, middle)
-    return motion_bound_of_box(box, loosened(bound, rounding)), rounding
-
-
-@examples(50)
-@given(st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.1]))
-def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
-    """Every ball joint turns about an axis of its own, the others move linearly."""
-    random = np.random.default_rng(seed)
-    links, n = chain([*above, BALL, *below], random)
-    ends = random.uniform(-2.0, 2.0, n) + size * random.uniform(-1.0, 1.0, (2, n))
-    values = values_by_link(links, ends)
-    middle, swing = values.mean(axis=0), 0.5 * (values[1] - values[0])
-    bend, balls = np.zeros(len(swing)), np.flatnonzero(links.kinds == BALL)
-    turning = links._replace(
-        kinds=np.where(links.kinds == BALL, TURNING, links.kinds),
-        axes=links.axes.copy(),
-        parent_from_joint=links.parent_from_joint.copy(),
-    )
-    for link in balls:
-        at_link = slice(links.columns[link], links.columns[link] + 4)
-        ends[:, at_link] = orientations(random, 2, size)
-        *axis, angle = arcs_between(*ends[:, at_link])
-        turned = Rotation.from_quat(ends[0, at_link]).as_matrix()
-        turning.parent_from_joint[link, :3, :3] = links.parent_from_joint[link, :3, :3] @ turned
-        turning.axes[link], middle[link], swing[link] = axis, angle / 2, angle / 2
-    swing *= 1.0 + 1e-12
-    link = len(links.parents) - 1
-    room = np.empty((link + 1, 4, 4))
-    state = IntervalMiddle(middle, swing, bend, room)
-    path = BallPath(balls, links.parent_from_joint[balls], np.empty((0, len(balls), 8)))
-    bound, rounding = bound_about(surface_of(SHAPE), turning, link, path, state)
-    slides = np.abs(values[:, links.kinds == SLIDING]).max(axis=0).sum()
-    apart = np.linalg.norm(links.parent_from_joint[:, :3, 3], axis=1).sum()
-    reach = np.linalg.norm(SHAPE.bounds[1]) + apart + slides
-    assert 0.0 < rounding <= 2.0**-45 * len(balls) * reach * (1.0 + 1e-6)
-    shares = np.array([0.5, *np.linspace(0.0, 1.0, 41)])
-    placed = poses(links, between(links, *ends, shares))[:, link]
-    world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
-    assert np.linalg.norm(world - world[0], axis=2).max() <= bound
-    assert np.abs(placed[0] - room[link]).max() <= 1e-14
