@@ -12,7 +12,7 @@ from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
 from clearance.query import cutting, intersection
-from clearance.query.common_point import MAX_PASSES, common_point, common_point_paper
+from clearance.query.common_point import common_point, common_point_paper
 from clearance.query.intersection import intersect
 from tests.examples import first_fast
 from tests.oracle.polytope_volumes import shared_volume
@@ -56,45 +56,28 @@ def test_it_agrees_with_scipy_and_satisfies_every_half_space(m, n):
 
 
 @pytest.mark.slow
-def test_halves_change_nothing(monkeypatch):
-    families = [
-        cluster(m, n, seed)
-        for m, n in ((2, 8), (2, 60), (2, 400), (5, 40), (24, 30))
-        for seed in range(3)
-    ]
+@pytest.mark.parametrize(
+    ("room", "name", "value"), [(intersection, "HALVED_FROM", 0), (cutting, "ROWS_A_VERTEX", 1)]
+)
+def test_halves_and_growing_on_the_way_change_nothing(room, name, value, monkeypatch):
+    families = [cluster(m, n) for m, n in ((2, 8), (2, 60), (2, 900), (9, 40), (24, 30))]
     families += [
         [Polytope(CUBE), Polytope(CUBE * 0.5 + 0.3), Polytope(CUBE + 0.25)],
         [Polytope(CUBE)] * 4,
+        [Polytope(CUBE * s - np.array(s) / 2) for s in ((1, 1, 9), (1, 9, 1), (9, 1, 1))],
+        [ball(500, 1), Polytope((CUBE - 0.5) * [0.1, 0.1, 9.0]), ball(300, 2)],
+        [Polytope(CUBE), Polytope(2.9 * np.vstack([np.eye(3), -np.eye(3)]))],  # cuts one corner
     ]
-    families.append(
-        [Polytope(CUBE * s - np.array(s) / 2) for s in ((1, 1, 9), (1, 9, 1), (9, 1, 1))]
-    )
-    families.append([ball(500, 1), Polytope((CUBE - 0.5) * [0.1, 0.1, 9.0]), ball(300, 2)])
+    points = np.random.default_rng(8).normal(size=(90, 3))
+    families.append([Polytope(points + k * np.array([1e-12, 2e-12, 0.0])) for k in range(4)])
     plain = [intersect(bodies) for bodies in families]
-    monkeypatch.setattr(intersection, "HALVED_FROM", 0)
+    monkeypatch.setattr(room, name, value)
     for bodies, before in zip(families, plain, strict=True):
         found = intersect(bodies)
         assert found.volume == pytest.approx(before.volume, rel=1e-14)
         assert {tuple(row) for row in found.provenance} == {tuple(row) for row in before.provenance}
         assert len(found.vertices) == len(before.vertices)
         assert sorted(map(len, found.faces)) == sorted(map(len, before.faces))
-
-
-def test_growing_on_the_way_forgets_no_vertex(monkeypatch):
-    families = [cluster(m, n) for m, n in ((2, 60), (2, 900), (9, 40))]
-    points = np.random.default_rng(8).normal(size=(90, 3))
-    families.append(
-        [Polytope(points + shift * np.array([1e-12, 2e-12, 0.0])) for shift in range(4)]
-    )
-    families.append(
-        [Polytope(CUBE), Polytope(2.9 * np.vstack([np.eye(3), -np.eye(3)]))]
-    )  # cuts one corner
-    plain = [intersect(bodies) for bodies in families]
-    monkeypatch.setattr(cutting, "ROWS_A_VERTEX", 1)
-    for bodies, before in zip(families, plain, strict=True):
-        found = intersect(bodies)
-        assert found.volume == pytest.approx(before.volume, rel=1e-14)
-        assert {tuple(row) for row in found.provenance} == {tuple(row) for row in before.provenance}
 
 
 def test_each_face_lies_in_the_plane_it_is_said_to_come_from():
@@ -281,19 +264,6 @@ def test_flat_needle_like_and_huge_bodies(scale):
             pair = [turned(p, turn) if turn is not None else p + shift for p in (a, b)]
             exact, found = exact_and_found(*pair)
             assert found == pytest.approx(exact, rel=1e-13, abs=0.0)
-
-
-@pytest.mark.parametrize(("m", "n"), [(3, 8), (8, 5), (16, 4), (64, 4), (64, 30)])
-def test_many_bodies_both_ways(m, n):
-    for seed in range(3):
-        rng = np.random.default_rng([m, n, seed])
-        bodies = [Polytope(rng.normal(size=(n, 3)) + rng.normal(size=3) * 0.1) for _ in range(m)]
-        cut, dual = (intersect(bodies, method) for method in ("cut", "dual"))
-        assert cut.relation == dual.relation and cut.volume >= 0.0
-        assert cut.volume == pytest.approx(dual.volume, rel=1e-11, abs=0.0)
-        assert cut.common.passes < MAX_PASSES and cut.common.n_faces < 16 * m
-        if cut.relation == "overlap":
-            assert 2 * (len(cut.vertices) + len(cut.faces) - 2) == sum(map(len, cut.faces))
 
 
 def test_bytes_do_not_depend_on_the_number_of_threads(monkeypatch):

@@ -1,7 +1,9 @@
 """Normal cones: nodes that are turned away hold no nearest points, by exact rationals on hostile surfaces.
 
-Half a minute in the full run: which faces are nearest is asked of rational arithmetic for every pair of faces.
+Bodies have few faces: which are nearest is asked of rational arithmetic for every pair of faces.
 """
+
+import itertools
 
 import numpy as np
 import pytest
@@ -9,15 +11,12 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.compile.declared import Flags2, Floats2
-from clearance.compile.decorators import kernel
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import direction_between, rounding_slack
-from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.search.displacement import Still
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
@@ -39,25 +38,17 @@ from tests.made_cases import (
 from tests.strategies import rotations
 
 
-@kernel
-def all_turned_away(
-    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, of_a: Flags2, of_b: Flags2
-) -> None:
-    """Fills, for each pair of nodes (i, j) that are apart, if i is left out from j, and j from i."""
+def is_turned_away(a, b, pose_a, pose_b, i, j):
+    """If the node i of a is left out from j of b where both are apart, and j from i."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     still = Still(rounding_slack(a, a.roots[0], b, b.roots[0], frames))
     views = views_along(
         direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
-    for i in range(len(a.children)):
-        for j in range(len(b.children)):
-            group_a, group_b = NodeGroup(False, i // WIDTH, j), NodeGroup(True, j // WIDTH, i)
-            bounds = bounds_of_group(a, b, views, group_a, ALL, still, np.inf)
-            away = turned_away(a, b, views, group_a, ALL, bounds, still)
-            of_a[i, j] = lane(bounds, i % WIDTH) > 0.0 and away >> i % WIDTH & 1
-            bounds = bounds_of_group(a, b, views, group_b, ALL, still, np.inf)
-            away = turned_away(a, b, views, group_b, ALL, bounds, still)
-            of_b[i, j] = lane(bounds, j % WIDTH) > 0.0 and away >> j % WIDTH & 1
+    for group, k in ((NodeGroup(False, i // WIDTH, j), i), (NodeGroup(True, j // WIDTH, i), j)):
+        bounds = bounds_of_group(a, b, views, group, ALL, still, np.inf)
+        away = turned_away(a, b, views, group, ALL, bounds, still)
+        yield lane(bounds, k % WIDTH) > 0.0 and away >> k % WIDTH & 1
 
 
 def crossing(random):
@@ -79,7 +70,7 @@ def fan(random):
 
 
 def half(random):
-    shape = dented(random)
+    shape = dented(random, 0)
     return Polyhedron(shape.vertices, faces_of(shape)[: shape.n_faces // 2])
 
 
@@ -90,7 +81,7 @@ def twice(random):
 
 def copied(random):
     """Some faces twice, some of these the other way round."""
-    shape = dented(random)
+    shape = dented(random, 0)
     again = [face for face in faces_of(shape) if random.random() < 0.4]
     return Polyhedron(
         shape.vertices, faces_of(shape) + [face[:: random.choice([-1, 1])] for face in again]
@@ -98,12 +89,12 @@ def copied(random):
 
 
 def thin_shell(random):
-    shape = dented(random)
+    shape = dented(random, 0)
     return Polyhedron.merged([shape, corners_moved(shape, 0.97 * shape.vertices).flipped()])
 
 
 def some_turned_round(random):
-    shape = dented(random)
+    shape = dented(random, 0)
     turned = random.random(shape.n_faces) < 0.1
     faces = [
         face[::-1] if round_ else face for face, round_ in zip(faces_of(shape), turned, strict=True)
@@ -112,7 +103,7 @@ def some_turned_round(random):
 
 
 def dented_ring(random):
-    shape = torus(1.0, 0.3, 9, 5)
+    shape = torus(1.0, 0.3, 6, 4)
     return corners_moved(
         shape, shape.vertices + random.normal(scale=0.08, size=shape.vertices.shape)
     )
@@ -124,11 +115,11 @@ def squeezed(random, height):
 
 
 KINDS = {
-    "ball": lambda random: ball(1.0, 1),
-    "dented": dented,
-    "ring": lambda random: torus(1.0, 0.3, 9, 5),
+    "ball": lambda random: ball(1.0, 0),
+    "dented": lambda random: dented(random, 0),
+    "ring": lambda random: torus(1.0, 0.3, 6, 4),
     "dented ring": dented_ring,
-    "inside out": lambda random: dented(random).flipped(),
+    "inside out": lambda random: dented(random, 0).flipped(),
     "some turned round": some_turned_round,
     "half": half,
     "crossing": crossing,
@@ -179,8 +170,5 @@ def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, 
     if owners is None:
         return
     one, two = surface_of(a), surface_of(b)
-    of_a, of_b = np.zeros((2, len(one.children), len(two.children)), dtype=bool)
-    all_turned_away(one, two, pose_a, pose_b, of_a, of_b)
-    holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
-    assert not of_a[holds].any()
-    assert not of_b[holds].any()
+    for i, j in itertools.product(*(map(nodes_over, (one, two), owners))):
+        assert not any(is_turned_away(one, two, pose_a, pose_b, i, j))

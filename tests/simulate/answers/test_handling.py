@@ -170,17 +170,6 @@ def test_a_link_that_stands_because_its_joint_rests_is_standing_too(run):
     assert ("upper", "collar") in found
 
 
-def test_a_part_far_from_what_picks_it_up_stands_in_the_headline():
-    """At 0.5 s the tool's lower side is at 0.75 - 0.05 m, and the part's upper one at 0.14 + 0.05 m."""
-    case = lifting()
-    early = replace(case, carries=(Carry("part", "left/tool", Window(0.5, 4.0)),))
-    (warning,) = [one for one in cl.check(early).verdict.warnings if "picks it up" in one]
-    assert warning.startswith("part 'part' is 0.51 m away") and warning.endswith(
-        "of its carry [CL428]"
-    )
-    assert not any("picks it up" in one for one in cl.check(case).verdict.warnings)
-
-
 @pytest.mark.parametrize("fixed", [{}, {"left_finger": 0.0}])
 def test_fingers_that_rest_closed_at_nobodys_word_are_told_by_their_joint(fixed):
     """A hand slides on, its two fingers 0.1 m thick and side by side; one of them can open."""
@@ -321,9 +310,3 @@ def test_shapes_of_an_object_do_not_hold_one_another(x, n_told):
     said = told((*shapes, WALL), *(Carry(f"a/{i}", "left/tool", Window(1.0)) for i in range(2)))
     text = "part 'a/0' is 0.5 m away from all of what picks it up at 1 s (left/tool)"
     assert len(said) == n_told and all(text in one for one in said)
-
-
-def test_a_part_far_away_is_told_of_though_another_is_gripped_at_once():
-    near, far = (box(name, (0.1, 0.1, 0.1), at(1.1, y, 0.5)) for name, y in (("p", 0), ("q", 1.5)))
-    (said,) = told((near, far, WALL), *(Carry(one, "left/tool", Window(1.0)) for one in "pq"))
-    assert "part 'q' is" in said and "away from all of what picks it up at 1 s" in said

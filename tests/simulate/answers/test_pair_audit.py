@@ -80,7 +80,7 @@ def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
 @pytest.mark.slow
 def test_a_gap_below_the_resolution_is_undecided_and_told():
     robot = robot_of(
-        [Body("a", prism(0.2, 0.05)), Body("b", prism(0.2, 0.05))],
+        [Body("a", prism(0.2, 0.05, 12)), Body("b", prism(0.2, 0.05, 12))],
         turning("a", "b", at(z=0.05 + 0.4 * GAP)),
     )
     found = audit_pair(robot, "a", "b")
