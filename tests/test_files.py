@@ -50,19 +50,6 @@ def test_the_same_record_gives_the_same_bytes_and_replaces_an_older_report(tmp_p
     assert contents(tmp_path / "a") != older
 
 
-def test_other_files_in_the_folder_stay(tmp_path):
-    (tmp_path / "mine.txt").write_text("mine")
-    fill_folder(tmp_path, two_files("new"), OWN)
-    assert contents(tmp_path) == {"mine.txt": b"mine", "steps.csv": b"new", "summary.json": b"new"}
-
-
-def test_a_folder_below_a_file_is_refused_in_one_line(tmp_path):
-    (tmp_path / "file").write_text("")
-    with pytest.raises(Unwritable) as caught:
-        write(record(n_steps=3), tmp_path / "file" / "out")
-    assert str(tmp_path / "file" / "out") in str(caught.value)
-
-
 @pytest.mark.parametrize("older", [False, True])
 def test_a_full_disk_leaves_everything_as_it_was(tmp_path, older):
     folder = tmp_path / "out"
@@ -190,29 +177,6 @@ def test_one_file_is_whole_or_the_older_one(tmp_path, monkeypatch):
     with pytest.raises(Unwritable, match=r"junit\.xml"):
         write_file(path, b"new")
     assert contents(tmp_path / "deep") == {"junit.xml": b"old"}
-
-
-def test_a_folder_that_cannot_be_moved_in_is_taken_back(tmp_path, monkeypatch):
-    """Folders of a report go as files do: what was there is there again."""
-    place = tmp_path / "out"
-    place.mkdir()
-    (place / "mine.txt").write_text("mine")
-    moves = os.replace
-
-    def fails_on_the_last(source, target):
-        if target == place / "z.txt":
-            raise OSError(errno.ENOSPC, "No space left on device")
-        moves(source, target)
-
-    def fill(fresh):
-        (fresh / "before").mkdir()
-        (fresh / "before" / "a.txt").write_text("a")
-        (fresh / "z.txt").write_text("z")
-
-    monkeypatch.setattr(os, "replace", fails_on_the_last)
-    with pytest.raises(Unwritable):
-        fill_folder(place, fill, ("before", "z.txt"))
-    assert [path.name for path in place.iterdir()] == ["mine.txt"]
 
 
 FRESH = {"case.yaml": b"new", "path.csv": b"new"}

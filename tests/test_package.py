@@ -206,15 +206,6 @@ def test_a_library_that_cannot_be_loaded_says_why():
             raise ImportError("libGL is missing", name="meshcat")
 
 
-def test_a_fault_of_our_own_is_no_missing_library():
-    with pytest.raises(ValueError), extras.importing("report", "the page"):
-        raise ValueError
-
-
-def test_what_is_installed_is_found():
-    assert extras.is_installed("clearance") and not extras.is_installed("no_such_library")
-
-
 @pytest.fixture
 def folder(tmp_path):
     for name, content in (("a.py", "x = 1\n"), ("rooms/b.py", "y = 2\n"), ("rooms/p.yaml", "z: 3")):

@@ -1,10 +1,7 @@
 """Long work is never silent: a line every ten seconds of a clock that counts, whatever goes on."""
 
-import sys
-
 import pytest
 
-import clearance as cl
 from clearance.cli import progress as shown
 from clearance.progress import doing, never_silent
 from tests.counted_end import counted_end
@@ -19,15 +16,6 @@ def test_the_innermost_line_is_written_with_the_time_so_far(monkeypatch, capsys)
         "reading, 10 s so far",
         "measuring: 5 of 9, 30 s so far",
     ]
-
-
-def test_a_part_that_shows_nothing_itself_is_named_by_the_whole(monkeypatch, capsys):
-    end = counted_end(monkeypatch, 1)
-    with never_silent(lambda: "gain"), never_silent(lambda: "a Checker"):
-        with doing(lambda: "searching"):
-            pass
-        end.pass_all()
-    assert capsys.readouterr().err == "a Checker, 10 s so far\n"
 
 
 def test_passes_are_told_apart_by_their_counting(monkeypatch, capsys):
@@ -69,13 +57,3 @@ def test_commands_are_within_it(name, monkeypatch, capsys):
         asked = [*asked, "--quiet"]
         assert run(asked) == ExitCode.INTERRUPTED
         assert capsys.readouterr().err == "interrupted\n"
-
-
-def test_a_checker_is_within_it(monkeypatch, capsys):
-    end = counted_end(monkeypatch, 1)
-    monkeypatch.setattr(
-        "clearance.simulate.measure.checker.AskedPositions", lambda *_: sys.exit(end.pass_all())
-    )
-    with pytest.raises(SystemExit):
-        cl.Checker(cl.load_case("scenes/box_box/case.yaml"))
-    assert capsys.readouterr().err == "a Checker prepares the bodies of its case, 10 s so far\n"

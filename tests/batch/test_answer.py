@@ -76,24 +76,6 @@ def test_the_proven_clearance_counts_tolerances(tmp_path):
     assert page["bound"] == [pytest.approx(390.0, abs=0.2)] and row["lower_bound"] > 0.399
 
 
-def test_a_nearer_moment_than_the_most_critical_one_is_told(tmp_path):
-    manifest = write_cell(tmp_path / "in", [0.04])
-    cell = tmp_path / "in" / "cell.yaml"
-    waiver = (
-        "- {between: [slider, wall], at_least: 0.03, until: 2999-01-01, reason: soft, by: N. N.}\n"
-    )
-    (tmp_path / "in" / "waivers.yaml").write_text(waiver)
-    post = "- {name: post, box: {size: [0.2, 0.1, 1]}, pose: {xyz: [1.06, 0, 0]}}\n"
-    text = cell.read_text().replace("limits:", f"  {post}limits:")
-    cell.write_text(f"{text}waivers: [waivers.yaml]\n")
-    _, found = run_here(manifest, tmp_path / "store")
-    page, headlines = data_of(found, tmp_path / "store")
-    assert headlines == ["near with 1 waiver"] and page["clearance"][0] > page["bound"][0]
-    assert any(line.startswith("nearest of all 39.99 mm") for line in page["notes"][0])
-    shown = page_of(found, tmp_path / "store")
-    assert "Critical mm" in shown and "Least mm" not in shown
-
-
 def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(engine, "SECONDS", 1e9)  # one task, however slow the machine
     manifest = write_cell(tmp_path / "in", [-0.01, -0.03, 0.5, -0.02])

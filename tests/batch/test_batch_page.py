@@ -81,17 +81,6 @@ def test_only_what_is_in_view_is_drawn(page):
 
 
 @pytest.mark.browser
-def test_it_sorts_by_a_column(page):
-    page.run("document.querySelector('[data-key=clearance]').click()")
-    page.settle()
-    assert set(shown(page, 2)) == {"100.000 deep"}  # in contact: the deepest first
-    assert set(shown(page, 1)) == {"contact"}
-    page.run("document.querySelector('[data-key=clearance]').click()")
-    page.settle()
-    assert set(shown(page, 1)) == {"clear"}
-
-
-@pytest.mark.browser
 def test_it_filters_by_verdict_body_and_name(page):
     choose = "document.getElementById('{}').value = '{}';"
     changed = "document.getElementById('filters').dispatchEvent(new Event('input'))"

@@ -6,8 +6,7 @@ from datetime import date
 import pytest
 import trimesh
 
-from clearance.batch import engine, file_hashes, rows
-from clearance.batch.engine import LocalEngine
+from clearance.batch import engine, file_hashes
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
 from clearance.batch.measuring import Task, measure
@@ -105,21 +104,6 @@ def test_bad_input_among_others_is_told_and_the_others_are_done(manifest, tmp_pa
     assert "rial" in rows["t003"]["reasons"][0]
     told, strict = run_here(manifest, tmp_path / "out", strict=True)
     assert strict.exit_code == 2 and told.measured == ["t001", "t003"]
-
-
-def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
-    """One that begins and ends while the other measures."""
-
-    class Meanwhile(LocalEngine):
-        def results(self, queue):
-            run_here(other, tmp_path / "out")
-            yield from super().results(queue)
-
-    other = write_cell(tmp_path / "other", [0.15, 0.5])
-    _, found = run_here(manifest, tmp_path / "out", engine=Meanwhile())
-    assert list(statuses(found).values()) == ["clear", "near", "violated", "clear", "contact"]
-    assert run_here(other, tmp_path / "out")[0].measured == []
-    assert run_here(manifest, tmp_path / "out")[0].measured == []
 
 
 def test_the_key_is_of_all_that_decides_a_row(manifest):
@@ -223,14 +207,3 @@ def test_a_mesh_that_appears_nearer_is_measured(nearer, manifest, tmp_path):
     (tmp_path / nearer).unlink()
     told, again = run_here(manifest, tmp_path / "out")
     assert told.measured == [] and statuses(again) == statuses(before)
-
-
-@pytest.mark.slow
-def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
-    _, found = run_here(manifest, tmp_path / "out")
-    assert set(column(found, "incomplete")) == {""}
-    _, least = run_here(manifest, tmp_path / "least", changes=dict(need="minimum"))
-    assert all("need 'minimum'" in why for why in column(least, "incomplete"))
-    monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
-    _, cut = run_here(manifest, tmp_path / "cut")
-    assert set(column(cut, "incomplete")) == {"1 of 1 findings are not listed"}

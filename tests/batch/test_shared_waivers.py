@@ -118,18 +118,6 @@ def test_what_is_not_answered_may_need_it(folder, capsys):
     assert "is not needed" not in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("of_cell", [False, True])
-def test_an_expired_waiver_is_told_though_a_case_has_no_answer(of_cell, folder, capsys):
-    """Else its reader looks for why the same cases are violated again."""
-    (folder / "waivers.yaml").write_text(waiver(until="2026-10-31") if not of_cell else "[]")
-    if of_cell:
-        write_waivers_of_the_cell(folder, waiver(until="2026-10-31"))
-    (folder / "t001.csv").write_text("time,rail\n0,x\n")
-    assert batch() == 1
-    told = capsys.readouterr().out
-    assert "waivers[0]) has expired on 2026-10-31" in told and "is not needed" not in told
-
-
 def test_a_waiver_is_a_change_of_its_cases_alone(folder, capsys):
     (folder / "waivers.yaml").write_text(waiver(case="t002"))
     batch()

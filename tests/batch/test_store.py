@@ -163,21 +163,6 @@ def test_a_part_knows_what_the_store_has_and_is_merged(manifest, tmp_path, monke
     assert n_rows(place) == 7
 
 
-def test_parts_that_were_measured_elsewhere_are_merged_and_stay(manifest, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    asked = ["batch", str(manifest), "--jobs", "1", "--quiet"]
-    for i in (1, 2):
-        run([*asked, "--out", f"part{i}", "--shard", f"{i}/2"])
-    assert run(["batch", "merge", "out", "part1", "part2"]) == 0
-    assert run([*asked, "--out", "out"]) == 1 and n_rows(tmp_path / "out") == 5
-    run([*asked, "--out", "alone"])
-    assert all(
-        (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
-        for name in ("cases.parquet", "findings.parquet")
-    )
-    assert (tmp_path / "part1" / "part-1-of-2.sqlite").is_file()
-
-
 def test_only_stores_are_merged(tmp_path, capsys):
     (tmp_path / "none").mkdir()
     (tmp_path / "cell.yaml").write_text("name: x\n")

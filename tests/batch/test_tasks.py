@@ -38,13 +38,6 @@ def names(arguments):
     return [item.name for item in items_of(arguments)]
 
 
-def test_a_cell_times_trajectories_in_order_of_their_names(folder):
-    items = items_of([str(folder / "batch.yaml")])
-    assert [item.name for item in items] == ["t000", "t001", "t002"]
-    assert [item.number for item in items] == [0, 1, 2]
-    assert {item.file for item in items} == {str(folder / "cell.yaml")}
-
-
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
@@ -251,11 +244,6 @@ def test_what_changed_as_it_was_read_is_not_kept(file):
     assert hashes.stamps() == []
     hashes.learn([(file, marks(file))])
     assert hashes.stamps() == [(file, marks(file))] and hashes.stamps() == []
-
-
-def test_a_file_that_is_gone_has_no_hash(tmp_path):
-    assert FileHashes().of(str(tmp_path / "gone.csv")) is None
-    assert seen(str(tmp_path / "gone.csv"), "", 0) is None
 
 
 def test_a_settled_mark_lies_more_than_the_clocks_grain_before_reading():

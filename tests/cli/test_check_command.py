@@ -140,6 +140,7 @@ def test_a_case_that_is_not_there(folder, refusal, case, named):
         (("--out", "/proc/report"), "/proc/report"),
         (("--out", "link/deeper"), "leads nowhere"),
         (("--junit", "."), "--junit"),
+        (("--out", "n" * 300), "name too long"),
         (("--junit", "n" * 250), "name too long"),  # with what is put around it while it is written
     ],
 )

@@ -56,18 +56,6 @@ def check(*arguments: str) -> int:
     return run(["check", *arguments])
 
 
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (["--waivers", "no.yaml"], "there is no file"),
-        (["--baseline", "waivers.yaml"], "not JSON"),
-        (["--out", "r", "--summary", "r/findings.json"], "a file of the report"),
-    ],
-)
-def test_bad_options_are_one_line_and_write_nothing(arguments, told, place, refusal):
-    assert told in refusal("check", "broken/case.yaml", *arguments)
-
-
 @pytest.mark.slow
 def test_a_baseline_is_told_and_does_not_change_the_exit_code(reports, capsys):
     assert check("broken/case.yaml", "--baseline", "of_broken") == 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
 
@@ -33,18 +32,6 @@ def without_reports(monkeypatch):
 
 def test_the_arm_is_that_of_the_repository():
     assert files(FOLDER / "heron6") == files(ROOT / "robots" / "heron6")
-
-
-@pytest.mark.slow
-def test_the_first_scene_is_clear_and_its_report_is_in_this_folder(folder, capsys):
-    """The tool's point is 24 mm above the flange, and the fingers reach 10 mm beyond it."""
-    code, out, err = demo(capsys)
-    assert (code, err) == (0, "") and out.startswith("CLEAR  seam: ")
-    assert "clearance_demo/report.html" in out
-    assert (folder / "clearance_demo" / "report.html").is_file()
-    assert [path.name for path in folder.iterdir()] == ["clearance_demo"]
-    summary = json.loads((folder / "clearance_demo" / "summary.json").read_text())
-    assert summary["worst"]["clearance"] == pytest.approx(0.014, abs=2e-5)
 
 
 @pytest.mark.slow

@@ -404,3 +404,9 @@ def test_a_doubt_about_the_unit_of_a_table_stays_with_its_file(capsys):
     capsys.readouterr()
     assert run(["check", "out/case.yaml"]) == 2
     assert "is the table in radians" in capsys.readouterr().out
+
+
+def test_an_empty_scene_is_in_the_headline(capsys):
+    assert new("--srdf", "cell/arm.srdf", "--states", "home,out", "--check") in (0, 1)
+    told = capsys.readouterr().out
+    assert "surroundings (the scene is empty) not checked" in told

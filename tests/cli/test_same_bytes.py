@@ -38,13 +38,13 @@ def test_a_name_is_in_a_dictionary_once() -> None:
     """pyarrow leaves room unwritten in the file for one that is there twice."""
     links, obstacles = ["arm", "hand", "arm", "hand"], ["post", "post", "wall", "wall"]
     clearance = np.arange(12.0).reshape(3, 4)
+    clearance[0, 0] = np.nan
     every = EveryPair(links, obstacles, clearance)
     for column, names in (("link", ["arm", "hand"]), ("obstacle", ["post", "wall"])):
         (chunk,) = every.table[column].chunks
         assert chunk.dictionary.to_pylist() == names
     rows = every.table.to_pydict()
     assert rows["link"] == 3 * links and rows["obstacle"] == 3 * obstacles
-    assert rows["step"] == [0] * 4 + [1] * 4 + [2] * 4 and rows["clearance"] == list(
-        np.arange(12.0)
-    )
+    assert rows["step"] == [0] * 4 + [1] * 4 + [2] * 4
+    assert rows["clearance"] == [None, *range(1, 12)], "null where a pair is not measured"
     assert pa.types.is_dictionary(every.table.schema.field("link").type)

@@ -73,6 +73,7 @@ def test_what_became_of_each_finding(what, before, tmp_path):
 @pytest.mark.parametrize(
     ("gate", "change", "why"),
     [
+        ((-0.5, -0.005), FindingChange.UNCHANGED, ""),
         ((0.3, -0.005), FindingChange.UNCHANGED, ""),
         ((0.3, -0.005 - 0.5 * TOLERANCE), FindingChange.UNCHANGED, ""),
         ((-0.5, -0.02), FindingChange.WORSE, "20.00 mm deep, and was 5.000 mm deep"),

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.errors import BadInput, BadSyntax, MissingFile
+from clearance.errors import BadInput, BadSyntax
 from clearance.findings.finding import FindingName
 from clearance.findings.findings_file import (
     FORMAT,
@@ -178,11 +178,6 @@ def test_what_is_no_such_file_is_refused_in_one_line(damaged, fault, told, tmp_p
     with pytest.raises(fault) as error:
         read_findings(path)
     assert told in str(error.value) and str(path) in str(error.value)
-
-
-def test_a_folder_without_findings_is_named(tmp_path):
-    with pytest.raises(MissingFile, match=r"findings\.json"):
-        read_findings(tmp_path)
 
 
 FAIL = 0.005

@@ -222,12 +222,6 @@ def test_the_package_declares_its_plugin():
     assert told["project"]["entry-points"]["pytest11"] == {"clearance": "clearance.pytest_plugin"}
 
 
-def test_what_keeps_its_distance_is_clear(run):
-    assert_clear(run, between=("box", B))
-    assert_clear(run, between=(B, "b*"), at_least=0.0999)
-    assert_clear(run, at_least=0.0029)
-
-
 @pytest.mark.parametrize(
     ("asked", "told"),
     [
@@ -358,11 +352,6 @@ def test_links_of_one_robot_that_are_not_measured_are_told_wherever_they_are_mea
 def test_a_pattern_of_what_is_not_measured_says_why(swaying, between, told):
     with pytest.raises(BadInput, match=re.escape(told)):
         assert_clear(swaying, between=between)
-
-
-def test_pytest_collects_nothing_else(inside, pytester):
-    write_gates(pytester.path, BROKEN)
-    assert inside().ret == pytest.ExitCode.NO_TESTS_COLLECTED
 
 
 def test_a_listed_case_that_is_a_link_to_nowhere_is_not_left_out(tmp_path):

@@ -63,14 +63,6 @@ def test_the_readout_and_the_hover_name_the_rule(page):
     assert "by rule fence: fail 5 mm, warn 500 mm" in texts
 
 
-def test_the_limit_lines_go_in_steps_with_the_rule_that_judges(page):
-    lines = page.run("window.clearance.chart.told.limits.map((one) => [one.x, one.y])")
-    assert len(lines) == 2
-    for (x, y), fence in zip(lines, (5.0, 500.0), strict=True):
-        assert x == sorted(x) and y[0] == y[-1] == fence
-        assert min(y) < fence
-
-
 def test_nothing_is_drawn_as_proven_with_tolerances_where_a_recording_is_not_measured(tmp_path):
     budget = Budget(obstacles={"post": ObstacleTolerance(surface=0.001)})
     with opened(cl.check(replace(with_a_hole(), tolerance=budget)), tmp_path) as page:

@@ -33,10 +33,10 @@ from clearance.world.rules import Waiver
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from tests.findings.gates import load_gates, write_gates, write_way
-from tests.findings.test_verdict import NOT_KEPT
+from tests.findings.test_verdict import NOT_KEPT, WARNING, made
 from tests.made_cases import at
 from tests.report.cells import sliding
-from tests.report.made import run_of, write_junit
+from tests.report.made import model_of, run_of, write_junit
 from tests.report.records import arm, record
 from tests.report.schemas import valid_suite
 
@@ -288,3 +288,9 @@ def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):
     assert lines[0].startswith("::warning title=clearance%3A gates::waived: 3.000 mm, below")
     table = markdown(waived.report)
     assert "| violated, waived |" in table and "with 2 waivers" in table
+
+
+def test_markdown_names_a_warning_once_whether_it_fails_or_not():
+    for strict in (False, True):
+        text = markdown(model_of(made(notices=(WARNING,), strict=strict)))
+        assert text.count("links without a collision shape: antenna") == 1

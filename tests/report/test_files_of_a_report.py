@@ -221,14 +221,6 @@ def test_links_name_their_robot_where_there_are_several_and_held_parts_the_link(
     assert (right["robot"], right["attached_collision_objects"]) == ("right", [])
 
 
-def test_padding_is_told_where_there_is_some():
-    wall = box("wall", (0.1, 1, 1), at(1.6), padding=0.01)
-    case = cell(WIDE, (sliding("arm", LEFT),), (wall,), ())
-    moment = read(moments_text(cl.check(case)))["moments"][0]
-    assert moment["padding"] == 0.01
-    assert moment["distance"] == pytest.approx(moment["clearance"] + 0.01, abs=1e-15)
-
-
 DEMO = Path(cl.__file__).parent / "demo"
 
 RUNS: dict[str, Callable[[Path], Run]] = {

@@ -11,7 +11,6 @@ import pytest
 
 import clearance as cl
 from clearance.findings.comparison import compared
-from clearance.record.wording import mm
 from clearance.report.comparison import write_comparison
 from clearance.report.still import overview, still_of
 from clearance.run import Question, answer
@@ -23,7 +22,7 @@ from tests.findings.test_verdict import made
 from tests.made_cases import arm, at
 from tests.profiles.moving import slab, sliding
 from tests.report.browser import Page, chromium, executable, opened
-from tests.report.made import replay_of, run_of, write
+from tests.report.made import replay_of, write
 from tests.report.records import record, with_budget
 
 pytestmark = [
@@ -108,24 +107,6 @@ def test_a_click_on_the_curve_moves_the_robot_to_that_step(page):
     assert np.abs(links_drawn(page.run("window.clearance.state()")) - before).max() > 0.05
 
 
-def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """Moves the mouse over the window with its button down."""
-    for kind, (x, y) in (("mousePressed", start), ("mouseMoved", end), ("mouseReleased", end)):
-        page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
-    page.settle()
-
-
-def test_dragging_over_the_curve_zooms_and_a_double_click_shows_all_again(page):
-    whole = page.run("window.clearance.chart.span")
-    before = show(page, 5)["step"]
-    drag(page, curve_point(page, 60), curve_point(page, 180))
-    span = page.run("window.clearance.chart.span")
-    assert np.abs(np.subtract(span, [row(60)["time"], row(180)["time"]])).max() < 0.02
-    assert page.run("window.clearance.state().step") == before, "a drag picks no step"
-    page.run("document.querySelector('#curve svg').dispatchEvent(new MouseEvent('dblclick'))")
-    assert page.run("window.clearance.chart.span") == whole
-
-
 @pytest.mark.parametrize("selector", [".cell", "tr[data-step]", "a[data-step]"])
 def test_a_click_in_a_table_moves_the_replay(page, selector):
     show(page, 3)
@@ -146,14 +127,6 @@ def test_play_runs_on_the_clock_of_the_trajectory_and_pause_stops_it(page):
     assert page.run("window.clearance.state().step") == step
 
 
-def test_the_slider_scrubs_and_the_button_jumps_to_the_worst_step(page):
-    page.run("(() => { const s = document.getElementById('scrub'); s.value = 77;"
-             "s.dispatchEvent(new Event('input')); })()")  # fmt: skip
-    assert page.run("window.clearance.state().step") == 77
-    page.run("document.getElementById('worst-step').click()")
-    assert page.run("window.clearance.state().step") == RUN.worst_step
-
-
 def test_it_prints_with_a_still_of_the_worst_moment(page):
     page.wait("document.getElementById('replay-still').src.startsWith('data:image/png')")
     assert page.pdf().startswith(b"%PDF")
@@ -164,31 +137,6 @@ def test_it_prints_with_a_still_of_the_worst_moment(page):
         assert 150 < page.box("#curve svg")["height"] < 400
     finally:
         page.call("Emulation.setEmulatedMedia", media="")
-
-
-def click_pair(page: Page, place: int) -> None:
-    """Clicks the cell of the matrix that stands for the pair of that place among the minima."""
-    page.run(f"document.querySelector(`[data-pair='{place}']`).click()")
-    page.settle()
-
-
-def test_a_clicked_pair_has_its_own_line_and_its_place_on_the_curve(page):
-    pair = max(run_of(RUN).pair_minima, key=lambda minimum: minimum.clearance)
-    place = list(run_of(RUN).pair_minima).index(pair)
-    click_pair(page, place)
-    state = page.run("window.clearance.state()")
-    assert (state["step"], state["nearest"]) == (pair.step, [pair.link, pair.obstacle])
-    assert np.abs(np.subtract(state["dots"], [pair.point_link, pair.point_obstacle])).max() < 1e-9
-    assert mm(pair.clearance) in page.run("document.getElementById('readout').textContent")
-    read_out = page.run("document.getElementById('scrub').getAttribute('aria-valuetext')")
-    assert read_out == f"{pair.time:.3f} s, {mm(pair.clearance)} mm"
-    mark = page.run("window.clearance.chart.told.marks.at(-1)")
-    assert (mark["x"], mark["y"]) == (pair.time, pytest.approx(pair.clearance * 1000.0))
-    assert page.run("document.querySelectorAll('.mark.pair').length") == 1
-    page.run("document.getElementById('pair-clear').click()")
-    page.settle()
-    assert page.run("window.clearance.state().nearest")[0] == row(pair.step)["link"]
-    assert page.run("document.querySelectorAll('.chosen').length") == 0
 
 
 def test_no_error_came_up_in_all_this(page):

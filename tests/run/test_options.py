@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 
@@ -188,10 +188,6 @@ def case(tmp_path):
     return load_gates(tmp_path, {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.1)})
 
 
-def test_options_that_say_nothing_change_nothing(case):
-    assert CheckOptions().apply(case) is case
-
-
 def test_each_change_of_a_case_is_applied(case):
     asked = CheckOptions(
         fail=0.001, warn=0.002, accept="units", waivers=[WAIVER], tolerance={"base": {"xyz": 0.001}},
@@ -212,6 +208,11 @@ def test_what_a_case_cannot_have_is_refused(case):
         CheckOptions(warn=0.001).apply(case)
 
 
+@pytest.mark.parametrize("name", ["need", "certify", "certify_gap", "method", "motion"])
+def test_rows_of_another_question_are_not_taken_up(case, name):
+    assert Question(case).of_rows != Question(case, **{name: EVERY[name][0]}).of_rows
+
+
 def test_a_question_is_made_in_one_hop(case):
     asked = CheckOptions(need="limit", fail=0.001, today=date(2026, 11, 1), waivers=[WAIVER])
     question = Question.of(case, asked)
@@ -221,14 +222,8 @@ def test_a_question_is_made_in_one_hop(case):
     assert not paper.certify and replace(paper, contact="none").method == "paper"
 
 
-@pytest.mark.parametrize("name", ["need", "certify", "certify_gap", "method", "motion"])
-def test_rows_of_another_question_are_not_taken_up(case, name):
-    assert Question(case).of_rows != Question(case, **{name: EVERY[name][0]}).of_rows
-
-
 def test_a_field_is_all_that_a_new_option_takes():
     """What `option` declares is on the command line, is checked, and has its help and its default."""
-    from dataclasses import dataclass
 
     @dataclass(frozen=True)
     class List:
