@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.world.body import Mount
 from clearance.world.carry import Carry
 from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind
 from clearance.world.timing import AS_GIVEN, Timing, Window
 from tests.examples import first_fast
 from tests.gains.gantries import X, along_x, gantry, standing
-from tests.made_cases import at
 
 Z = np.eye(3)[2]
 TIMES = np.linspace(0.0, 2.0, 41)
@@ -67,29 +65,6 @@ def test_a_part_in_hand_bounds_no_change_of_what_carries_it(kind):
 
 
 @pytest.mark.slow
-def test_a_part_that_was_let_go_is_not_said_to_stand_still():
-    found = cl.gain(part_over_to(cart(-1.12), until=0.9), "waypoints")
-    assert found.blocked is None or "nothing of this change" not in str(found.blocked)
-
-
-def test_a_part_in_hand_bounds_a_wall_that_is_moved():
-    wall = standing("wall", cl.box((0.1, 0.4, 0.4)), (-1.12, 0.0, 0.0))
-    found = cl.gain(part_over_to(wall), "obstacle", obstacle="wall")
-    assert found.kept and found.lower_bound == pytest.approx(found.size, rel=0.1)
-
-
-def test_what_rides_on_a_robot_moves_with_the_obstacle_that_this_stands_on():
-    raised, ahead = at(z=0.3), at(x=0.5)
-    camera = cl.Obstacle(cl.Body("camera", cl.box((0.1, 0.1, 0.1))), mount=Mount("tool", ahead))
-    wall = standing("wall", cl.box((0.1, 1.0, 1.0)), (0.62, 0.0, 0.0))
-    stand = standing("stand", cl.box((0.2, 0.2, 0.02)), (0.0, 0.0, -0.3))
-    placed = replace(turned(0.0, 0.0), mount=Mount("stand", raised))
-    case = cl.Case("mobile", (placed,), (stand, camera, wall), cl.Limits(fail=0.04))
-    found = cl.gain(case, "obstacle", obstacle="stand")
-    assert found.kept and found.change == pytest.approx([-0.02, 0.0, 0.0], abs=1e-6)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("limits", [(0.0, 0.1), (-np.inf, np.inf)])
 def test_a_slide_beyond_its_limits_is_as_fast_as_it_is(limits):
     slide = Joint("slide", JointKind.PRISMATIC, "arm", "tool", np.eye(4), X, *limits)
@@ -118,11 +93,6 @@ def passing(slow, timing=AS_GIVEN):
 def test_a_robot_that_comes_later_is_bounded_by_when_it_comes():
     found = cl.gain(passing(0.001, Timing(0.05, 1.0, "absent")), "timing", robot="slow")
     assert found.kept and found.lower_bound < found.size < 0.02
-
-
-def test_a_delay_of_a_path_that_stands_is_no_fault_of_the_program():
-    found = cl.gain(passing(0.0), "timing", robot="slow")
-    assert not found.kept and found.n_measured == 1
 
 
 @pytest.mark.parametrize(

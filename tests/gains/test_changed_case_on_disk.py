@@ -7,7 +7,6 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, Unwritable
-from clearance.gains.figures import figures_of
 from clearance.gains.folder import save_gain
 from clearance.gains.turn import Turn
 from clearance.world.notice import NOT_MEASURED
@@ -155,15 +154,6 @@ def test_the_figures_are_those_of_the_gain_and_the_page_stands_beside_both_repor
         assert f'href="{name}/report.html"' in page and (out / name / "report.html").is_file()
 
 
-def test_figures_of_what_is_blocked_keep_to_the_schema_and_no_others_do(tmp_path):
-    asked = {"obstacle": "left", "within": (0.0, 1e-6, 0.0)}
-    found = cl.gain(write_cell(tmp_path, SLOT), "obstacle", **asked)
-    told = json.loads(json.dumps(figures_of(found, ["a note"])))
-    assert not told["kept"] and told["blocked"] and objections("gain", told) == []
-    for changed in ({"key": 1}, {"size": "0.1"}):
-        assert objections("gain", told | changed)
-
-
 @pytest.mark.slow
 def test_the_same_again_is_the_same_bytes_and_needs_force(tmp_path):
     path = write_cell(tmp_path, SLOT)
@@ -210,16 +200,6 @@ def test_a_case_of_no_file_and_an_input_are_refused(tmp_path):
     with pytest.raises(Unwritable, match="which this run reads"):
         save_gain(cl.gain(path, "base"), tmp_path, force=True)
     assert path.read_text() == SLOT
-
-
-@pytest.mark.slow
-def test_a_path_with_accelerations_is_written_as_the_cubics_that_were_measured(tmp_path):
-    """The cart keeps 0.2 m where 0.21 are needed."""
-    there_and_back(tmp_path)
-    found = cl.gain(tmp_path / "case.yaml", "waypoints")
-    assert found.kept
-    again = cl.check(save_gain(found, tmp_path / "out") / "case.yaml")
-    assert again.verdict.passed and again.record.timeline.path_error == 0.0
 
 
 @pytest.mark.parametrize(("kind", "how"), [("waypoints", {}), ("base", {"tool_path": "kept"})])

@@ -55,19 +55,6 @@ def test_where_a_window_ends_a_later_path_may_pass():
     assert ("measured", "self-collision not checked [CL531]") in [*lines_of(found)]
 
 
-def test_a_run_that_begins_with_the_path_begins_later():
-    """A part on a line that has no end is near the path's start when the run begins, and soon away."""
-    table = cl.PoseTable(
-        np.array([0.0, 0.2, 1.0]), np.array([[-1.0, 0.12, 0.0], [-1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]),
-        np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)), Timing(after="loop"),
-    )  # fmt: skip
-    part = cl.Obstacle(cl.Body("part", cl.box((0.1, 0.1, 0.1))), moves=table)
-    case = cl.Case("line", (along_x(gantry()),), (part,), cl.Limits(fail=0.1))
-    found = gain(case, "timing")
-    least = 0.08 / 4.4  # the part goes 0.88 m in 0.2 s, and 0.08 m are missing
-    assert found.kept and found.lower_bound <= least <= found.size <= least + 2e-3
-
-
 def handing(*obstacles, allow=()):
     """Two blocks that cross at the origin; one picks up a part above itself on its way along y, at 0.25 s."""
     part = standing("part", cl.box((0.04, 0.04, 0.04)), (0.0, -0.5, 0.2))
@@ -81,23 +68,6 @@ def test_a_part_is_picked_up_where_the_robot_is_there_later(slow_down):
     (carry,) = found.case.carries
     later = 0.25 * (1.0 + found.size) if slow_down else 0.25 + found.size
     assert found.kept and found.size > 0.0 and carry.window.start == pytest.approx(later, abs=1e-12)
-
-
-def test_no_delay_takes_a_part_past_a_post_in_its_way(monkeypatch):
-    """Without the post, the fifteenth delay that is tried keeps the rules."""
-    monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 40)
-    post = standing("post", cl.box((0.02, 0.02, 0.02)), (0.0, 0.5, 0.2))
-    found = gain(handing(post), "timing", robot="other")
-    assert not found.kept and "part and post" in str(found.blocked)
-    told = dict(lines_of(found))["not kept"]
-    assert told == "no delay up to 60 s was found with which every rule holds"
-
-
-def test_a_search_that_is_nearly_used_up_strides_to_the_longest_delay(monkeypatch):
-    """The fifteenth of the fine steps would be enough; a long one is so too, and is no bound."""
-    monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 10)
-    found = gain(handing(), "timing", robot="other")
-    assert found.kept and found.size > 1.0 and found.lower_bound < 0.25
 
 
 def test_what_holds_from_0_on_holds_from_the_start_of_a_run_that_begins_later():

@@ -54,10 +54,3 @@ def clearance_at(state, approach, step):
         if same and step in one.steps:
             return float(one.clearances[list(one.steps).index(step)])
     return None
-
-
-def test_a_part_that_is_let_go_too_near_is_let_go_elsewhere():
-    ball = standing("ball", cl.PointCloud([[0.0, 0.0, 0.0]], 0.05), (-1.0, -0.12, 0.0))
-    found = cl.gain(part_over_to(ball, until=0.9), "waypoints")
-    assert not found.before.passed and found.kept and found.after.passed
-    assert 0.019 < found.size < 0.03 and found.change[:, 0].min() < -0.019

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.gains.obstruction import KEPT_STILL, NOT_MOVED
+from clearance.gains.obstruction import KEPT_STILL
 from clearance.gains.search import FINE
 from clearance.gains.sentences import lines_of
 from clearance.world.timing import Timing
@@ -67,16 +67,6 @@ def test_a_path_along_a_beam_goes_beside_it():
     found = cl.gain(above_a_beam(4.0), "waypoints", keep_ends=False)
     assert found.kept
     assert found.size == pytest.approx(2.0 * (0.05 + 0.06 + ASIDE), abs=10.0 * FINE)
-
-
-def test_a_path_across_a_beam_goes_round_it():
-    found = cl.gain(above_a_beam(0.2), "waypoints")
-    assert found.kept and found.size > 2.0 * (0.05 + 0.06 + ASIDE) - FINE
-
-
-def test_what_is_too_wide_to_go_beside_is_not_said_to_be_impossible():
-    found = cl.gain(above_a_beam(4.0, wide=2.0), "waypoints", keep_ends=False)
-    assert not found.kept and found.blocked.why != NOT_MOVED
 
 
 @pytest.mark.parametrize("timing", [None, Timing(0.5, 0.8)])

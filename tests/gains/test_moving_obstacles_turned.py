@@ -4,17 +4,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.gains.changed_files import case_files
-from clearance.gains.sentences import lines_of
 from clearance.gains.shift import obstacle_shift
-from clearance.gains.turn import ARM, Turn
+from clearance.gains.turn import Turn
 from clearance.simulate.answers.approaches import approaches
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, gantry
-from tests.gains.making_gain import MOVING, write_cell
-
-TIMES = np.linspace(0.0, 1.0, 41)
 
 
 def swinging(n=41, timing=None):
@@ -31,29 +26,6 @@ def past_a_swing(timing=None):
     """A block that goes along x past a long bar that goes along y and turns."""
     bar = cl.Obstacle(cl.Body("bar", cl.box((0.3, 0.1, 0.1))), moves=swinging(timing=timing))
     return cl.Case("swing", (along_x(gantry()),), (bar,), cl.Limits(fail=0.05))
-
-
-def beside_a_drive(angle):
-    """A block goes along x at y = 0; a cart goes beside it, the same way but for an angle about the origin.
-
-    Their faces are 0.05 apart where the cart's way is along x.
-    """
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    places = np.column_stack([np.linspace(-1.0, 1.0, 41), np.full(41, 0.15), np.zeros(41)]) @ turn.T
-    quaternions = np.tile([0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2)], (41, 1))
-    cart = cl.Obstacle(
-        cl.Body("cart", cl.box((0.1, 0.1, 0.1))), moves=PoseTable(TIMES, places, quaternions)
-    )
-    return cl.Case("drive", (along_x(gantry()),), (cart,), cl.Limits(fail=0.0499))
-
-
-def test_a_drive_is_turned_to_where_it_was_straight():
-    turn = Turn("z", about=(0.0, 0.0, 0.0))
-    found = cl.gain(beside_a_drive(0.02), "obstacle", within=(0.0, 0.0, 0.0), turn=turn)
-    assert found.kept and found.size == pytest.approx(ARM * abs(found.change[3]))
-    left = found.change[3] + 0.02
-    assert 0.0 < left < 2e-3 and 0.0 < found.lower_bound <= found.size
 
 
 @pytest.mark.parametrize("x", [np.zeros(4), np.array([0.02, -0.01, 0.03, 0.1])])
@@ -80,20 +52,3 @@ def test_the_gradient_of_a_turned_motion_is_that_of_distances(x, timing):
                 assert (found[0] - found[1]) / 2e-6 == pytest.approx(told[row, i], abs=2e-3)
                 n_compared += 1
     assert n_compared > 20
-
-
-@pytest.mark.parametrize("turn", [None, "z"])
-@pytest.mark.slow
-def test_a_motion_that_turns_is_written_as_it_was_measured(tmp_path, turn):
-    file = write_cell(tmp_path, MOVING)
-    table = swinging()
-    turns = 1.0000000003 * table.quaternions
-    rows = np.column_stack([table.times, table.positions, turns]).tolist()
-    lines = [",".join(map(repr, row)) for row in rows]
-    (tmp_path / "cart.csv").write_text("\n".join(["time,x,y,z,qx,qy,qz,qw", *lines, ""]))
-    found = cl.gain(file, "obstacle", turn=turn)
-    assert found.kept and found.size > 0.0
-    assert (turn is None) == (len(found.change) == 3)
-    told = " ".join(line for _, line in lines_of(found))
-    assert (turn is not None) == ("its origin at its first sample" in told)
-    assert "moves.csv" in case_files(found, tmp_path / "out").files

@@ -1,7 +1,5 @@
 """The paths of two robots that are changed together: each gives way by half of what is missing."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,8 +7,8 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.gains.answer import gain
 from clearance.gains.sentences import lines_of
-from clearance.gains.turn import ARM, Pivot, Turn
-from tests.gains.gantries import along_x, gantry, slot, standing
+from clearance.gains.turn import ARM, Turn
+from tests.gains.gantries import along_x, gantry, slot
 from tests.made_cases import at
 
 BOTH = ("one", "other")
@@ -33,34 +31,6 @@ def test_each_gives_way_by_half():
     assert 0.0 < both.lower_bound <= both.size
     changed = [line for label, line in lines_of(both) if label == "changed"]
     assert [line.split(" by")[0] for line in changed] == ["joint one/y", "joint other/y"]
-
-
-def test_what_each_of_two_must_mend_takes_both():
-    post = cl.box((0.1, 0.1, 1.0))
-    posts = (standing("low", post, (0.0, -0.12, 0.0)), standing("high", post, (0.0, 0.62, 0.0)))
-    robots = (along_x(gantry("one")), along_x(gantry("other"), y=0.5))
-    case = cl.Case("posts", robots, posts, cl.Limits(fail=0.03))
-    for name in BOTH:
-        found = gain(case, "waypoints", robot=name)
-        assert not found.kept and "nothing of this change moves them" in str(found.blocked)
-    found = gain(case, "waypoints", robot=BOTH)
-    assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
-    case = replace(case, obstacles=(posts[0], standing("high", post, (0.0, 0.63, 0.0))))
-    found = gain(case, "waypoints", robot=BOTH)
-    assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
-
-
-@pytest.mark.slow
-def test_a_moment_is_kept_only_where_all_that_moves_the_pair_is_still():
-    first = along_x(gantry("one"), end=0.0)
-    passing = replace(along_x(gantry("other"), start=-3.0, y=0.12), timing=cl.Timing(-0.5))
-    case = cl.Case("passing", (first, passing), (), cl.Limits(fail=0.04))
-    found = gain(
-        case, "waypoints", robot=BOTH
-    )  # at 0 s the first begins, as the other is beside it
-    assert found.kept and found.change[1][:, 1].max() == pytest.approx(0.02, abs=1e-3)
-    found = gain(side_by_side(), "waypoints", robot=BOTH)
-    assert not found.kept and found.blocked.why == "that moment is to be kept"
 
 
 @pytest.mark.parametrize(
@@ -102,24 +72,6 @@ def test_a_turn_and_a_shift_share_what_is_missing():
     case = beside_a_bar(0.02)
     shifted, turned = (cl.gain(case, "obstacle", turn=turn) for turn in (None, "z"))
     assert turned.kept and turned.size < 0.75 * shifted.size and np.all(turned.change[[1, 3]])
-
-
-def test_the_gradient_of_a_turn_is_that_of_points():
-    rng = np.random.default_rng(3)
-    pivot = Pivot(Turn("y", (0.3, -0.2, 0.5)), at(*rng.normal(size=3)))
-    x, step = np.array([0.1, 0.2, -0.1, 0.3]), np.array([0.0, 0.0, 0.0, 1e-6])
-    point = np.append(rng.normal(size=3), 1.0)
-    here, there = (pivot.moved(x + side * step) @ point for side in (-1, 1))
-    now = pivot.moved(x)
-    by_unit = pivot.by_unit((now @ point)[None, :3], now)[0]
-    assert by_unit == pytest.approx((there - here)[:3] / 2e-6, abs=1e-8)
-
-
-def test_a_base_is_turned():
-    case = beside_a_bar(0.02)
-    found = cl.gain(case, "base", within=(0.0, 0.001, 0.0), turn="z")
-    assert found.kept and found.change[3] > 0.0 and found.after.passed
-    assert found.size < cl.gain(case, "base").size
 
 
 def test_a_box_is_kept_and_what_is_beyond_it_is_said():

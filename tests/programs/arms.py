@@ -11,12 +11,8 @@ import pybullet_data
 
 import clearance as cl
 from clearance.programs.arm import Arm
-from clearance.programs.following import Follower
 from clearance.programs.motion import ProgramMotion, motion_of
 from clearance.programs.moves import Move, Program
-from clearance.programs.path_samples import PathSamples
-from clearance.programs.time_law import trapezoid
-from clearance.programs.tool_path import Stretch, arc, line
 from tests.made_cases import at
 
 ROBOTS = Path(__file__).parents[2] / "robots"
@@ -79,16 +75,6 @@ def posture(one: Arm, draw: np.random.Generator) -> np.ndarray:
             return np.asarray(found)
 
 
-def stretch(one: Arm, start: np.ndarray, draw: np.random.Generator) -> Stretch:
-    """A random line or arc from where the joints have the tool."""
-    pose = one.poses(start[None])[0]
-    end = shifted(pose, draw.uniform(-0.15, 0.15, 3), draw.uniform(-0.3, 0.3, 3))
-    if draw.random() < 0.5:
-        return line(pose, end)
-    via = 0.5 * (pose + end)[:3, 3] + draw.uniform(-0.05, 0.05, 3)
-    return arc(pose, via, end, bool(draw.random() < 0.5))
-
-
 def turned(vector: np.ndarray) -> np.ndarray:
     """(3, 3) the rotation by a vector [rad], by the series of its exponential."""
     x, y, z = vector
@@ -98,25 +84,3 @@ def turned(vector: np.ndarray) -> np.ndarray:
         term = term @ cross / i
         found = found + term
     return found
-
-
-def sampled(
-    one: Arm, on: Stretch, start: np.ndarray, step: float = 0.003
-) -> tuple[Follower, PathSamples]:
-    """The samples of a stretch at 0.25 m/s."""
-    follower = Follower(one, on, start)
-    pieces = trapezoid(0.25 / on.length, 1.0 / on.length)
-    return follower, PathSamples.of(follower, pieces, step)
-
-
-def somewhere(one: Arm, draw: np.random.Generator) -> tuple[Stretch, Follower, PathSamples]:
-    """A stretch that the arm can follow far from singularities, and its samples."""
-    while True:
-        start = posture(one, draw)
-        on = stretch(one, start, draw)
-        try:
-            follower, samples = sampled(one, on, start)
-        except cl.ClearanceError:
-            continue
-        if np.isfinite(samples.deviations).all(axis=1).mean() > 0.9:
-            return on, follower, samples

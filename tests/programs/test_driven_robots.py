@@ -108,16 +108,6 @@ def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
     assert arm.trajectory.drives == ("turntable",) and table.timing == arm.timing
 
 
-def test_bases_on_what_stands_are_as_in_the_world(tmp_path):
-    """The obstacle `far` is at (5, 5, 5) m."""
-    content = driving(tmp_path, [lin((0.0, 0.05, 0.0), hold={"turntable/turn": 0.6})])
-    world = cl.load_case(written(tmp_path, content)).robots
-    for robot in content["robots"]:
-        robot["base"] = {"on": "far", "xyz": [at - 5.0 for at in robot["base"]["xyz"]]}
-    for one, same in zip(cl.load_case(written(tmp_path, content)).robots, world, strict=True):
-        assert np.abs(one.trajectory.positions - same.trajectory.positions).max() < 1e-9
-
-
 def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path):
     """On the part, 0.1 m out and 0.3 m above the plate's frame."""
     xyz = np.array(on_plate((0.0, -0.05, 0.05))) - [0.1, 0.0, 0.3]
@@ -291,10 +281,3 @@ def test_names_with_a_slash_are_of_the_robot_that_has_them(tmp_path):
     arm, table = cl.load_case(written(tmp_path, content)).robots
     assert table.trajectory.joint_names == ("axis/turn",) and len(arm.trajectory.joint_names) == 6
     assert table.trajectory.positions[-1, 0] == pytest.approx(0.6)
-
-
-def test_an_obstacle_that_carries_frames_or_bases_is_not_moved_by_a_gain(tmp_path):
-    content = driving(tmp_path, [lin(hold={"turntable/turn": 0.6})])
-    content["robots"][1]["base"] = {"on": "far", "xyz": [at - 5.0 for at in (2.0, 0.0, 0.0)]}
-    with pytest.raises(cl.BadInput, match="kind obstacle changes its joints"):
-        cl.gain(written(tmp_path, content), "obstacle", obstacle="far")

@@ -106,7 +106,7 @@ def share_at(time: float, length: float, speed: float = 0.25) -> np.ndarray:
 
 @pytest.mark.parametrize("name", ["heron6", "iiwa"])
 @pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(one, marks=pytest.mark.slow) for one in range(1, 6))]
+    "seed", [0, *(pytest.param(one, marks=pytest.mark.slow) for one in range(1, 3))]
 )
 def test_between_samples_no_joint_is_farther_off_than_is_proven(name, seed):
     """A line or an arc, and a wait after it, on a belt that changes its speed at once at six knots."""
@@ -204,30 +204,6 @@ def test_a_turntable_with_its_own_table_is_followed_as_one_that_the_program_driv
     for a, b in zip(driven.corners, alone.trajectory.corners, strict=True):
         assert (a.start, a.radius) == pytest.approx((b.start, b.radius), abs=1e-12)
         assert b.links["tool_tip"].way < a.links["tool_tip"].way  # whose plate may be elsewhere too
-
-
-def test_what_stands_all_the_time_is_as_the_world():
-    belt = Belt([-1.0, 50.0], np.array([[0.3, 0.2, 0.1]] * 2), np.zeros((1, 3)))
-    ends = (
-        shifted(first_pose(), (0.05, -0.04, 0.03)),
-        shifted(first_pose(), (0.0, -0.08, 0.03), (0.1, 0.0, 0.2)),
-    )
-    to_belt = np.linalg.inv(belt.at(0.0).astype(float))
-    on_it = [line(to_belt @ ends[0], "belt", zone=0.004), line(to_belt @ ends[1], "belt")]
-    on_it += [
-        Wait("WAIT", "moves", 0.3),
-        JointMove("PTP", "moves", pose=to_belt @ first_pose(), seen_from="belt"),
-    ]
-    world = [replace(one, pose=end, seen_from="") for one, end in zip(on_it, ends, strict=False)]
-    world += [on_it[2], replace(on_it[3], pose=first_pose(), seen_from="")]
-    one, two = (motion(moves, belt.carriage) for moves in (on_it, world))
-    a, b = one.trajectory, two.trajectory
-    assert np.abs(a.times - b.times).max() < 1e-12
-    assert np.abs(a.positions - b.positions).max() < 1e-11
-    assert a.corners[0].links["tool_tip"].way == pytest.approx(
-        b.corners[0].links["tool_tip"].way, rel=1e-6
-    )
-    assert not one.doubtful and a.path_error == pytest.approx(b.path_error, rel=1e-3)
 
 
 def test_a_joint_move_ends_where_its_target_is_when_it_arrives():
@@ -351,30 +327,6 @@ def test_a_tool_goes_with_a_part_on_a_turntable_on_a_conveyor(tmp_path, carried)
     assert made.rides == (on,) and made.frames == ("part",) and not made.unproven
     (note,) = (one for one in run.record.case.notes if "moves by itself" in one)
     assert note.endswith(f"LIN 1, WAIT 2: seen from {on!r}, which moves by itself")
-
-
-@pytest.mark.parametrize("first", ["arm", "table"])
-def test_a_tool_goes_with_a_part_on_a_turntable_that_has_a_program_of_its_own(tmp_path, first):
-    """The file may name either robot first; the tool keeps 80 mm from a cube that rides beside it."""
-    moves = [{"lin": {"to": {"frame": "jig", "xyz": ON_PART}}}, {"wait": 2.5}]
-    path = beside_a_turntable(tmp_path, moves, frames={"jig": {"on": "part"}})
-    content = yaml.safe_load(path.read_text())
-    arm_of, table = content["robots"]
-    turns = [{"ptp": {"joints": {"turn": at}, "speed": 0.5}} for at in (0.7, 0.6)]
-    program = {"tool": {"link": "plate"}, "start": table.pop("joints"), "moves": turns}
-    table["trajectory"] = {"program": program}
-    content["robots"] = [arm_of, table] if first == "arm" else [table, arm_of]
-    content["scene"]["obstacles"] += torch_and_rider()
-    content["allow"] = [[name, "*"] for name in ("arm/*", "turntable/*", "part", "far")]
-    run = cl.check(written(tmp_path, content))
-    clearances = run.steps["clearance"].to_numpy() + run.record.timeline.path_error
-    assert np.abs(clearances - 0.08).max() < 5e-7
-    assert run.record.certificate.lower_bound.min() > 0.08 - run.record.timeline.path_error - 1.2e-4
-    made = next(one.trajectory for one in run.record.case.robots if one.robot.name == "arm")
-    assert made.rides == ("turntable/plate",) and not made.unproven
-    turns[0]["ptp"]["zone"] = 0.01
-    with pytest.raises(cl.ClearanceError, match="moves by a program with corner zones"):
-        cl.load_case(written(tmp_path, content))
 
 
 WORLD_FROM_PART = np.eye(4)

@@ -18,7 +18,7 @@ from clearance.world.robot import Joint, JointKind, Robot
 from tests.made_cases import at
 from tests.programs.arms import START, arm, first_pose, shifted, turned
 from tests.programs.arms import motion as motion_of_arm
-from tests.programs.exact_arm import joints_for, links_at, tool_at, turn, vector_of
+from tests.programs.exact_arm import joints_for, links_at, turn, vector_of
 from tests.programs.test_corner import circle
 
 AXIS = np.array([0.1, 0.2, 1.0]) / np.linalg.norm([0.1, 0.2, 1.0])
@@ -98,37 +98,6 @@ def pose_at(start: np.ndarray, end: np.ndarray, share: float, via: np.ndarray | 
     return found
 
 
-@pytest.mark.slow
-def test_a_plate_that_stands_is_as_the_world_is():
-    ends = on_plate((0.05, -0.04, 0.03)), on_plate((0.0, -0.08, 0.03))
-    still = [line(ends[0], hold={"turn": 0.3}, zone=0.004), line(ends[1], hold={"turn": 0.3})]
-    world = plate_at(0.3).astype(float)
-    same = [line(world @ ends[0], "", zone=0.004), line(world @ ends[1], "")]
-    one, two = motion(still).trajectory, motion(same).trajectory
-    names = [two.joint_names.index(name) for name in one.joint_names]
-    assert np.abs(one.times - two.times).max() < 1e-12
-    assert np.abs(one.positions - two.positions[:, names]).max() < 1e-9
-    (a,), (b,) = one.corners, two.corners
-    for link, off in a.links.items():
-        if link != "plate":
-            assert off.way == pytest.approx(b.links[link].way, rel=1e-4)
-    assert a.links["plate"].at(1.0) < 1e-12
-
-
-def test_a_tool_that_stays_on_the_plate_turns_with_it_no_faster_than_its_joint_may():
-    found = motion([line(on_plate(), hold={"turn": 1.1})], with_plate(velocity=0.5))
-    made = found.trajectory
-    assert made.times[-1] == pytest.approx(0.8 / 0.5 + 0.25)
-    joints, angles = columns(found, positions_along(made, np.linspace(0.0, made.times[-1], 300)))
-    assert angles[0] == 0.3 and angles[-1] == 1.1
-    assert np.abs(made.velocities[:, made.joint_names.index("turn")]).max() <= 0.5 + 1e-12
-    for own, angle in zip(joints, angles, strict=True):
-        rotation, at = tool_at(arm("heron6"), own)
-        wanted = plate_at(angle) @ on_plate()
-        assert np.abs(at - wanted[:3, 3]).max() < 3e-6
-        assert np.abs(rotation - wanted[:3, :3]).max() < 3e-6
-
-
 def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
     names = [joint.name for joint in arm("heron6").joints]
     turned_to = dict(zip(names, START, strict=True)) | {"turn": 0.6}
@@ -183,42 +152,6 @@ def test_joints_beside_the_arm_stay_unless_a_move_says_otherwise():
 def test_what_cannot_be_followed_is_refused(moves, told):
     with pytest.raises(cl.ClearanceError, match=told):
         motion(moves)
-
-
-def test_no_path_through_a_corner_takes_a_link_farther_than_is_proven_while_the_plate_turns():
-    """The plate is as far between entry, corner and exit as the tool's point."""
-    corner, end = on_plate((0.05, -0.02, 0.02)), on_plate((0.05, 0.03, 0.06), by=(0.1, 0.0, 0.1))
-    moves = [line(corner, zone=0.004, hold={"turn": 0.5}), line(end, hold={"turn": 0.4})]
-    found, one, draw = motion(moves), arm("heron6"), np.random.default_rng(3)
-    (zone,) = found.trajectory.corners
-    at = lambda shares: columns(  # noqa: E731
-        found, positions_along(found.trajectory, zone.start + shares * (zone.end - zone.start))
-    )
-    joints, angles = at(np.array([0.0, 1.0]))
-    turns = 0.5 - angles[0], angles[-1] - 0.5
-    assert turns[0] > 0.01 and turns[1] < -0.005
-    entry, exit_ = (
-        np.linalg.inv(plate_at(angles[i]).astype(float)) @ one.poses(joints[[i]])[0]
-        for i in (0, -1)
-    )
-    turned_by = vector_of(exit_[:3, :3] @ corner[:3, :3].T)
-    for _ in range(12):
-        now = joints[0]
-        for a, b in np.linspace((0.0, 0.0), np.sort(draw.random(2))[::-1], 4)[1:]:
-            pose = entry.astype(np.longdouble)
-            pose[:3, 3] += a * (corner - entry)[:3, 3] + b * (exit_ - corner)[:3, 3]
-            pose[:3, :3] = turn(draw.random() * turned_by) @ pose[:3, :3]
-            angle = angles[0] + a * turns[0] + b * turns[1]
-            wanted = plate_at(angle) @ pose
-            now = joints_for(one, (wanted[:3, :3], wanted[:3, 3]), now)
-        links = links_of(now, angle)
-        (own,), (angle,) = at(np.array([0.5 * (a + b)]))
-        nominal = links_of(own, angle)
-        for link, off in zone.links.items():
-            way = (links[link] - nominal[link])[:3, 3].astype(float)
-            assert np.linalg.norm(way) <= off.way, link
-            assert turn_between(links[link], nominal[link]) <= off.turn + 1e-12, link
-    assert zone.links[one.link].way < 0.05 and zone.links["plate"].turn > 1e-3
 
 
 def test_a_plate_goes_on_turning_through_zones_beside_joint_moves():

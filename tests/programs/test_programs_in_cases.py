@@ -86,34 +86,6 @@ def line_and_arc_of_joints() -> tuple[dict, np.ndarray, np.ndarray]:
     return move, 0.5 * (start + end), end
 
 
-@pytest.mark.parametrize("on_line", [True, False])
-@pytest.mark.slow
-def test_the_tools_line_is_measured_and_not_that_of_the_joints(tmp_path, on_line):
-    move, middle, _ = line_and_arc_of_joints()
-    ends = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
-    by_joints = {
-        name: float(0.5 * (a + b))
-        for name, a, b in zip(ends.joint_names, *ends.positions[[0, -1]], strict=True)
-    }
-    bulge = tool_at(by_joints)[:3, 3]
-    assert np.linalg.norm(bulge - middle) > 0.04
-    found = cl.load_case(case(tmp_path, [move], [ball(middle if on_line else bulge)]))
-    two = found.with_trajectory(ends.times[[0, -1]], ends.positions[[0, -1]])
-    true, joints = (cl.check(one).record.worst for one in (found, two))
-    assert true.touches == on_line and joints.touches != on_line
-
-
-def test_a_line_of_no_length_changes_nothing(tmp_path):
-    move, _, end = line_and_arc_of_joints()
-    one = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
-    two = (
-        cl.load_case(case(tmp_path, [move, {"lin": {"to": place(end)}}], [far()]))
-        .robots[0]
-        .trajectory
-    )
-    assert np.array_equal(one.times, two.times) and np.array_equal(one.positions, two.positions)
-
-
 def turned_places() -> list[dict]:
     """Four targets about where the tool begins, each turned otherwise."""
     start = tool_at(START)
@@ -124,26 +96,6 @@ def turned_places() -> list[dict]:
         quat = Rotation.from_matrix(turned(turn) @ start[:3, :3]).as_quat()
         found.append(place(start[:3, 3] + way) | {"quat_xyzw": quat.tolist()})
     return found
-
-
-@pytest.mark.slow
-def test_a_program_in_reverse_has_the_same_least_clearance(tmp_path):
-    a, via, b, c = turned_places()
-    start = tool_at(START)
-    home = place(start[:3, 3]) | {
-        "quat_xyzw": Rotation.from_matrix(start[:3, :3]).as_quat().tolist()
-    }
-    through = {"frame": "base", "xyz": via["xyz"]}
-    there = [{"lin": {"to": a}}, {"circ": {"via": through, "to": b}}, {"lin": {"to": c}}]
-    back = [{"lin": {"to": b}}, {"circ": {"via": through, "to": a}}, {"lin": {"to": home}}]
-    obstacles = [ball(np.array(via["xyz"]) + [0.0, 0.08, -0.15], 0.04)]
-    forth = cl.check(case(tmp_path, there, obstacles))
-    made = forth.record.case.robots[0].trajectory
-    last = dict(zip(made.joint_names, map(float, made.positions[-1]), strict=True))
-    again = cl.check(case(tmp_path, back, obstacles, start=last))
-    assert forth.worst["move"] == again.worst["move"] == "CIRC 2"
-    assert forth.worst["clearance"] == pytest.approx(again.worst["clearance"], abs=1e-6)
-    assert forth.worst["clearance"] > 0.0
 
 
 @pytest.mark.slow
@@ -185,16 +137,6 @@ def at_base() -> np.ndarray:
     return at(*BASE)
 
 
-def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
-    start = tool_at(START)[:3, 3] + np.array(BASE)
-    frames = {"table": {"on": "far", "xyz": (start - 5.0).tolist()}}
-    move = {"lin": {"to": {"frame": "table", "xyz": [0.0, 0.1, 0.0]}}}
-    by_frame = cl.load_case(case(tmp_path, [move], [far()], frames=frames)).robots[0].trajectory
-    move = {"lin": {"to": {"xyz": (start + [0.0, 0.1, 0.0]).tolist()}}}
-    by_world = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
-    assert np.abs(by_frame.positions - by_world.positions).max() < 1e-9
-
-
 @pytest.mark.slow
 def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
     start = tool_at(START)[:3, 3]
@@ -234,21 +176,6 @@ def test_another_tool_is_what_the_next_line_is_of(tmp_path):
 def rotation_about_z(angle: float) -> np.ndarray:
     sine, cosine = np.sin(angle), np.cos(angle)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-
-
-def test_moves_have_names_and_times(tmp_path):
-    move, _, _ = line_and_arc_of_joints()
-    move["lin"]["to"]["name"] = "P1"
-    moves = [move, {"wait": 0.5}, {"ptp": {"joints": START, "speed": 0.5}}]
-    trajectory = cl.load_case(case(tmp_path, moves, [far()])).robots[0].trajectory
-    assert [one.name for one in trajectory.moves] == ["LIN 1 → P1", "WAIT 2", "PTP 3"]
-    ends = [one.end for one in trajectory.moves]
-    assert [one.start for one in trajectory.moves] == [0.0, *ends[:-1]] and ends[
-        -1
-    ] == trajectory.times[-1]
-    assert np.array_equal(
-        trajectory.positions[-1], [START[name] for name in trajectory.joint_names]
-    )
 
 
 @pytest.mark.slow
@@ -496,10 +423,3 @@ def test_a_frame_on_a_link_that_moves_is_refused(tmp_path, on, told):
     path.write_text(yaml.safe_dump(content))
     with pytest.raises(cl.ClearanceError, match=told):
         cl.load_case(path)
-
-
-def test_moves_take_the_time_that_they_state(tmp_path):
-    line = {"to": place(tool_at(START)[:3, 3] + [0.0, 0.1, 0.0]), "time": 20.6}
-    back = {"joints": START, "time": 4.0}
-    found = cl.load_case(case(tmp_path, [{"lin": line}, {"ptp": back}], [far()]))
-    assert found.robots[0].trajectory.times[-1] == pytest.approx(24.6, abs=1e-9)
