@@ -2,37 +2,16 @@
 
 import math
 
-import numpy as np
 import pytest
 
-from clearance.case.case_file import load_case
 from clearance.errors import BadInput, UnknownLink
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.rules import Allowance, Rule
 from clearance.world.timing import Timing, Window
-from tests.formats.making import CASE, write_case
+from tests.formats.making import CASE
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_cell import load_cell
-
-
-def test_a_robot_may_stand_on_a_link_of_another(tmp_path):
-    case = load_cell(tmp_path, "base: {xyz: [6", "base: {on: left/tip, xyz: [6")
-    right = case.robots[1]
-    assert right.mount.on == "left/tip" and right.mount.pose[:3, 3].tolist() == [6, 0, 0]
-    assert np.array_equal(right.world_from_base, np.eye(4))
-
-
-def test_obstacles_stand_ride_or_move(tmp_path):
-    door, fixture, workpiece, _ = load_cell(
-        tmp_path, "on: left/base", "padding: 0.001, on: left/base"
-    ).obstacles
-    assert door.moves.times.tolist() == [0, 0.4, 1] and door.mount is None
-    assert door.moves.positions[:, 1].tolist() == [0, 0.5, 1]
-    assert door.moves.quaternions[1].tolist() == [0, 0, 0.6, 0.8]
-    assert fixture.mount.on == "left/base" and fixture.mount.pose[1, 3] == 5
-    assert (fixture.padding, door.padding) == (0.001, 0)
-    assert workpiece.stands and workpiece.world_from_body[:3, 3].tolist() == [2, 2, 0]
 
 
 def test_carries_rules_allowances(tmp_path):
@@ -83,22 +62,6 @@ def test_a_link_has_its_own_padding_or_the_greatest_of_its_patterns(tmp_path, ro
     placed = load_small(tmp_path, changed("urdf: arm.urdf", f"urdf: arm.urdf, {keys}")).robots[0]
     assert placed.robot.name == "robo"
     assert placed.padding == {"base": 0.0, "upper": 0.003, "tip": 0.001}
-
-
-@pytest.mark.slow
-def test_a_scene_file_may_hold_what_moves(tmp_path):
-    (tmp_path / "parts").mkdir()
-    scene = "obstacles:\n- {name: door, sphere: {radius: 1}, moves: {file: door.csv, rate: 0.5}}\n"
-    (tmp_path / "parts" / "scene.yaml").write_text(scene)
-    (tmp_path / "parts" / "door.csv").write_text(
-        "qw,qx,qy,qz,z,y,x,time\n1,0,0,0,3,2,9,0\n1,0,0,0,3,2,8,1\n"
-    )
-    text = CASE[: CASE.index("scene:")] + "scene: parts/scene.yaml\n"
-    case = load_case(write_case(tmp_path, text))
-    moves = case.obstacles[0].moves
-    assert moves.timing == Timing(rate=0.5) and moves.positions.tolist() == [[9, 2, 3], [8, 2, 3]]
-    assert case.robots[0].trajectory is None
-    assert [source.path for source in case.sources if "door" in source.path] == ["parts/door.csv"]
 
 
 def test_notes_say_how_things_move(tmp_path):

@@ -25,21 +25,6 @@ from tests.formats.making_case import TWO_JOINTS, changed, load_small
 from tests.formats.making_cell import load_cell
 
 
-def test_a_small_case_arrives_whole(tmp_path):
-    case = load_small(tmp_path)
-    placed = case.robots[0]
-    assert case.name == "small"
-    assert placed.robot.link_names == ("base", "upper", "tip")
-    assert placed.trajectory.positions.tolist() == [[0], [0.25], [0.5]]
-    assert placed.world_from_base.tolist() == np.eye(4).tolist()
-    assert (case.limits.fail, case.limits.warn) == (0.005, 0.02)
-    assert [o.name for o in case.obstacles] == ["post"]
-    assert case.obstacles[0].world_from_body[:3, 3].tolist() == [1.2, 0, 0]
-    assert case.obstacles[0].body.shape.bounds[1].tolist() == [0.05, 0.05, 0.5]
-    assert case.contact_response is False
-    assert case.notes == ()
-
-
 def test_every_file_read_is_listed_with_its_checksum(tmp_path):
     case = load_small(tmp_path)
     assert [source.path for source in case.sources] == [

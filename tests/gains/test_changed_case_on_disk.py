@@ -181,18 +181,6 @@ def test_comments_stay_and_paths_lead_to_the_same_files(tmp_path):
     assert "limits: {fail: 0.04, warn: 0.04}  # agreed" in text
 
 
-@pytest.mark.slow
-def test_parts_that_a_file_shares_are_written_apart(tmp_path):
-    text = SLOT.replace("box: {size: [0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
-                        "box: &wall {size: [0.5, 0.4, 2.0]}\n    pose: &at {xyz: [0.0, 0.3, 0.0]}")  # fmt: skip
-    text = text.replace("base: {xyz: [0.0, 0.0, 0.0], rpy: [0.0, 0.0, 0.0]}", "base: {}")
-    text = text.replace("trajectory:", "  - {name: far, box: *wall, pose: *at}\ntrajectory:")
-    path = write_cell(tmp_path, text)
-    (tmp_path / "case.yaml").write_text(text)
-    found = cl.gain(path, "base")
-    assert cl.check(save_gain(found, tmp_path / "out") / "case.yaml").passed
-
-
 def test_a_case_of_no_file_and_an_input_are_refused(tmp_path):
     path = write_cell(tmp_path, SLOT)
     with pytest.raises(BadInput, match="no file"):

@@ -65,6 +65,15 @@ def test_limits_of_slides_bind():
     assert any("joint x is at its upper limit" in line for line in found.binding)
 
 
+def test_what_the_tool_is_near_to_no_base_mends():
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.7, 1.12, 0.0))
+    case = replace(footed(), obstacles=(post,))
+    found = cl.gain(case, "base", tool_path="kept")
+    assert (
+        not found.kept and found.n_measured == 1 and "nothing of this change" in str(found.blocked)
+    )
+
+
 def test_joints_that_cannot_follow_are_said():
     with pytest.raises(cl.BadInput, match="cannot keep the path of 'tool'"):
         cl.gain(footed(), "base", tool_path="kept", within=(0.0, 0.0, 0.1))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pybullet_data
+from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.programs.arm import Arm
@@ -76,11 +77,5 @@ def posture(one: Arm, draw: np.random.Generator) -> np.ndarray:
 
 
 def turned(vector: np.ndarray) -> np.ndarray:
-    """(3, 3) the rotation by a vector [rad], by the series of its exponential."""
-    x, y, z = vector
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    found, term = np.eye(3), np.eye(3)
-    for i in range(1, 20):
-        term = term @ cross / i
-        found = found + term
-    return found
+    """(3, 3) the rotation by a vector [rad]."""
+    return np.asarray(Rotation.from_rotvec(vector).as_matrix())

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.formats.plausibility import IN_DEGREES, odd_in_program
@@ -59,9 +60,7 @@ movec({pose(x + 0.03, y + 0.05, z)}, {pose(x, y, z)}, a=0.5, v=0.1)
 
 
 def rotation_vector(pose: np.ndarray) -> list[float]:
-    angle = np.arccos(0.5 * np.trace(pose[:3, :3]) - 0.5)
-    skew = pose[:3, :3] - pose[:3, :3].T
-    return (np.array([skew[2, 1], skew[0, 2], skew[1, 0]]) * angle / (2 * np.sin(angle))).tolist()
+    return list(map(float, Rotation.from_matrix(pose[:3, :3]).as_rotvec()))
 
 
 def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
@@ -108,18 +107,19 @@ def test_degrees_and_millimetres_beside_a_program_are_suspect(tmp_path):
         f"tools.TCP has an angle of 90 rad in its rpy; {IN_DEGREES}",
         "zones.CNT is 50 m; lengths are in metres, is this millimetres?",
     ]
-    held = {"lin": {"to": {"frame": "base", "xyz": [0, 0, 0]}, "hold": {"turn": 5}}}
-    turns = {
-        "lin": {"to": {"frame": "base", "xyz": [0, 0, 0]}, "hold": {"turn": 12.57, "slide": 0.5}}
-    }
+
+
+def test_degrees_in_a_program_of_our_own_are_suspect(tmp_path):
+    there = {"frame": "base", "xyz": tool_at(START)[:3, 3].tolist()}
+    held = {"lin": {"to": there, "hold": {"turn": 5}}}
+    turns = {"lin": {"to": there, "hold": {"turn": 12.57, "slide": 0.5}}}
     table = validated(Program, {"tool": {"link": "tip"}, "moves": [held, turns]}, "program")
     assert odd_in_program(table) == [f"moves[0].lin.hold has turn go to 5 rad; {IN_DEGREES}"]
-    move = {
-        "lin": {"to": {"frame": "base", "xyz": tool_at(START)[:3, 3].tolist(), "rpy": [0, 0, 45]}}
-    }
-    own = cl.load_case(
-        case(tmp_path, [{"ptp": {"joints": {**START, "joint_1": 0.1}}}, move], [far()])
-    )
+    moves = [
+        {"ptp": {"joints": {**START, "joint_1": 0.1}}},
+        {"lin": {"to": there | {"rpy": [0, 0, 45]}}},
+    ]
+    own = cl.load_case(case(tmp_path, moves, [far()]))
     (told,) = [one.text for one in notices_of(own) if one.severity == "suspect"]
     assert "moves[1].lin.to has an angle of 45 rad" in told
 
@@ -138,9 +138,7 @@ movel({pose(x, y + 0.05, z - 0.1)})
 
 
 @pytest.mark.parametrize(("first", "second"), [(0.06, 0.045), (0.02, 0.06), (0.11, 0.0)])
-def test_a_script_whose_blends_overlap_is_refused_for_the_robot_skips_a_move(
-    tmp_path, first, second
-):
+def test_a_script_whose_blends_overlap_is_refused(tmp_path, first, second):
     path = controller_case(tmp_path, "a.script", blended(first, second), axes=BEND)
     with pytest.raises(cl.ClearanceError, match=r"line [345]: blends overlap .*skips a move"):
         cl.load_case(path)
@@ -173,12 +171,8 @@ def test_points_beside_a_program_are_read_along_and_listed(tmp_path):
 
 def frame_angles(pose: np.ndarray) -> str:
     """A, B and C of a pose in degrees, as KRL has them."""
-    turn = pose[:3, :3]
-    a, c = np.arctan2(turn[1, 0], turn[0, 0]), np.arctan2(turn[2, 1], turn[2, 2])
-    b = np.arctan2(-turn[2, 0], np.hypot(turn[0, 0], turn[1, 0]))
-    return ", ".join(
-        f"{key} {float(np.degrees(value))!r}" for key, value in zip("ABC", (a, b, c), strict=True)
-    )
+    angles = Rotation.from_matrix(pose[:3, :3]).as_euler("ZYX", degrees=True)
+    return ", ".join(f"{key} {float(value)!r}" for key, value in zip("ABC", angles, strict=True))
 
 
 def test_how_it_comes_to_its_first_point_is_not_measured(tmp_path):

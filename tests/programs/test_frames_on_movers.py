@@ -30,13 +30,11 @@ from tests.programs.exact_arm import joints_for, links_at, turn, vector_of
 from tests.programs.test_moving_frames import (
     AXIS,
     BESIDE,
-    columns,
     line,
     plate_at,
     pose_at,
     turn_between,
 )
-from tests.programs.test_moving_frames import motion as driven_motion
 from tests.programs.test_programs_in_cases import (
     BASE,
     PLATE,
@@ -186,24 +184,6 @@ def turntable(table: Trajectory) -> Carriage:
     knots = knots_of(table.times, table.positions[:, [i]], table.velocities[:, [i]])
     joint = ChainJoint(BESIDE, AXIS, True, 0, 1.0, 0.0)
     return Carriage("plate", tuple(steps_of_joint(joint, knots, 0, 0.0)))
-
-
-@pytest.mark.parametrize("zone", [0.0, pytest.param(0.004, marks=pytest.mark.slow)])
-def test_a_turntable_with_its_own_table_is_followed_as_one_that_the_program_drives(zone):
-    on_plate = np.linalg.inv(plate_at(0.3).astype(float)) @ first_pose()
-    ends = shifted(on_plate, (0.05, -0.04, 0.03)), shifted(on_plate, (0.0, -0.08, 0.03))
-    driven = driven_motion(
-        [line(ends[0], zone=zone, hold={"turn": 0.5}), line(ends[1], hold={"turn": 0.4})]
-    ).trajectory
-    alone = motion([line(ends[0], "plate", zone=zone), line(ends[1], "plate")], turntable(driven))
-    own, _ = columns(ProgramMotion(driven), driven.positions)
-    followed = positions_along(alone.trajectory, driven.times)
-    assert np.abs(own - followed).max() < 1e-9
-    ends = ([one.end for one in made.moves] for made in (driven, alone.trajectory))
-    assert np.abs(np.subtract(*ends)).max() < 1e-12
-    for a, b in zip(driven.corners, alone.trajectory.corners, strict=True):
-        assert (a.start, a.radius) == pytest.approx((b.start, b.radius), abs=1e-12)
-        assert b.links["tool_tip"].way < a.links["tool_tip"].way  # whose plate may be elsewhere too
 
 
 def test_a_joint_move_ends_where_its_target_is_when_it_arrives():

@@ -24,7 +24,7 @@ from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
 from tests.made_cases import at
-from tests.programs.arms import FILES, arm, turned
+from tests.programs.arms import FILES, arm
 from tests.receipt.receipts import saved
 
 JOINTS = ("joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6")
@@ -86,41 +86,6 @@ def line_and_arc_of_joints() -> tuple[dict, np.ndarray, np.ndarray]:
     return move, 0.5 * (start + end), end
 
 
-def turned_places() -> list[dict]:
-    """Four targets about where the tool begins, each turned otherwise."""
-    start = tool_at(START)
-    ways = ((0.0, 0.1, 0.0), (0.06, 0.16, 0.03), (0.0, 0.2, 0.1), (0.05, 0.05, 0.1))
-    turns = ((0.1, 0.0, 0.2), (0.0, 0.0, 0.0), (-0.2, 0.1, 0.0), (0.0, 0.3, 0.1))
-    found = []
-    for way, turn in zip(ways, turns, strict=True):
-        quat = Rotation.from_matrix(turned(turn) @ start[:3, :3]).as_quat()
-        found.append(place(start[:3, 3] + way) | {"quat_xyzw": quat.tolist()})
-    return found
-
-
-@pytest.mark.slow
-def test_a_program_that_moves_with_its_frame_and_the_scene_answers_the_same(tmp_path):
-    draw = np.random.default_rng(1)
-    rotation = turned(draw.uniform(-2.0, 2.0, 3))
-    pose = at(*draw.uniform(-3.0, 3.0, 3), rotation)
-    moves = [{"lin": {"to": one | {"frame": "jig"}, "zone": 0.004}} for one in turned_places()]
-    del moves[-1]["lin"]["zone"]
-    least = []
-    for moved in (np.eye(4), pose):
-        frames = {"jig": {"on": "world"} | as_yaml(moved @ at_base())}
-        post = ball(tool_at(START)[:3, 3] + [0.0, 0.25, -0.1], 0.05)
-        post["pose"] = as_yaml(moved @ at(*post["pose"]["xyz"]))
-        path = case(tmp_path, moves, [post], frames=frames)
-        content = yaml.safe_load(path.read_text())
-        content["robot"]["base"] = as_yaml(moved @ at_base())
-        path.write_text(yaml.safe_dump(content))
-        least.append(cl.check(path).record)
-    one, other = (record.case.robots[0].trajectory for record in least)
-    assert np.abs(one.positions - other.positions).max() < 1e-9
-    assert least[0].worst.clearance == pytest.approx(least[1].worst.clearance, abs=1e-9)
-    assert 0.0 < least[0].worst.clearance < 0.1 and least[0].worst.link == least[1].worst.link
-
-
 def as_yaml(pose: np.ndarray) -> dict:
     """A pose (4, 4) as files have it."""
     quat = Rotation.from_matrix(pose[:3, :3]).as_quat()
@@ -135,24 +100,6 @@ def cube(name: str, on: str, pose: np.ndarray) -> dict:
 def at_base() -> np.ndarray:
     """(4, 4) where the robot stands."""
     return at(*BASE)
-
-
-@pytest.mark.slow
-def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
-    start = tool_at(START)[:3, 3]
-    corner, end = start + [0.0, 0.15, 0.0], start + [0.0, 0.15, -0.15]
-    beside = start + [0.0, 0.21, 0.0]
-    least = []
-    for zone in (0.0, 0.01):
-        moves = [{"lin": {"to": place(corner), "zone": zone}}, {"lin": {"to": place(end)}}]
-        path = case(tmp_path, moves, [ball(beside)])
-        record = cl.check(path).record
-        told = certified_text(certified_of(record, record.certificate))
-        assert ("corner zones" in told) == (zone > 0.0)
-        least.append(record.worst.clearance)
-    assert least[0] - 0.02 < least[1] <= least[0] + 1e-6
-    with pytest.warns(UserWarning, match="corner zones of robot 'heron6' pad its links"):
-        cl.Checker(cl.load_case(path))
 
 
 def test_another_tool_is_what_the_next_line_is_of(tmp_path):

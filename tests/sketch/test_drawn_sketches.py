@@ -133,7 +133,32 @@ def two_pieces():
     return s
 
 
+def flat_four_bar():
+    """Where its two branches meet the kernel has two motions; every solution near it has one."""
+    s = Sketch()
+    p = [s.point(x, 0.0) for x in (0.0, 1.0, 3.0, 2.0)]
+    for i, j, span in ((0, 1, 1.0), (1, 2, 2.0), (2, 3, 1.0), (0, 3, 2.0)):
+        s.distance(p[i], p[j], span)
+    return s
+
+
+def fillet_and_a_spoke():
+    """An arc that touches two lines at an angle: its radius to a tangent point is perpendicular already."""
+    s, half = Sketch(), 0.35 * math.pi
+    reach = 1.0 / math.tan(half)
+    d, e = np.array([1.0, 0.0]), np.array([math.cos(2.0 * half), math.sin(2.0 * half)])
+    o, p, q = s.point(0.0, 0.0), s.point(*(5.0 * d)), s.point(*(4.0 * e))
+    a, b, c = s.point(*(reach * d)), s.point(*(reach * e)), s.point(reach, 1.0)
+    arc, one, other = s.arc(c, b, a), s.line(o, p), s.line(o, q)
+    s.incident(a, one), s.incident(b, other)
+    s.tangent(one, arc), s.tangent(other, arc), s.radius(arc, 1.0)
+    s.perpendicular(s.line(c, a), one, name="square")
+    return s
+
+
 TRUTH = {
+    flat_four_bar: ("under", 1),
+    fillet_and_a_spoke: ("over", 3),
     rectangle_of_equal_sides: ("over", 0),
     triangle_that_cannot_close: ("inconsistent", None),
     triangle_with_its_medians_through_a_point: ("over", 0),

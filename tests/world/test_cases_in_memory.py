@@ -157,17 +157,6 @@ def test_a_joint_is_fixed_or_moved_and_not_both():
     assert moved.robots[0].fixed_positions == {"lbr_iiwa_joint_2": 0.5}
 
 
-def test_two_robots_are_measured_against_each_other_and_each_against_itself_where_that_is_asked():
-    left, right = still("left"), still("right")
-    run = cl.check(cl.Case("two", (left, right), posts("post")))
-    assert run.verdict.not_checked == ("self-collision",)
-    between = {(row.link.split("/")[0], row.obstacle.split("/")[0]) for row in run.pair_minima}
-    assert between == {("left", "post"), ("right", "post"), ("left", "right")}
-    alone = dataclasses.replace(left, self_clearance=cl.SelfClearance())
-    run = cl.check(cl.Case("two", (alone, right), posts("post")))
-    assert run.verdict.not_checked == ("self-collision of right",)
-
-
 def test_limits_are_numbers_of_metres():
     assert cl.Limits(0, 1) == cl.Limits(0.0, 1.0) and type(cl.Limits(0, 1).warn) is float
     case = dataclasses.replace(cl.load_case("scenes/box_box/case.yaml"), limits=cl.Limits(0, 1))

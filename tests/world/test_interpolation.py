@@ -134,16 +134,6 @@ def test_the_cubics_are_as_near_to_the_quintics_as_they_say(seed):
             assert abs(exact_cubic(q0, v0, q1, v1, share) - right) <= error
 
 
-def test_accelerations_at_rest_bend_a_path_that_its_points_do_not_show():
-    """From rest to rest at one place with accelerations of 3.2: 1.6 s^2 (1 - s)^2, a tenth in the middle."""
-    path = Trajectory(np.array([0.0, 1.0]), ("j",), np.zeros((2, 1)), np.zeros((2, 1)))
-    found = with_accelerations(path, np.full((2, 1), 3.2))
-    s = np.linspace(0.0, 1.0, 1001)
-    right = 1.6 * s**2 * (1.0 - s) ** 2
-    assert np.abs(positions_along(found, s)[:, 0] - right).max() <= PATH_ERROR
-    assert right.max() == pytest.approx(0.1, abs=1e-15)
-
-
 @pytest.mark.parametrize(("size", "fault"), [(1e30, BadShape), (1e200, BadDimension)])
 def test_accelerations_that_no_joint_has_are_refused(size, fault):
     path = Trajectory(np.array([0.0, 1.0]), ("j",), np.zeros((2, 1)), np.zeros((2, 1)))

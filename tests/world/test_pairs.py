@@ -1,6 +1,5 @@
 """Which bodies are measured against which: allowed pairs, and parts in hand."""
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -77,19 +76,6 @@ def tree(links: str, solid: str, **joints: str) -> Robot:
 def excuses(robot, *arguments, **options):
     pairs = self_pairs(robot, *arguments, **options)
     return {pair.link_a + pair.link_b: pair.excused for pair in pairs}
-
-
-def test_every_pair_is_there_once_in_the_robots_order():
-    robot = tree("abcd", "abcd", ab="revolute", bc="revolute", cd="prismatic")
-    found = [(pair.link_a, pair.link_b) for pair in self_pairs(robot)]
-    assert found == list(itertools.combinations("abcd", 2))
-
-
-def test_neighbours_are_adjacent():
-    robot = tree("abcd", "abcd", ab="revolute", bc="revolute", bd="prismatic")
-    assert excuses(robot) == {
-        "ab": ADJACENT, "ac": None, "ad": None, "bc": ADJACENT, "bd": ADJACENT, "cd": None,
-    }  # fmt: skip
 
 
 def test_neighbours_through_links_without_geometry_have_one_joint_that_moves_between_them():

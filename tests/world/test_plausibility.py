@@ -487,42 +487,34 @@ def test_a_joint_that_follows_one_that_follows():
 
 
 def test_joints_that_follow_each_other_in_memory_are_refused():
-    def follows(name, other, parent, child):
-        return Joint(name, JointKind.REVOLUTE, parent, child, np.eye(4), mimic=Mimic(other))
+    def made(**followed):
+        links = ("a", "b", "c")[: len(followed) + 1]
+        joints = [
+            Joint(name, JointKind.REVOLUTE, *ends, np.eye(4), mimic=Mimic(other))
+            for (name, other), ends in zip(followed.items(), itertools.pairwise(links), strict=True)
+        ]
+        return Robot("made", links, tuple(joints), ())
 
-    for joints, fault, words in [
-        (
-            [follows("j", "k", "a", "b"), follows("k", "j", "b", "c")],
-            BadInput,
-            "joints follow each other",
-        ),
-        ([follows("j", "gone", "a", "b")], UnknownJoint, "unknown joint 'gone'"),
-    ]:
-        names = ("a", "b", "c")[: len(joints) + 1]
-        with pytest.raises(fault, match=words):
-            followers(Robot("made", names, tuple(joints), ()))
+    with pytest.raises(BadInput, match="joints follow each other"):
+        followers(made(j="k", k="j"))
+    with pytest.raises(UnknownJoint, match="unknown joint 'gone'"):
+        followers(made(j="gone"))
 
 
-@pytest.mark.parametrize("mimic", [{"offset": 1e160}, {"multiplier": 1e8}, {"offset": -2e6}])
-def test_a_link_that_follows_out_of_the_world_is_refused(mimic):
+@pytest.mark.parametrize(
+    ("kind", "mimic", "says"),
+    [
+        (JointKind.PRISMATIC, {"offset": 1e160}, r"link 'l2': it reaches .* m from the origin"),
+        (JointKind.PRISMATIC, {"multiplier": 1e8}, r"link 'l2': it reaches .* m from the origin"),
+        (JointKind.REVOLUTE, {"offset": 1e160}, r"joint 'j1' stands 1e\+160 rad beyond"),
+    ],
+)
+def test_what_follows_out_of_the_world_is_refused(kind, mimic, says):
+    joints = tuple(replace(joint, kind=kind) for joint in chain(2, **mimic).joints)
     asked = Trajectory(np.array([0.0, 1.0]), ("j0",), np.array([[0.0], [0.5]]))
-    obstacle = Obstacle(Body("block", box((1.0, 1.0, 1.0))), at(3.0))
-    case = Case("made", (PlacedRobot(chain(2, **mimic), asked),), (obstacle,))
-    with pytest.raises(BadDimension, match=r"link 'l2': it reaches .* m from the origin"):
-        check(case)
-
-
-def test_a_turn_that_follows_out_of_the_world_is_refused():
-    joints = chain(2, offset=1e160).joints
-    turning = tuple(replace(joint, kind=JointKind.REVOLUTE) for joint in joints)
-    robot = replace(chain(2), joints=turning)
-    asked = Trajectory(np.array([0.0, 1.0]), ("j0",), np.array([[0.0], [0.5]]))
-    case = Case(
-        "made",
-        (PlacedRobot(robot, asked),),
-        (Obstacle(Body("b", box((1.0, 1.0, 1.0))), at(3.0)),),
-    )
-    with pytest.raises(BadDimension, match=r"joint 'j1' stands 1e\+160 rad beyond"):
+    placed = PlacedRobot(replace(chain(2), joints=joints), asked)
+    case = Case("made", (placed,), (Obstacle(Body("b", box((1.0, 1.0, 1.0))), at(3.0)),))
+    with pytest.raises(BadDimension, match=says):
         check(case)
 
 

@@ -57,18 +57,6 @@ def test_bodies_are_where_their_tables_and_hands_say(seed):
             assert np.allclose(poses_in(phase, between), expected, rtol=0.0, atol=1e-9), t
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_steps_are_all_samples_and_the_ends_of_windows(seed):
-    case = cell(seed)
-    times = timeline(case).times
-    assert (np.diff(times) > 0.0).all()
-    asked = [placed.timing.run_times(placed.given_trajectory.times) for placed in case.robots]
-    asked += [np.array(carry.window.ends) for carry in case.carries]
-    for wanted in asked:
-        inside = wanted[(wanted >= times[0]) & (wanted <= times[-1])]
-        assert np.isin(inside, times).all()
-
-
 def test_what_is_absent_and_all_on_it_is_gone_before_and_after():
     case = cell(5)
     door = case.obstacles[1]

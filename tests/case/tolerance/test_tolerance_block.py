@@ -53,10 +53,6 @@ def fault(folder, block, **files):
     return caught.value
 
 
-def test_a_case_without_the_block_has_no_budget(tmp_path):
-    assert load_small(tmp_path).tolerance is None
-
-
 def test_all_that_can_be_given(tmp_path):
     found = budget(tmp_path, """
   joints: {all: 0.0005, shoulder: 0.001}
@@ -87,11 +83,6 @@ def test_all_that_can_be_given(tmp_path):
         is_normal=True,
         unproven_ok=True,
     )
-
-
-def test_the_row_of_all_holds_where_no_other_does_wherever_it_stands(tmp_path):
-    joints = arm(tmp_path, "{joints: {shoulder: 0.001, default: 0.0005}}").joints
-    assert (joints["shoulder"].position, joints["lift"].position) == (0.001, 0.0005)
 
 
 def test_a_row_leaves_as_they_are_the_numbers_that_it_does_not_give(tmp_path):
