@@ -55,6 +55,19 @@ def test_where_a_window_ends_a_later_path_may_pass():
     assert ("measured", "self-collision not checked [CL531]") in [*lines_of(found)]
 
 
+def test_a_run_that_begins_with_the_path_begins_later():
+    """A part on a line that has no end is near the path's start when the run begins, and soon away."""
+    table = cl.PoseTable(
+        np.array([0.0, 0.2, 1.0]), np.array([[-1.0, 0.12, 0.0], [-1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]),
+        np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)), Timing(after="loop"),
+    )  # fmt: skip
+    part = cl.Obstacle(cl.Body("part", cl.box((0.1, 0.1, 0.1))), moves=table)
+    case = cl.Case("line", (along_x(gantry()),), (part,), cl.Limits(fail=0.1))
+    found = gain(case, "timing")
+    least = 0.08 / 4.4  # the part goes 0.88 m in 0.2 s, and 0.08 m are missing
+    assert found.kept and found.lower_bound <= least <= found.size <= least + 2e-3
+
+
 def handing(*obstacles, allow=()):
     """Two blocks that cross at the origin; one picks up a part above itself on its way along y, at 0.25 s."""
     part = standing("part", cl.box((0.04, 0.04, 0.04)), (0.0, -0.5, 0.2))

@@ -283,6 +283,13 @@ def test_what_only_a_finer_proof_holds_is_not_kept(monkeypatch):
     assert found.kept and found.after.passed
 
 
+def test_a_disc_round_a_corner_is_moved_away_from_both_posts():
+    found = gain(disc_past_two_posts("corner", 0.025, 0.025), "base")
+    assert found.kept and found.change == pytest.approx([0.025, -0.025, 0.0], abs=FINE)
+    assert found.size == pytest.approx(0.025 * np.sqrt(2.0), abs=FINE)
+    assert found.lower_bound == pytest.approx(0.025, rel=1e-4)  # each post by itself wants that
+
+
 def test_waivers_are_said_not_to_be_counted_and_before_is_of_what_fails(tmp_path):
     """Gate a is nearer and waived; b fails, and is to be moved."""
     case = load_gates(tmp_path, {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)})

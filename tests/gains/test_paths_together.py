@@ -1,5 +1,7 @@
 """The paths of two robots that are changed together: each gives way by half of what is missing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from clearance.errors import BadInput
 from clearance.gains.answer import gain
 from clearance.gains.sentences import lines_of
 from clearance.gains.turn import ARM, Turn
-from tests.gains.gantries import along_x, gantry, slot
+from tests.gains.gantries import along_x, gantry, slot, standing
 from tests.made_cases import at
 
 BOTH = ("one", "other")
@@ -31,6 +33,21 @@ def test_each_gives_way_by_half():
     assert 0.0 < both.lower_bound <= both.size
     changed = [line for label, line in lines_of(both) if label == "changed"]
     assert [line.split(" by")[0] for line in changed] == ["joint one/y", "joint other/y"]
+
+
+def test_what_each_of_two_must_mend_takes_both():
+    post = cl.box((0.1, 0.1, 1.0))
+    posts = (standing("low", post, (0.0, -0.12, 0.0)), standing("high", post, (0.0, 0.62, 0.0)))
+    robots = (along_x(gantry("one")), along_x(gantry("other"), y=0.5))
+    case = cl.Case("posts", robots, posts, cl.Limits(fail=0.03))
+    for name in BOTH:
+        found = gain(case, "waypoints", robot=name)
+        assert not found.kept and "nothing of this change moves them" in str(found.blocked)
+    found = gain(case, "waypoints", robot=BOTH)
+    assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
+    case = replace(case, obstacles=(posts[0], standing("high", post, (0.0, 0.63, 0.0))))
+    found = gain(case, "waypoints", robot=BOTH)
+    assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -154,6 +154,42 @@ def test_what_cannot_be_followed_is_refused(moves, told):
         motion(moves)
 
 
+def test_no_path_through_a_corner_takes_a_link_farther_than_is_proven_while_the_plate_turns():
+    """The plate is as far between entry, corner and exit as the tool's point."""
+    corner, end = on_plate((0.05, -0.02, 0.02)), on_plate((0.05, 0.03, 0.06), by=(0.1, 0.0, 0.1))
+    moves = [line(corner, zone=0.004, hold={"turn": 0.5}), line(end, hold={"turn": 0.4})]
+    found, one, draw = motion(moves), arm("heron6"), np.random.default_rng(3)
+    (zone,) = found.trajectory.corners
+    at = lambda shares: columns(  # noqa: E731
+        found, positions_along(found.trajectory, zone.start + shares * (zone.end - zone.start))
+    )
+    joints, angles = at(np.array([0.0, 1.0]))
+    turns = 0.5 - angles[0], angles[-1] - 0.5
+    assert turns[0] > 0.01 and turns[1] < -0.005
+    entry, exit_ = (
+        np.linalg.inv(plate_at(angles[i]).astype(float)) @ one.poses(joints[[i]])[0]
+        for i in (0, -1)
+    )
+    turned_by = vector_of(exit_[:3, :3] @ corner[:3, :3].T)
+    for _ in range(12):
+        now = joints[0]
+        for a, b in np.linspace((0.0, 0.0), np.sort(draw.random(2))[::-1], 4)[1:]:
+            pose = entry.astype(np.longdouble)
+            pose[:3, 3] += a * (corner - entry)[:3, 3] + b * (exit_ - corner)[:3, 3]
+            pose[:3, :3] = turn(draw.random() * turned_by) @ pose[:3, :3]
+            angle = angles[0] + a * turns[0] + b * turns[1]
+            wanted = plate_at(angle) @ pose
+            now = joints_for(one, (wanted[:3, :3], wanted[:3, 3]), now)
+        links = links_of(now, angle)
+        (own,), (angle,) = at(np.array([0.5 * (a + b)]))
+        nominal = links_of(own, angle)
+        for link, off in zone.links.items():
+            way = (links[link] - nominal[link])[:3, 3].astype(float)
+            assert np.linalg.norm(way) <= off.way, link
+            assert turn_between(links[link], nominal[link]) <= off.turn + 1e-12, link
+    assert zone.links[one.link].way < 0.05 and zone.links["plate"].turn > 1e-3
+
+
 def test_a_plate_goes_on_turning_through_zones_beside_joint_moves():
     one, to = arm("heron6"), (-0.4, 0.15, 0.45, 0.1, 1.1, 0.2)
     joints = dict(zip((joint.name for joint in one.joints), to, strict=True)) | {"turn": 0.8}

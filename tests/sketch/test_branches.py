@@ -16,6 +16,18 @@ def base():
 
 
 @pytest.mark.parametrize("seed", range(3))
+def test_same_side_holds_from_any_drawing(seed):
+    random = np.random.default_rng(seed)
+    s, a, b, line = base()
+    p, q = (s.point(*random.uniform(-3, 3, 2)) for _ in range(2))
+    s.distance(p, a, 2.0), s.distance(p, b, 3.0)
+    s.distance(q, p, 2.5), s.distance(q, b, 2.2)
+    s.same_side(p, q, line)
+    result = s.solve()
+    assert result.solved and p.position[1] * q.position[1] > 0.0
+
+
+@pytest.mark.parametrize("seed", range(3))
 def test_same_side_takes_another_root_of_a_numeric_cluster(seed):
     """K(3,3) with two points fixed, and a side on which only other roots have their last point."""
     s, p = k33(seed, fixed=True)
