@@ -85,9 +85,11 @@ def test_a_double_wall_holds_nothing():
     assert "holds no volume" in convex_parts(wall).note
 
 
-def test_a_dented_hull_is_drawn_in_below_its_dent():
+@pytest.mark.parametrize("dent", [0.01, 0.00005])
+def test_a_dented_hull_is_drawn_in_below_its_dent(dent):
+    """A dent of less than a facet may stand out is left to the hull, which is told."""
     body = cl.box((1.0, 1.0, 1.0))
-    points = np.concatenate([body.vertices, [[0.5 - 0.01, 0.0, 0.0]]])
+    points = np.concatenate([body.vertices, [[0.5 - dent, 0.0, 0.0]]])
     right = np.flatnonzero((body.normals == [1.0, 0.0, 0.0]).all(axis=1))[0]
     triangles = body.triangles()[body.triangle_faces != right]
     ring = body.face_vertices[4 * right : 4 * right + 4]
@@ -95,4 +97,9 @@ def test_a_dented_hull_is_drawn_in_below_its_dent():
     surface = points[np.concatenate([triangles, fan])]
     (inner,) = hull_drawn_in(surface, only_convex=False)
     assert hull_drawn_in(surface, only_convex=True) == ()
-    assert inner.vertices.max() <= 0.49 and inner.volume > 0.94**3
+    assert inner.vertices.max() <= 0.5 - dent and inner.volume > 0.94**3
+    parts = convex_parts(
+        cl.Polyhedron.from_triangles(points, np.concatenate([triangles, fan])), rough=True
+    )
+    said = "its hull stands for it, its dents are at most 0.05 mm deep"
+    assert (parts.note == said) == parts.tight == (dent < 0.001)

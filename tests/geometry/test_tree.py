@@ -8,7 +8,7 @@ import pytest
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.lanes import WIDTH
-from tests.made_cases import ball, torus
+from tests.made_cases import ball, faces_below, torus
 
 
 def soup(n: int) -> Polyhedron:
@@ -25,24 +25,19 @@ SHAPES = [soup(n) for n in (1, 2, 3, 4, 5, 6, 9, 17, 64, 65, 300)] + [
 ]
 
 
-def below(surface, node: int) -> list[int]:
-    """The faces below a node."""
-    first, count = surface.children[node]
-    if count == 0:
-        return [int(first)]
-    return [face for k in range(count) for face in below(surface, WIDTH * first + k)]
-
-
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: str(shape.n_faces))
 def test_every_face_is_in_one_leaf_and_every_box_holds_its_faces(shape: Polyhedron) -> None:
     surface = surface_of(shape)
-    assert sorted(below(surface, surface.roots[0])) == list(range(shape.n_faces))
+    below = faces_below(surface)
+    assert below[surface.roots[0]] == {*range(shape.n_faces)}
+    leaves = surface.children[surface.children[:, 1] == 0, 0]
+    assert sorted(leaves.tolist()) == list(range(shape.n_faces))
     boxes = surface.boxes.reshape(-1, 12, WIDTH).astype(np.float64)
     centres = surface.centres.reshape(-1, 3, WIDTH)
     for node in np.flatnonzero(surface.children[:, 1] >= 0):
         group, k = divmod(node, WIDTH)
         axes, half = boxes[group, :9, k].reshape(3, 3), boxes[group, 9:, k]
-        for face in below(surface, node):
+        for face in below[node]:
             corners = surface.face_vertices[
                 surface.face_starts[face] : surface.face_starts[face + 1]
             ]

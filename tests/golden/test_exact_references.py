@@ -65,20 +65,3 @@ def test_pairs_of_what_moves_or_is_carried_are_exact_where_they_come_nearest(run
         least = minima[tuple(truth["pair"])]
         off = abs(Fraction(least.clearance) - Fraction(truth["clearance"]))
         assert off <= MOST_ROUNDING, (truth, least)
-
-
-def test_references_tell_of_parts_in_hands_and_of_what_moves():
-    told = {
-        name
-        for path in REFERENCES
-        for truth in json.loads(path.read_text(encoding="utf-8")).get("parts", [])
-        for name in truth["pair"]
-    }
-    assert {"workpiece", "tray", "tower_1", "door", "part_2"} <= told
-
-
-def test_there_are_references_of_scenes_and_of_robots_from_packages():
-    cases = {
-        json.loads(path.read_text(encoding="utf-8"))["case"].split("/")[0] for path in REFERENCES
-    }
-    assert cases == {"scenes", "tests"}

@@ -11,20 +11,13 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.errors import BadPose, BadShape, NotFinite
 from clearance.query.one_pair import cached_pair
 from tests.made_cases import at
 from tests.strategies import rotations
-
-
-def turned(axis, angle):
-    x, y, z = np.asarray(axis) / np.linalg.norm(axis)
-    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    pose = np.eye(4)
-    pose[:3, :3] += np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
-    return pose
 
 
 def placed(random, reach):
@@ -40,12 +33,9 @@ def walk(random, n, size, reach):
     for _ in range(n):
         if random.random() < 0.05:
             pose = placed(random, reach)
-        pose = pose @ turned(random.normal(size=3), size * random.normal())
+        pose[:3, :3] = pose[:3, :3] @ Rotation.from_rotvec(size * random.normal(size=3)).as_matrix()
         pose[:3, 3] = np.clip(pose[:3, 3] + size * random.normal(size=3), -reach, reach)
-        pose[:3, :3] = np.linalg.qr(pose[:3, :3])[0] * np.sign(
-            np.diag(np.linalg.qr(pose[:3, :3])[1])
-        )
-        walked.append(pose)
+        walked.append(pose.copy())
     return np.array(walked)
 
 

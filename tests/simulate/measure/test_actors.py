@@ -119,45 +119,22 @@ def test_two_bodies_with_a_long_chain_between_are_as_far_apart_as_is_exact(seed)
     assert max(exact_errors(case, range(0, N_STEPS, 12))) < 2e-13
 
 
-X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-
-
-def joint(kind, parent, child, place=(0.0, 0.0, 0.0), axis=X):
-    return Joint(f"{parent}_{child}", JointKind(kind), parent, child, at(*place), axis)
-
-
-def run_of(joints, shapes, moves):
-    """A run of a robot of boxes, at the samples 0, 1 and 2 s of joints that move evenly from 0.
-
-    Args:
-        shapes: size and centre [m] by link. moves: where each joint ends [rad or m].
-    """
-    links = (joints[0].parent, *(one.child for one in joints))
-    bodies = tuple(
-        cl.Body(name, cl.box(shapes[name][0]).transformed(at(*shapes[name][1])))
-        for name in links
-        if name in shapes
-    )
-    rows = np.linspace(0.0, 1.0, 3)[:, None] * np.array([*moves.values()])
-    path = cl.Trajectory(np.arange(3.0), tuple(moves), rows)
-    robot = cl.Robot("own", links, joints, bodies)
-    placed = cl.PlacedRobot(robot, path, self_clearance=cl.SelfClearance())
-    return cl.check(cl.Case("own", (placed,), ()))
-
-
-def met(run):
-    return run.verdict.status, {run.worst["link"], run.worst["obstacle"]}
-
-
 def test_two_carts_on_a_bare_world_meet():
-    joints = (joint("prismatic", "world", "left"), joint("prismatic", "world", "right", (1, 0, 0)))
-    cube = ((0.1, 0.1, 0.1), (0, 0, 0))
-    ends = {"world_left": 0.5, "world_right": -0.5}
-    run = run_of(joints, {"left": cube, "right": cube}, ends)
-    assert met(run) == ("contact", {"left", "right"})
+    """The left from 0 to 0.5 m, the right from 1 m to there; the cubes coincide then, and have sides of 0.1 m."""
+    kind, names = JointKind.PRISMATIC, ("left", "right")
+    joints = tuple(
+        Joint(f"to {one}", kind, "world", one, at(x))
+        for one, x in zip(names, (0.0, 1.0), strict=True)
+    )
+    robot = Robot(
+        "own", ("world", *names), joints, tuple(Body(one, box((0.1, 0.1, 0.1))) for one in names)
+    )
+    rows = np.linspace([0.0, 0.0], [0.5, -0.5], 3)
+    path = Trajectory(np.arange(3.0), ("to left", "to right"), rows)
+    run = cl.check(cl.Case("own", (PlacedRobot(robot, path, self_clearance=SelfClearance()),), ()))
+    assert run.status == "contact" and {run.worst["link"], run.worst["obstacle"]} == {*names}
     assert run.record.clearances.tolist() == pytest.approx([0.9, 0.4, 0.0])
-    deepest = run.record.deepest.penetration
-    assert deepest == pytest.approx(0.1)  # the cubes coincide, and have sides of 0.1 m
+    assert run.record.deepest.penetration == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("n_robots", [1, 2])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -94,18 +92,6 @@ def test_what_is_named_really_occurs_there():
     assert apart == pytest.approx(moment.clearance, abs=1e-12)
 
 
-def test_a_moment_on_cubics_is_where_the_cubic_is():
-    """With velocities the arm passes the post at another time: the pose is that of the cubic."""
-    velocities = np.array([[0.0, 0.0], [3.0, 0.0]])
-    run = cl.check(sweeping(THROUGH, post_height=PAST, velocities=velocities))
-    moment, share = run.certificate.worst, run.certificate.worst.time / 2.0
-    step, e0, e1 = 2.0, 0.0 - 2.0, 6.0 - 2.0
-    rest = 1.0 - share
-    expected = -1.0 + share * step + share * rest * (rest * e0 - share * e1)
-    assert moment.positions[0][0] == pytest.approx(expected, abs=1e-12)
-    assert abs(expected) < 0.2  # over the post
-
-
 @pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
 @pytest.mark.parametrize(("height", "status"), [(1.0, "contact"), (PAST, "violated")])
 def test_every_need_is_certified(need, height, status):
@@ -150,16 +136,6 @@ def test_the_replay_goes_the_way_between_far_samples_with_what_is_measured_there
     assert lowest.min() == pytest.approx(record.worst.clearance, abs=1e-9) and len(lowest)
 
 
-def test_two_robots_name_the_one_that_comes_near():
-    one = sweeping(THROUGH)
-    still = sweeping([[2.0, 0.0], [2.0, 0.0]]).robots[0]
-    other = replace(still, robot=replace(still.robot, name="still"), world_from_base=at(z=2.0))
-    for robots in ((one.robots[0], other), (other, one.robots[0])):
-        worst = cl.check(replace(one, robots=robots)).record.worst
-        assert (worst.link, worst.obstacle, worst.between) == ("arm/fore", "post", True)
-        assert len(worst.positions) == 2
-
-
 def test_a_gap_below_rounding_ends_and_says_what_it_became():
     case = sweeping(THROUGH, post_height=PAST)
     run = cl.answer(cl.Question(case, certify_gap=1e-300))
@@ -192,10 +168,3 @@ def test_contact_between_two_steps_has_its_depth(limits):
     assert depth.penetration == pytest.approx(0.045, abs=1e-9) and depth.exact
     assert run.worst["between"] and run.worst["time"] == pytest.approx(1.0)
     assert cl.check(sweeping(THROUGH), contact="none").record.worst.depth is None
-
-
-def test_the_deepest_between_is_told_where_a_step_is_less_deep():
-    """The step at 0.05 rad is in the post, less deep than the fore arm gets on its way there."""
-    record = cl.check(sweeping([[-1.0, 0.0], [0.05, 0.0]])).record
-    assert record.worst_sample.depth.penetration < record.worst.depth.penetration
-    assert record.worst.between and record.worst.depth.penetration > 0.044

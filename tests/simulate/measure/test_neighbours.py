@@ -217,15 +217,6 @@ def test_a_configuration_in_which_neighbours_meet_is_warned_of_once(recwarn, mon
 gaps = Neighbours.gaps
 
 
-def test_beyond_the_first_contact_the_links_themselves_are_asked(recwarn):
-    checker = cl.Checker(folding())
-    checker.distance([0.0, 2.0 * np.pi - 2.2])
-    checker.distance([0.0, -2.0 * np.pi])
-    assert not recwarn.list
-    checker.distances(np.array([[0.0, 0.0], [0.0, np.pi]]))
-    assert len(recwarn.list) == 1
-
-
 def test_a_joint_that_stays_where_neighbours_meet_is_a_notice_of_the_checker():
     notices = [
         one.text

@@ -140,11 +140,3 @@ def test_what_needs_a_surface_is_refused_by_name():
     cloud = replace(robot, bodies=(cl.Body("l6", cl.PointCloud([[0, 0, 0]], 0.1)),))
     with pytest.raises(BadShape, match="link 'l6' of robot 'flying' is a cloud of points"):
         replace(case, robots=(replace(case.robots[0], robot=cloud),))
-
-
-def test_a_checker_sees_the_cloud():
-    points, positions = scan(), way(9)
-    case = case_of(points, positions)
-    checker = cl.Checker(case)
-    for row, true in zip(positions, true_clearances(case, points, positions), strict=True):
-        assert abs(checker.distance(row).distance - true) <= 1e-12
