@@ -112,13 +112,14 @@ def driven(
     velocities: Sequence[float] | None = None,
     base: np.ndarray | None = None,
     name: str = "robot",
+    link: str = "tool",
 ) -> PlacedRobot:
-    """A robot of one body, `tool` on the joint `joint` of its base, at these positions second by second."""
-    joint = Joint("joint", kind, "base", "tool", np.eye(4), np.array(axis, dtype=float))
+    """A robot of one body, a link on the joint `joint` of its base, at these positions second by second."""
+    joint = Joint("joint", kind, "base", link, np.eye(4), np.array(axis, dtype=float))
     rates = None if velocities is None else np.array(velocities, dtype=float)[:, None]
     rows = np.array(positions, dtype=float)[:, None]
     path = Trajectory(np.arange(float(len(rows))), ("joint",), rows, rates)
-    robot = Robot(name, ("base", "tool"), (joint,), (Body("tool", shape),))
+    robot = Robot(name, ("base", link), (joint,), (Body(link, shape),))
     return PlacedRobot(robot, path, np.eye(4) if base is None else base)
 
 

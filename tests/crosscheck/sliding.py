@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.crosscheck.compare import compared
+from clearance.geometry import shapes
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.record import CrossCheck, Samples
 from clearance.record.table import Table
@@ -12,9 +13,8 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair, measured_pairs
-from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
-from clearance.world.trajectory import Trajectory
+from clearance.world.robot import JointKind
+from tests.made_cases import at, driven
 from tests.report.records import rows_of
 
 
@@ -30,13 +30,9 @@ def cross_check(record: Samples, progress=None) -> CrossCheck:
     return compared(record, pairs_of(record), progress)[0]
 
 
-BOX_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-
-
 def box(*size: float) -> Polyhedron:
     """A box about the origin: six outward quadrilaterals."""
-    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)])
-    return Polyhedron(0.5 * corners * size, BOX_FACES)
+    return shapes.box(size)
 
 
 def rail_record(
@@ -50,15 +46,12 @@ def rail_record(
     point).
     """
     times = np.arange(len(positions), dtype=float)
-    column = np.array(positions)[:, None]
-    rail = Joint("rail", JointKind.PRISMATIC, "ground", "slider", np.eye(4))
-    robot = Robot("cart", ("ground", "slider"), (rail,), (Body("slider", link),))
-    placed = PlacedRobot(robot, Trajectory(times, ("rail",), column))
+    rail = driven(link, JointKind.PRISMATIC, positions, axis=(1, 0, 0), name="cart", link="slider")
     standing = tuple(
-        Obstacle(Body(name, shape), _shift(place)) for name, (shape, place) in obstacles.items()
+        Obstacle(Body(name, shape), at(*place)) for name, (shape, place) in obstacles.items()
     )
-    motion = Motion(placed, times, column, np.zeros(len(times)))
-    case = Case("rail", (placed,), standing)
+    motion = Motion(rail, times, rail.trajectory.positions, np.zeros(len(times)))
+    case = Case("rail", (rail,), standing)
     return Samples(case, (motion,), _steps(times, rows), unmeasured)
 
 
@@ -74,9 +67,3 @@ def _steps(times: np.ndarray, rows: list) -> Table:
         for i_axis, axis in enumerate("xyz"):
             columns[f"{side}_{axis}"] = [float(row[i_row][i_axis]) for row in rows]
     return rows_of(columns)
-
-
-def _shift(place: tuple[float, float, float]) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:3, 3] = place
-    return pose

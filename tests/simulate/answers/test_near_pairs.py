@@ -11,7 +11,6 @@ import pytest
 
 import clearance as cl
 from clearance.record.rule_answer import NearRows
-from clearance.simulate.answers.approaches import approaches
 from clearance.simulate.measure.measure import NearestPairs, measure, pairs_within
 from clearance.simulate.measure.sections import section_plan
 from clearance.world.motion import kinematic_motion
@@ -149,52 +148,3 @@ def test_padding_changes_no_slope():
     case = slot(fail=0.01, off=0.03)
     padded = replace(case, obstacles=tuple(replace(one, padding=0.002) for one in case.obstacles))
     assert rates_of(padded)[1] == rates_of(case)[1]
-
-
-STEP = 1e-6
-
-
-def approaching(case, beyond=0.3):
-    run = cl.check(case, certify=False)
-    return run.record, [
-        one for one in approaches(run.session.rules, beyond) if (one.clearances > 1e-3).any()
-    ]
-
-
-def moved_by(case, approach, row, column):
-    """(2,) the distance of the pair with a column a little less and a little more, measured anew."""
-    from clearance.world.forest import forest_of, joined_positions
-
-    phase = approach.section.phase
-    own = np.array([approach.steps[row] - phase.first])
-    found = []
-    for sign in (-1.0, 1.0):
-        positions = joined_positions(phase.case, phase.motions, own)
-        positions[0, column] += sign * STEP
-        poses = forest_of(phase.case).poses(positions)
-        a, b = approach.pair
-        near = cl.distance(
-            a.shape_in(phase.case),
-            b.shape_in(phase.case),
-            pose_a=a.poses_in(phase.case, poses)[0],
-            pose_b=b.poses_in(phase.case, poses)[0],
-        )
-        found.append(near.distance)
-    return found
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_joints_change_clearances_as_exact_differences_do(seed):
-    _, rows = approaching(cell(seed))
-    compared = 0
-    for approach in rows:
-        by_columns = approach.by_columns()
-        for row in np.flatnonzero(approach.clearances > 1e-3)[:3]:
-            for column in np.flatnonzero(by_columns[row]):
-                less, more = moved_by(approach.case, approach, row, column)
-                here = approach.clearances[row] + approach.section.padding
-                one_sided = sorted([(more - here) / STEP, (here - less) / STEP])
-                low, high = one_sided[0] - 1e-4, one_sided[1] + 1e-4
-                assert low <= by_columns[row, column] <= high
-                compared += 1
-    assert compared > 3

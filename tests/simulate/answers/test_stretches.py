@@ -18,10 +18,8 @@ from clearance.simulate.answers import motion_minima as room
 from clearance.simulate.answers.intervals import events, extent, intervals, not_listed
 from clearance.simulate.answers.pairs_alone import near_alone
 from clearance.simulate.answers.stretches import joined_spans
-from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
-from clearance.world.placed_robot import PlacedRobot
 from clearance.world.robot import JointKind
 from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory
@@ -152,37 +150,6 @@ def test_a_body_that_goes_wholly_into_another_stays_in_contact():
         (contact,) = spans_of(case)["contact"].tolist()
         assert contact[0] <= 0.45 <= contact[0] + 0.021 and contact[1] - 0.021 <= 1.55 <= contact[1]
         assert len(spans_of(case)["below_warn"]) == len(spans_of(case)["below_fail"]) == 1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", ["turntable_cell"])
-def test_moments_of_cells_that_are_below_lie_in_the_stretches(scene):
-    """Doors and turntables that move by tables, parts that are carried, rules; samples that are far apart."""
-    case = cl.load_case(SCENES / scene / "case.yaml")
-    told = replace(case, robots=tuple(map(thinned, case.robots)), waivers=())
-    session = cl.check(told).session
-    spans, rng = session.motion_levels.spans, np.random.default_rng(5)
-    for rule in session.rules:
-        for answer in rule.pairs.answers:
-            for step in range(answer.section.phase.first, answer.section.phase.last):
-                for moment in nearest_moments(rule, answer, step, np.sort(rng.random(3))):
-                    below = (
-                        moment.clearance < rule.limits.warn,
-                        moment.clearance < rule.limits.fail,
-                        moment.touches,
-                    )
-                    for level, is_below in zip(LEVELS, below, strict=True):
-                        inside = any(a <= moment.time <= b for a, b in spans[level])
-                        assert inside or not is_below, (level, moment.time, moment.clearance)
-
-
-def thinned(placed: PlacedRobot) -> PlacedRobot:
-    """The robot with every twentieth of its samples."""
-    asked = placed.trajectory
-    kept = np.unique(np.append(np.arange(0, asked.n_steps, 20), asked.n_steps - 1))
-    velocities = None if asked.velocities is None else asked.velocities[kept]
-    table = Trajectory(asked.times[kept], asked.joint_names, asked.positions[kept], velocities)
-    return replace(placed, trajectory=table)
 
 
 def test_a_single_pose_below_a_level_is_told_without_a_warning_of_numpy():

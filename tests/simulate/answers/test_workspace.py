@@ -24,13 +24,13 @@ from clearance.world.case import Case
 from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import JointKind
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Window
 from clearance.world.trajectory import CornerZone, Deviation, Trajectory
 from tests import cells
 from tests.examples import examples
-from tests.made_cases import at, l_prism
+from tests.made_cases import at, driven, l_prism
 from tests.report.records import arm
 from tests.world.test_shortfall import off
 
@@ -39,13 +39,11 @@ WITH_MANIFOLD = pytest.mark.skipif(not boolean.available(), reason="manifold3d i
 
 def slider(name, axis, start, stop, base=(0.0, 0.0, 0.0), n_steps=5) -> Case:
     """A 0.2 cube that slides along an axis of the world."""
-    joint = Joint(
-        "rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4), np.array(axis, dtype=float)
+    way, cube = np.linspace(start, stop, n_steps), cl.box((0.2, 0.2, 0.2))
+    kind = JointKind.PRISMATIC
+    return Case(
+        name, (driven(cube, kind, way, axis=axis, base=at(*base), name=name, link="cube"),), ()
     )
-    robot = Robot(name, ("ground", "cube"), (joint,), (Body("cube", cl.box((0.2, 0.2, 0.2))),))
-    times = np.arange(float(n_steps))
-    path = Trajectory(times, ("rail",), np.linspace(start, stop, n_steps)[:, None])
-    return Case(name, (PlacedRobot(robot, path, at(*base)),), ())
 
 
 def swinging(name, base, n_steps=12, excluded=()) -> Case:

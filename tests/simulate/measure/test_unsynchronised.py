@@ -17,16 +17,15 @@ from clearance.simulate.measure.clocks.unsynchronised import (
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
-from clearance.world.body import Body
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import BodyIndex, Pair, measured_pairs
 from clearance.world.placed_robot import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests import oracle
 from tests.examples import examples, first_fast, some_slow
-from tests.made_cases import at, faces_of
+from tests.made_cases import at, driven, faces_of
 from tests.oracle.kinematics import link_poses as exact_link_poses
 from tests.oracle.kinematics import placed as exactly_placed
 from tests.simulate.measure.wandering import solid_robot
@@ -56,10 +55,16 @@ def two_robots(seed: int, *, n_steps: int = 9, cubic: bool = False, away: float 
 def sliding(name: str, start, way, size=(0.1, 0.1, 0.1), n_steps: int = 6) -> PlacedRobot:
     """A box whose centre goes from `start` along `way` (3,) [m] in a second."""
     length = float(np.linalg.norm(way))
-    joint = Joint("joint", JointKind.PRISMATIC, "base", "tool", np.eye(4), np.array(way) / length)
-    robot = Robot(name, ("base", "tool"), (joint,), (Body("tool", cl.box(size)),))
+    placed = driven(
+        cl.box(size),
+        JointKind.PRISMATIC,
+        [0.0],
+        axis=np.array(way) / length,
+        base=at(*start),
+        name=name,
+    )
     times = np.linspace(0.0, 1.0, n_steps)
-    return PlacedRobot(robot, Trajectory(times, ("joint",), times[:, None] * length), at(*start))
+    return replace(placed, trajectory=Trajectory(times, ("joint",), times[:, None] * length))
 
 
 def asked(case: cl.Case, slack: float, *, jobs: int = 1, pairs=None) -> UnsynchronisedAnswers:
