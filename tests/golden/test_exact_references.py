@@ -1,20 +1,24 @@
-"""Whole cases against exact references that lie here, so that a clone with nothing beside it has a truth to test.
+"""Whole cases against exact references: those that lie here, so that a clone with nothing beside it has a truth to
+test, and the four real cases beside the repository.
 
-`make_references` makes them, with rational arithmetic throughout. The engine may be off by rounding alone:
+`make_references` makes the first, with rational arithmetic throughout. The engine may be off by rounding alone:
 the README says by less than 1e-15 m.
 """
 
 from __future__ import annotations
 
+import csv
 import json
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import clearance as cl
 from tests.examples import some_slow
 from tests.golden.make_references import without_rules
+from tests.shared_cases import SHARED_NAMES, shared_case
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -65,3 +69,66 @@ def test_pairs_of_what_moves_or_is_carried_are_exact_where_they_come_nearest(run
         least = minima[tuple(truth["pair"])]
         off = abs(Fraction(least.clearance) - Fraction(truth["clearance"]))
         assert off <= MOST_ROUNDING, (truth, least)
+
+
+ROUNDING = 1e-12  # [m] a faceted round shape may never be reported farther away than this
+
+
+@pytest.fixture(scope="module", params=SHARED_NAMES)
+def shared_run(request):
+    path = shared_case(request.param)
+    run = cl.check(cl.load_case(path))
+    with path.with_name("reference.csv").open(encoding="utf-8") as file:
+        return run, list(csv.DictReader(file))
+
+
+def excess_of(run, name):
+    bodies = [o.body for o in run.record.case.obstacles] + list(
+        run.record.case.robots[0].robot.bodies
+    )
+    return next(body.shape.excess for body in bodies if body.name == name)
+
+
+@pytest.mark.shared
+def test_every_step_has_its_reference_clearance(shared_run):
+    run, reference = shared_run
+    rows = run.steps.to_pylist()
+    assert len(rows) == len(reference)
+    for row, truth in zip(rows, reference, strict=True):
+        exact = float(truth["clearance"])
+        facets = max(
+            excess_of(run, row["link"]) + excess_of(run, row["obstacle"]),
+            excess_of(run, truth["link"]) + excess_of(run, truth["obstacle"]),
+        )
+        if facets == 0.0:
+            assert abs(row["clearance"] - exact) <= 1e-9, (row["step"], exact)
+        assert row["clearance"] <= exact + ROUNDING, (row["step"], exact)
+        assert row["clearance"] >= exact - facets - ROUNDING, (row["step"], exact)
+
+
+@pytest.mark.shared
+def test_contact_steps_agree(shared_run):
+    run, reference = shared_run
+    ours = [row["status"] == "contact" for row in run.steps.to_pylist()]
+    assert ours == [float(truth["clearance"]) == 0.0 for truth in reference]
+
+
+@pytest.mark.shared
+def test_witness_points_realise_the_clearance(shared_run):
+    run, _ = shared_run
+    columns = {
+        name: run.steps[name].to_numpy() for name in run.steps.column_names if name[-2:-1] == "_"
+    }
+    links = np.stack([columns[f"link_{axis}"] for axis in "xyz"], axis=1)
+    obstacles = np.stack([columns[f"obstacle_{axis}"] for axis in "xyz"], axis=1)
+    realised = np.linalg.norm(links - obstacles, axis=1)
+    assert np.abs(realised - run.record.clearances).max() < 1e-14
+
+
+@pytest.mark.shared
+def test_pair_minima_hold_the_least_of_all_steps(shared_run):
+    run, _ = shared_run
+    least = run.pair_minima[0]
+    assert least.clearance == run.worst_sample["clearance"]
+    assert least.step == run.worst_sample["step"]
+    assert [p.clearance for p in run.pair_minima] == sorted(p.clearance for p in run.pair_minima)

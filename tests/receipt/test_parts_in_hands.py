@@ -13,7 +13,7 @@ from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.stage import by_balls, by_directions
 from tests.budget.part_cases import carried, off_by, quarter_turn, slid
 from tests.budget.sampled_machine import HandlingMachine
-from tests.budget.test_parts_sampled import handling
+from tests.budget.test_budget_sound import handling
 from tests.receipt.receipts import saved, stage_of
 from tests.receipt.test_error_terms import distance, names_in, rows_of
 
