@@ -1,4 +1,4 @@
-"""What a search leaves out holds no nearest points: nodes turned away, what two planes separate, boxes side by side.
+"""What a search leaves out holds no nearest points: nodes turned away, what planes separate, boxes side by side.
 
 Bodies have few faces: rational arithmetic is asked for every pair of them.
 """
