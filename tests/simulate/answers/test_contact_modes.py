@@ -145,16 +145,7 @@ def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all():
 
 def test_a_link_in_the_wall_of_a_ring_is_deepest_in_its_middle():
     """Hulls would say: at once, since the hole is inside the hull."""
-    u = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-    section = ((0.7, -0.3), (1.3, -0.3), (1.3, 0.3), (0.7, 0.3))
-    ring = [(r * np.cos(t), r * np.sin(t), z) for t in u for r, z in section]
-    faces = []
-    for i in range(48):
-        for k in range(4):
-            a, b = 4 * i + k, 4 * i + (k + 1) % 4
-            c, d = 4 * ((i + 1) % 48) + (k + 1) % 4, 4 * ((i + 1) % 48) + k
-            faces += [(a, c, b), (a, d, c)]
-    shape = cl.Polyhedron.from_triangles(np.array(ring), np.array(faces)).outward()
+    shape = cl.pipe(inner_radius=0.7, outer_radius=1.3, length=0.6, sections=48)
     way = np.linspace(0.0, 2.0, 101)
     case = passing(way, cl.Obstacle(cl.Body("ring", shape)), size=0.4)
     (row,) = cl.check(case).record.worked_out

@@ -153,46 +153,35 @@ def test_what_a_file_excuses_or_a_row_allows_is_told_of_no_more():
     assert run.status == "contact" and {run.worst["link"], run.worst["obstacle"]} == {"arm", "hand"}
 
 
-def test_what_an_srdf_calls_adjacent_is_looked_at_though_a_link_lies_between():
-    """A flange with a shape turns on the arm, and the hand is fixed to it."""
-    matrix = CollisionMatrix(disabled=(("arm", "hand", "Adjacent"), ("arm", "flange", "User")))
-    case = folding([0.0, 2.9], matrix=matrix)
-    (placed,) = case.robots
+def flanged(samples, disabled, last, *bodies):
+    """The arm with a flange on its wrist, from which the joint `last` leads to the hand."""
+    (placed,) = folding(samples, matrix=CollisionMatrix(disabled=disabled)).robots
     shoulder, wrist = placed.robot.joints
-    bolts = Joint("bolts", JointKind.FIXED, "flange", "hand", np.eye(4))
-    disc = cl.Body("flange", cl.box((0.02, 0.02, 0.02)))
     robot = replace(
         placed.robot,
         link_names=("base", "arm", "flange", "hand"),
-        joints=(shoulder, replace(wrist, child="flange"), bolts),
-        bodies=(*placed.robot.bodies, disc),
+        joints=(shoulder, replace(wrist, child="flange"), last),
+        bodies=(*placed.robot.bodies, *bodies),
     )
-    (told,) = told_of(replace(case, robots=(replace(placed, robot=robot),)))
+    return cl.Case("own", (replace(placed, robot=robot),), ())
+
+
+def test_what_an_srdf_calls_adjacent_is_looked_at_though_a_link_lies_between():
+    """A flange with a shape turns on the arm, and the hand is fixed to it."""
+    disabled = (("arm", "hand", "Adjacent"), ("arm", "flange", "User"))
+    bolts = Joint("bolts", JointKind.FIXED, "flange", "hand", np.eye(4))
+    disc = cl.Body("flange", cl.box((0.02, 0.02, 0.02)))
+    (told,) = told_of(flanged([0.0, 2.9], disabled, bolts, disc))
     assert "arm - hand, 0.1 m apart at first, touch " in told
     assert float(re.search(r"wrist = (\S+) rad", told)[1]) == pytest.approx(MEETS, abs=2e-3)
 
 
 def test_two_links_that_one_position_moves_by_two_joints_are_checked_at_the_steps():
     """The flange turns on the arm, and the hand by as much again on the flange."""
-    matrix = CollisionMatrix(disabled=(("arm", "hand", "Adjacent"),))
-    case = folding([0.0, 1.0, 2.9], matrix=matrix)
-    (placed,) = case.robots
-    shoulder, wrist = placed.robot.joints
-    again = replace(
-        wrist,
-        name="again",
-        parent="flange",
-        parent_from_joint=np.eye(4),
-        mimic=Mimic("wrist", 1.0, 0.0),
-    )
-    robot = replace(
-        placed.robot,
-        link_names=("base", "arm", "flange", "hand"),
-        joints=(shoulder, replace(wrist, child="flange"), again),
-    )
-    case = replace(case, robots=(replace(placed, robot=robot),))
-    half = replace(placed.trajectory, positions=placed.trajectory.positions / 2.0)
-    (told,) = told_of(replace(case, robots=(replace(case.robots[0], trajectory=half),)))
+    mimic = Mimic("wrist", 1.0, 0.0)
+    again = Joint("again", JointKind.REVOLUTE, "flange", "hand", np.eye(4), Z, mimic=mimic)
+    case = flanged([0.0, 0.5, 1.45], (("arm", "hand", "Adjacent"),), again)
+    (told,) = told_of(case)
     assert "touch at a step, at wrist = 1.45 rad, at 4.000 s" in told
     asked = replace(case, robots=(replace(case.robots[0], trajectory=None),))
     assert cl.Checker(asked).notices == ()
