@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.case.case_file import load_case
 from clearance.errors import BadInput
 from clearance.formats.cloud.formats import cloud_from_bytes, read_points
 from clearance.formats.cloud.pcd_file import decompressed
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
+from tests.formats.making_case import changed, load_small
 from tests.formats.making_clouds import lzf, pcd, ply, table
 from tests.formats.refusal import refusal
 
@@ -79,6 +79,13 @@ def test_beams_that_did_not_come_back_are_left_out_and_counted(make):
     assert one.notes == ("1 point is not finite (no return) and left out, of 5",)
     with pytest.raises(BadInput, match="none of the 2 points is finite"):
         cloud_from_bytes(make(points[4:]), name, 0.01)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_signalling_nan_is_a_point_left_out():
+    data = pcd(np.arange(9.0).reshape(3, 3), "binary")[:-4] + struct.pack("<I", 0x7F800001)
+    cloud = cloud_from_bytes(data, "s.pcd", 0.1)
+    assert cloud.shape.n_points == 2 and "1 point is not finite" in cloud.notes[0]
 
 
 def test_a_first_column_that_counts_the_points_is_no_x():
@@ -212,29 +219,19 @@ def test_a_scan_under_mesh_is_told_where_it_belongs(name, data):
 
 
 def test_a_case_with_a_scan(tmp_path):
-    (tmp_path / "arm.urdf").write_text(ARM)
-    (tmp_path / "path.csv").write_text("time,j\n0,0\n1,1\n")
-    (tmp_path / "scan.csv").write_bytes(table(POINTS.astype(float) * 100.0, ",", "x,y,z"))
-    scan = "{file: scan.csv, radius: 0.3, scale: 10, units: {length: mm}}"
-    (tmp_path / "case.yaml").write_text(
-        "robot: {urdf: arm.urdf}\ntrajectory: path.csv\n"
-        f"scene: {{obstacles: [{{name: scan, points: {scan}}}]}}\n"
+    scan = "points: {file: scan.csv, radius: 0.3, scale: 10, units: {length: mm}}"
+    content = table(POINTS.astype(float) * 100.0, ",", "x,y,z")
+    case = load_small(
+        tmp_path,
+        changed("box: {size: [0.1, 0.1, 1]}", scan).replace("[1.2, 0, 0]", "[0, 0, 0]"),
+        scan__csv=content,
     )
-    case = load_case(tmp_path / "case.yaml")
     (obstacle,) = case.obstacles
     assert obstacle.body.origin == "scan.csv" and obstacle.body.is_cloud
     assert obstacle.body.shape.ball_radius == 0.3
     assert np.allclose(as_set(obstacle.body.shape.vertices), as_set(POINTS), rtol=1e-15, atol=0.0)
     assert "scan.csv" in {source.path for source in case.sources}
     (told,) = [notice.text for notice in case.notices if "radius" in notice.text]
-    assert "each point of 'scan' has a radius of 0.3 m" in told
+    assert "each point of 'post' has a radius of 0.3 m" in told
     run = cl.check(case)
-    assert (run.worst["clearance"], run.worst["obstacle"]) == (0.0, "scan")
-    assert run.status == "suspect"
-
-
-ARM = """<robot name='arm'>
-<link name='base'><collision><geometry><box size='0.9 0.9 0.9'/></geometry></collision></link>
-<link name='tip'><collision><geometry><box size='0.2 0.2 0.2'/></geometry></collision></link>
-<joint name='j' type='continuous'><parent link='base'/><child link='tip'/></joint></robot>
-"""
+    assert (run.worst["clearance"], run.worst["obstacle"], run.status) == (0.0, "post", "suspect")

@@ -75,11 +75,6 @@ def test_a_name_of_none_or_of_several_is_refused(robots, given, fault, says):
     assert says in refusal(brought_path, given, of=fault)
 
 
-def test_what_is_no_package_is_a_path(tmp_path):
-    assert brought_path("example_robots:ur5") is None
-    assert resolved("example_robots:ur5", tmp_path) == tmp_path / "example_robots:ur5"
-
-
 LISTED = """\
 example-robot-data:robots/a/twin.urdf      2 links  meshes that cannot be read
 example-robot-data:robots/b/twin.urdf      2 links  no collision shapes

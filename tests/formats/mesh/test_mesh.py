@@ -15,13 +15,10 @@ from clearance.errors import (
 )
 from clearance.formats.mesh.mesh_file import OPEN, mesh_from_bytes, read_mesh, triangles_from_bytes
 from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl, cube_stl, signed_volume, text_stl
+from tests.formats.making_meshes import obj
 from tests.formats.refusal import refusal
 
 CUBE_CORNERS = CUBE[CUBE_TRIANGLES]
-
-CUBE_OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in CUBE.tolist()) + (
-    "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
-)
 
 
 def as_triangle_set(corners) -> set:
@@ -93,7 +90,7 @@ def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
 
 
 def test_obj_points_and_lines_are_told():
-    mesh = mesh_from_bytes(f"{CUBE_OBJ}l 1 2 3\np 1 2\n".encode(), "cube.obj")
+    mesh = mesh_from_bytes(f"{obj()}l 1 2 3\np 1 2\n".encode(), "cube.obj")
     left_out = "2 elements of points or lines, which have no surface: not measured"
     assert mesh.notes == (left_out,)
 

@@ -52,14 +52,6 @@ def test_a_polygon_that_crosses_itself_is_refused():
         cut_polygons(placed(np.array([[0, 0], [1, 1], [1, 0], [0, 1]])), [[0, 1, 2], [0, 1, 2, 3]])
 
 
-def test_a_hole_that_is_joined_by_a_cut_stays_open():
-    outer, inner = [[0, 0], [4, 0], [4, 4], [0, 4]], [[1, 1], [1, 2], [2, 2], [2, 1]]
-    points = placed(np.array([*outer, outer[0], *inner, inner[0]], dtype=float))
-    vectors = area_vectors(points, cut_polygons(points, [list(range(len(points)))]))
-    assert (vectors[:, 2] >= 0).all()
-    assert vectors[:, 2].sum() == 15
-
-
 @given(seed=st.integers(0, 10_000), n=st.integers(4, 40))
 def test_random_rings_are_covered_or_refused(seed, n):
     shape = np.random.default_rng(seed).integers(0, 6, (n, 2)).astype(float)

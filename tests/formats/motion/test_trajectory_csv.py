@@ -20,37 +20,28 @@ def parse(text: str):
     return parse_trajectory(text.encode(), "path.csv")
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "time,b,a\n0,1,2\n1,3,4\n",
-        "b,a,time\n1,2,0\n3,4,1\n",
-        "b,time,a\r\n1,0,2\r\n3,1,4",
-        "\n\nb, time ,a\n\n 1 , 0 , 2\n\n\n3,1,4\n\n",
-        '\ufeff"b","time","a"\n"1","0","2"\n3,1,4\n',
-        "time,b,a\n0,1e0,+2.0\n1,3.,4E+0\n",
-    ],
-)
-def test_time_may_be_any_column_and_joints_keep_their_order(text):
+PLAIN = [
+    "time,b,a\n0,1,2\n1,3,4\n",
+    "b,a,time\n1,2,0\n3,4,1\n",
+    "b,time,a\r\n1,0,2\r\n3,1,4",
+    "\n\nb, time ,a\n\n 1 , 0 , 2\n\n\n3,1,4\n\n",
+    '\ufeff"b","time","a"\n"1","0","2"\n3,1,4\n',
+    "time,b,a\n0,1e0,+2.0\n1,3.,4E+0\n",
+]
+WITH_VELOCITIES = [
+    "time,b,a,b/velocity,a/velocity\n0,1,2,5,6\n1,3,4,7,8\n",
+    "a/velocity,b,time,b/velocity,a\n6,1,0,5,2\n8,3,1,7,4\n",
+    "time, b ,a, a/velocity ,b/velocity\r\n0,1,2,6,5\r\n1,3,4,8,7",
+]
+
+
+@pytest.mark.parametrize("text", PLAIN + WITH_VELOCITIES)
+def test_columns_may_stand_anywhere_and_joints_keep_their_order(text):
     trajectory = parse(text)
     assert trajectory.joint_names == ("b", "a")
     assert trajectory.times.tolist() == [0, 1]
     assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "time,b,a,b/velocity,a/velocity\n0,1,2,5,6\n1,3,4,7,8\n",
-        "a/velocity,b,time,b/velocity,a\n6,1,0,5,2\n8,3,1,7,4\n",
-        "time, b ,a, a/velocity ,b/velocity\r\n0,1,2,6,5\r\n1,3,4,8,7",
-    ],
-)
-def test_velocity_columns_go_with_their_joints(text):
-    trajectory = parse(text)
-    assert trajectory.joint_names == ("b", "a")
-    assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
-    assert trajectory.velocities.tolist() == [[5, 6], [7, 8]]
+    assert text in PLAIN or trajectory.velocities.tolist() == [[5, 6], [7, 8]]
 
 
 def test_numbers_are_read_to_the_last_bit():

@@ -345,23 +345,6 @@ def test_a_base_on_another_machine_is_refused():
     )
 
 
-def test_each_module_has_points_and_procedures_of_its_own():
-    points = "DEFDAT pick\nDECL E6POS XP1={X 7.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 180.0}\nDECL GLOBAL INT N=3\nENDDAT\n"
-    pick = "DEF pick()\nstitch()\nEND\nDEF stitch()\nLIN XP1\nEND\n"
-    body = FRAMES + "XP1.X=20.0\npick()\nstitch()\nLIN_REL {Y N}\nEND\nDEF stitch()\nLIN XP1"
-    beside = {"weld.dat": POINTS, "sub/pick.src": pick, "sub/pick.dat": points}
-    beside = {name: text.encode() for name, text in beside.items()}
-    found = read("weld.src", f"{HEAD}{body}\nEND\n", beside).moves
-    # x of the base is the robot's y
-    assert [place(move)[1] for move in found] == pytest.approx([0.007, 0.02, 0.02])
-    assert [(move.line.file, move.line.number) for move in found] == [
-        ("sub/pick.src", 5),
-        ("", 15),
-        ("", 12),
-    ]
-    assert place(found[2])[0] == pytest.approx(0.5 - 0.003)
-
-
 KEPT = "DEFDAT CELL PUBLIC\nDECL GLOBAL BOOL high=TRUE\nDECL GLOBAL INT times=2\nENDDAT"
 """Values that the controller keeps between runs, in lines 2 and 3."""
 

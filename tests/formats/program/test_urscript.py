@@ -204,17 +204,6 @@ def test_what_only_the_controller_decides_is_never_taken_for_known(case):
     assert re.search(told, refusal(moves_of, TOOL + UNDECIDED[case]))
 
 
-def test_what_moves_nothing_is_left_out_by_name():
-    text = "grip(20)\nwhile not get_digital_in(1):\nsync()\nend\n" + Q
-    found = read("a.script", text, skip=["grip", "while"])
-    assert len(found.moves) == 1 and found.left_out == ("grip (line 1)", "while (line 2)")
-    assert any(
-        re.search(r"left out as asked: grip \(line 1\), while \(line 2\)", one)
-        for one in found.notes
-    )
-    assert "skip: movej moves the robot" in refusal(moves_of, Q, skip=["movej"])
-
-
 def test_a_move_within_what_is_passed_over_is_made():
     found = moves_of("def f():\n" + Q + "\nreturn True\nend\nset_digital_out(1, f())\ntextmsg(f())")
     assert [one.line.number for one in found] == [2, 2]

@@ -173,9 +173,12 @@ def test_files_from_outside_the_models_folder_are_told(tmp_path):
     assert "files outside the model's folder: ../one.xml" in loaded.notes
 
 
+@pytest.mark.filterwarnings("error")  # numbers that overflow say nothing on the terminal
 @pytest.mark.parametrize(
     ("text", "fault", "says"),
     [
+        (mjcf('<body><joint type="slide" axis="1 1e308 0"/><geom size="0.1"/></body>'), BadInput, "axis"),
+        (mjcf(f'<body quat="1 0 0 -inf">{BALL}</body>'), ClearanceError, "finite numbers are needed"),
         (mjcf('<body><geom type="hfield" hfield="h"/></body>',
               '<asset><hfield name="h" file="h.png" size="1 1 1 1"/></asset>'), BadInput, "a hfield is not read"),
         (mjcf('<body><geom type="mesh" mesh="n"/></body>', '<asset><mesh name="n" file="n.stl"/></asset>'),

@@ -64,17 +64,6 @@ def test_each_geom_that_collides_is_an_obstacle_where_it_stands(tmp_path):
     )
 
 
-def test_a_mocap_body_that_collides_is_warned_of_as_bodies_on_joints_are(tmp_path):
-    target = '<body name="target" mocap="true"><geom size="1" contype="0" conaffinity="0"/></body>'
-    cart = f'<body name="cart" mocap="true"><body name="top">{BALL}</body></body>'
-    _, content = scene(tmp_path, mjcf(target + cart))
-    (notice,) = content.notices
-    assert (
-        notice.text
-        == "mocap bodies stand where the file has them, with all that is on them: 'cart'"
-    )
-
-
 def test_a_mesh_that_the_model_turns_is_turned_and_then_scaled(tmp_path):
     found, _ = scene(tmp_path, WORLD)
     tetrahedron = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.3, 0.9]]) - [1, 0, 0]
