@@ -58,80 +58,57 @@ def texts(case, severity):
 def test_the_narrower_limits_hold(tmp_path):
     case = load(tmp_path)
     shoulder, lift = case.robots[0].robot.moving_joints
-    assert (shoulder.lower, shoulder.upper) == (-0.5, 1.0) and (lift.lower, lift.upper) == (
-        0.0,
-        0.1,
-    )
-    assert case.robots[0].motion_limits == {
-        "shoulder": MotionLimit(0.4), "lift": MotionLimit(1.0, 0.5),
-    }  # fmt: skip
+    assert (shoulder.lower, shoulder.upper, lift.lower, lift.upper) == (-0.5, 1.0, 0.0, 0.1)
+    moving = {"shoulder": MotionLimit(0.4), "lift": MotionLimit(1.0, 0.5)}
+    assert case.robots[0].motion_limits == moving
     told = " | ".join(case.notes)
-    assert (
-        "limits.yaml: limits taken: position of shoulder; velocity of all joints; acceleration of lift"
-        in told
-    )
-    assert "wider than the robot file's, which stay: position of shoulder" in told
-    assert "not used: max_acceleration" in told
-    assert (
-        "accelerations are not compared with their limits: the trajectory has no velocities" in told
-    )
+    for said in (
+        "limits.yaml: limits taken: position of shoulder; velocity of all joints; acceleration of lift",
+        "wider than the robot file's, which stay: position of shoulder",
+        "not used: max_acceleration",
+        "accelerations are not compared with their limits: the trajectory has no velocities",
+    ):
+        assert said in told
+
+
+WIDE = (-3.839724354, 3.839724354)
 
 
 @pytest.mark.parametrize(
-    ("limits", "odd"),
+    ("joint", "own", "limits", "odd"),
     [
-        ("min_position: -30, max_position: 30", "position of shoulder"),
-        ("min_position: -0.5, max_position: 10.0", "position of shoulder"),
-        ("min_position: -6.2832, max_position: 6.2832", ""),
-        ("min_position: -0.5, max_position: 0.5", ""),
+        ("shoulder", (-1, 1), (-30, 30), "position of shoulder"),
+        ("shoulder", (-1, 1), (-0.5, 10.0), "position of shoulder"),
+        ("shoulder", (-1, 1), (-6.2832, 6.2832), ""),
+        ("shoulder", (-1, 1), (-0.5, 0.5), ""),
+        # rounded up, and in full turns
+        ("shoulder", WIDE, (-3.84, 3.84), ""),
+        ("shoulder", WIDE, (-4.36, 4.36), ""),
+        ("shoulder", (0.5445, 4.5169), (0.54, 4.52), ""),
+        ("shoulder", (-6.2832, 6.2832), (-6.3, 6.3), ""),
+        ("shoulder", WIDE, (-3.8, 15), "is 15 beside the robot's own 3.8"),
+        ("shoulder", (-0.1, 0.1), (-5, 0.1), "is -5 beside the robot's own -0.1"),
+        # a continuous joint has no limits of its own
+        ("shoulder", None, (-12.57, 12.57), ""),
+        ("shoulder", None, (-90, 90), "position of shoulder is -90, position of shoulder is 90; "),
+        ("lift", (-1, 1), (-0.0001, 0.1), ""),
+        ("lift", (-1, 1), (-0.02, 0.5), ""),
+        ("lift", (-1, 1), (0, 100), "position of lift is 100 beside the robot's own 0.1"),
     ],
 )
-def test_limits_in_another_unit_are_suspect_where_the_robots_own_stay(tmp_path, limits, odd):
-    given = f"joint_limits:\n  shoulder: {{has_position_limits: true, {limits}}}\n"
-    told = texts(load(tmp_path, given), Severity.SUSPECT)
-    assert len(told) == bool(odd)
-    assert all(one.startswith("CHECK UNITS: limits.yaml: ") and odd in one for one in told)
-
-
-@pytest.mark.parametrize(
-    ("own", "limits", "odd"),
-    [
-        ((-3.839724354, 3.839724354), "min_position: -3.84, max_position: 3.84", ""),
-        ((-3.839724354, 3.839724354), "min_position: -4.36, max_position: 4.36", ""),
-        ((0.5445, 4.5169), "min_position: 0.54, max_position: 4.52", ""),
-        ((-6.2832, 6.2832), "min_position: -6.3, max_position: 6.3", ""),
-        ((-3.839724354, 3.839724354), "min_position: -3.8, max_position: 15", "is 15 beside the robot's own 3.8"),
-        ((-0.1, 0.1), "min_position: -5, max_position: 0.1", "is -5 beside the robot's own -0.1"),
-        (None, "min_position: -12.57, max_position: 12.57", ""),
-        (None, "min_position: -90, max_position: 90", "position of shoulder is -90, position of shoulder is 90; "),
-    ],
-)  # fmt: skip
-def test_limits_a_little_beyond_the_robots_own_are_no_suspicion(tmp_path, own, limits, odd):
-    """Rounded up, in full turns, or in degrees; the last joints have no limits of their own."""
+def test_limits_in_another_unit_are_suspect_where_the_robots_own_stay(
+    tmp_path, joint, own, limits, odd
+):
     if own is None:
         urdf = TWO_JOINTS.replace('type="revolute"', 'type="continuous"', 1)
     else:
         urdf = TWO_JOINTS.replace('lower="-1" upper="1"', 'lower="{}" upper="{}"'.format(*own), 1)
-    assert urdf != TWO_JOINTS
-    given = f"joint_limits:\n  shoulder: {{has_position_limits: true, {limits}}}\n"
-    told = texts(load(tmp_path, given, urdf=urdf), Severity.SUSPECT)
+    row = "has_position_limits: true, min_position: {}, max_position: {}".format(*limits)
+    told = texts(
+        load(tmp_path, f"joint_limits: {{{joint}: {{{row}}}}}\n", urdf=urdf), Severity.SUSPECT
+    )
     assert len(told) == bool(odd)
-    assert all(odd in one for one in told)
-
-
-@pytest.mark.parametrize(
-    ("limits", "odd"),
-    [
-        ("min_position: -0.0001, max_position: 0.1", ""),
-        ("min_position: -0.02, max_position: 0.5", ""),
-        ("min_position: 0, max_position: 100", "position of lift is 100 beside the robot's own 0.1"),
-    ],
-)  # fmt: skip
-def test_limits_of_a_slide_are_held_against_its_range(tmp_path, limits, odd):
-    given = f"joint_limits:\n  lift: {{has_position_limits: true, {limits}}}\n"
-    told = texts(load(tmp_path, given), Severity.SUSPECT)
-    assert len(told) == bool(odd)
-    assert all(odd in one for one in told)
+    assert all(one.startswith("CHECK UNITS: limits.yaml: ") and odd in one for one in told)
 
 
 @pytest.mark.parametrize(
@@ -248,6 +225,11 @@ def test_tolerances_are_kept_and_told(tmp_path):
     )
 
 
+def test_tolerances_of_joints_that_the_robot_cannot_move_are_left_out(tmp_path):
+    notes = load(tmp_path, None, CONTROLLERS.replace("shoulder: {", "elbow: {")).notes
+    assert any("joints that the robot cannot move are left out: elbow" in one for one in notes)
+
+
 def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
     flat = "arm: {type: x, joints: [shoulder], constraints: {goal_time: 1, shoulder: {trajectory: 0.05}}}\n"
     (one,) = parse_controllers(flat.encode())
@@ -269,33 +251,21 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
         ("joint_limits:", "limits:", MissingKey, "'joint_limits' is missing; MoveIt's file"),
         ("max_velocity: 0.4", "max_velocity: !feet 20", BadInput, "line 9: the tag '!feet'"),
         ("max_velocity: 0.4", "max_velocity: !degrees x", BadInput, "max_velocity: 'x' is given; a number"),
-    ],
-)  # fmt: skip
-def test_bad_limits_are_one_line(tmp_path, old, new, fault, says):
-    assert old in LIMITS
-    said = refusal(load, tmp_path, LIMITS.replace(old, new), of=fault)
-    assert says in said and "robot.joint_limits: limits.yaml: " in said
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "fault", "says"),
-    [
         ("trajectory: 0.2", "trajectry: 0.2", UnknownKey, "arm: constraints: shoulder: unknown field 'trajectry'"),
         ("trajectory: 0.2", "trajectory: -1", BadInput, "trajectory: -1 is given; 0 or more"),
         ("[shoulder, lift]", "shoulder", BadInput, "joints: 'shoulder' is given; a list of names"),
-        ("shoulder: {", "elbow: {", None, ""),
     ],
 )  # fmt: skip
-def test_bad_controllers_are_one_line(tmp_path, old, new, fault, says):
-    text = CONTROLLERS.replace(old, new)
-    if fault is None:
-        notes = load(tmp_path, None, text).notes
-        assert any(
-            "joints that the robot cannot move are left out: elbow" in note for note in notes
+def test_bad_files_are_one_line(tmp_path, old, new, fault, says):
+    if old in LIMITS:
+        files, place = (LIMITS.replace(old, new),), "robot.joint_limits: limits.yaml: "
+    else:
+        files, place = (
+            (None, CONTROLLERS.replace(old, new)),
+            "robot.controllers: controllers.yaml: ",
         )
-        return
-    said = refusal(load, tmp_path, None, text, of=fault)
-    assert says in said and "robot.controllers: controllers.yaml: " in said
+    told = refusal(load, tmp_path, *files, of=fault)
+    assert says in told and place in told
 
 
 def test_files_of_another_robot_are_refused(tmp_path):

@@ -78,10 +78,8 @@ def test_what_a_robot_holds_is_carried_all_the_time(tmp_path):
 
 def test_a_held_object_has_the_padding_of_its_link(tmp_path):
     padded = MESSAGE.replace("link_name: ghost, padding: 1.0", "link_name: tip, padding: 0.02")
-    assert {name: one.padding for name, one in obstacles_of(tmp_path, padded).items()} == {
-        "post": 0.0,
-        "tool": 0.02,
-    }
+    made = obstacles_of(tmp_path, padded)
+    assert {name: one.padding for name, one in made.items()} == {"post": 0.0, "tool": 0.02}
 
 
 @pytest.mark.parametrize("is_diff", [True, False])
@@ -149,13 +147,16 @@ def test_an_octomap_of_free_cells_is_no_obstacle(tmp_path):
         assert told == (not found)
 
 
+TWO = """robots:
+- {name: left, urdf: arm.urdf, trajectory: path.csv}
+- {name: right, urdf: arm.urdf, trajectory: path.csv}
+scene: cell.yaml
+"""
+
+
 def test_an_object_held_in_a_case_of_several_robots_is_refused_by_name(tmp_path):
-    robots = "".join(
-        f"- {{name: {name}, urdf: arm.urdf, trajectory: path.csv}}\n" for name in ("left", "right")
-    )
-    text = f"robots:\n{robots}scene: cell.yaml\n"
     with pytest.raises(BadInput, match="nothing is called 'tip'; valid: left/base, left/tip"):
-        load_small(tmp_path, text, cell__yaml=MESSAGE)
+        load_small(tmp_path, TWO, cell__yaml=MESSAGE)
 
 
 def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):
@@ -166,9 +167,8 @@ def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):
   default_entry_values: [true, true, false]
 """
     content = content_of(tmp_path, matrix + LISTS)
-    assert content.allow == (("base", "upper"), ("base", "*")) and content.not_by_default == (
-        "tip",
-    )
+    assert content.allow == (("base", "upper"), ("base", "*"))
+    assert content.not_by_default == ("tip",)
     one_way = matrix.replace("[[true, true], [true, false]]", "[[true, false], [true, true]]")
     assert content_of(tmp_path, one_way + LISTS).allow == ()
 
@@ -207,16 +207,12 @@ def test_a_matrix_names_links_that_one_robot_has(tmp_path):
     cell = allowing("upper", "post") + objects(post=1)
     one = load_small(tmp_path, NAMED, cell__yaml=cell)
     assert [row.between for row in one.allow] == [("upper", "post")]
-    robots = "".join(
-        f"- {{name: {name}, urdf: arm.urdf, trajectory: path.csv}}\n" for name in ("left", "right")
-    )
-    text = f"robots:\n{robots}scene: cell.yaml\n"
-    case = load_small(tmp_path, text, cell__yaml=cell)
+    case = load_small(tmp_path, TWO, cell__yaml=cell)
     said = "allowed pairs of the scene's file are left out, as it does not say which robot is meant"
     assert case.allow == () and f"{said}: upper - post" in case.notes
-    case = load_small(tmp_path, text, cell__yaml=cell.replace("upper", "left/upper"))
+    case = load_small(tmp_path, TWO, cell__yaml=cell.replace("upper", "left/upper"))
     assert [row.between for row in case.allow] == [("left/upper", "post")]
-    case = load_small(tmp_path, text, cell__yaml=defaults(post=True) + objects(post=1))
+    case = load_small(tmp_path, TWO, cell__yaml=defaults(post=True) + objects(post=1))
     assert case.allow == () and f"{said}: post - *" in case.notes
 
 

@@ -176,12 +176,8 @@ def test_names_are_made_unique_and_shown(tmp_path):
 
 def test_comments_and_prefixes_are_as_gazebo_takes_them(tmp_path):
     shape = "<!-- gz topic --echo <box> -->" + collision(BOX) + "<gz:policies gz:type='a'/>"
-    document = sdf(model(link(shape)))
-    (made,) = obstacles_of(tmp_path, document).values()
-    assert made.name == "m/l/c"
-    nested = sdf(model(link("<!-- one <!-- two -->" + collision(BOX) + "-->")))
-    (made,) = obstacles_of(tmp_path, nested).values()
-    assert made.name == "m/l/c"
+    for inside in (shape, "<!-- one <!-- two -->" + collision(BOX) + "-->"):
+        assert [*obstacles_of(tmp_path, sdf(model(link(inside))))] == ["m/l/c"]
     with pytest.raises(BadInput, match=r"not XML: .*line 5"):
         obstacles_of(tmp_path, sdf("<!--\n\n-- -->\n<model>"))
 
@@ -299,16 +295,10 @@ def test_a_model_that_is_missing_is_left_out_or_taken_from_elsewhere_where_the_c
     case = with_includes(tmp_path, f"{{'model://crate': skip, '{FUEL}': own/post}}")
     places = {one.name: one.world_from_body[0, 3] for one in case.obstacles}
     assert places == {"post/l/c": 3, "m/l/c": 2}
-    told = [(one.severity, one.text) for one in case.notices]
-    assert told == [
-        (
-            Severity.WARNING,
-            "included models left out, as the case says: 'model://crate'",
-        ),
-        (
-            Severity.WARNING,
-            f"models used in place of others, as the case says: post for '{FUEL}'",
-        ),
+    assert {one.severity for one in case.notices} == {Severity.WARNING}
+    assert [one.text for one in case.notices] == [
+        "included models left out, as the case says: 'model://crate'",
+        f"models used in place of others, as the case says: post for '{FUEL}'",
     ]
     case = with_includes(tmp_path, f"{{'model://crate': 'file://own/post', '{FUEL}': skip}}")
     assert [one.name for one in case.obstacles] == ["post/l/c", "m/l/c"]
@@ -317,34 +307,24 @@ def test_a_model_that_is_missing_is_left_out_or_taken_from_elsewhere_where_the_c
 @pytest.mark.parametrize(
     ("said", "says"),
     [
-        (
-            "{}",
-            'includes: {"model://crate": skip} in the case leaves it out, '
-            "a path in place of skip uses another model",
-        ),
+        ("{}", 'includes: {"model://crate": skip} in the case leaves it out, a path in place of skip uses'),
         ("{'model://crate': skip}", f'includes: {{"{FUEL}": skip}} in the case leaves it out'),
-        (
-            f"{{'model://crate': skip, '{FUEL}': skip, 'model://crat': skip}}",
-            "includes names 'model://crat', which the scene does not include; did you mean 'model://crate'?",
-        ),
+        (f"{{'model://crate': skip, '{FUEL}': skip, 'model://crat': skip}}",
+         "includes names 'model://crat', which the scene does not include; did you mean 'model://crate'?"),
         ("{'model://crate': none}", "there is no model"),
     ],
-)
+)  # fmt: skip
 def test_an_include_that_leads_nowhere_is_refused_with_what_to_say(tmp_path, said, says):
     assert says in refusal(with_includes, tmp_path, said, of=BadInput)
 
 
 def test_includes_of_what_is_no_sdf_file_are_refused(tmp_path):
-    with pytest.raises(BadInput, match="includes: the scene stands in the case itself"):
-        load_small(tmp_path, CASE + "includes: {'model://crate': skip}\n")
+    said = "includes: {'model://crate': skip}\n"
+    told = refusal(load_small, tmp_path, CASE + said, of=BadInput)
+    assert "includes: the scene stands in the case itself" in told
     case = CASE.partition("scene:")[0] + "scene: s.yaml\ntrajectory: path.csv\n"
-    assert "includes are given, and s.yaml is no SDF file" in refusal(
-        load_small,
-        tmp_path,
-        case + "includes: {'model://crate': skip}\n",
-        s__yaml="obstacles: []\n",
-        of=BadInput,
-    )
+    told = refusal(load_small, tmp_path, case + said, s__yaml="obstacles: []\n", of=BadInput)
+    assert "includes are given, and s.yaml is no SDF file" in told
 
 
 def test_new_and_convert_leave_models_out_or_take_others_too(tmp_path, monkeypatch, capsys):
