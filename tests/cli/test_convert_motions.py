@@ -25,7 +25,7 @@ from clearance.formats.motion.trajectory_writer import written
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.formats.making_messages import MESSAGE, ROS2, dumped
-from tests.formats.motion.test_pose_formats import STAMPED, pose
+from tests.formats.motion.test_poses_in_files import STAMPED, pose
 
 
 def convert(*arguments: object) -> int:

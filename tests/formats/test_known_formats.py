@@ -1,4 +1,6 @@
-"""The table of formats: what follows from a row, and what the guide and the schema say of all."""
+"""The table of formats: what follows from a row, what files hold, what the guide and the schema say of all."""
+
+from __future__ import annotations
 
 import json
 from pathlib import Path
@@ -10,6 +12,8 @@ from clearance.case.case_file import load_case
 from clearance.errors import BadInput, BadShape, BadSyntax
 from clearance.extras import LIBRARIES
 from clearance.formats import known_formats
+from clearance.formats.conversion import kind_of
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import (
     ANY,
     FORMATS,
@@ -21,9 +25,15 @@ from clearance.formats.known_formats import (
     written_as,
 )
 from clearance.formats.schema.json_schema import case_schema
-from tests.formats.making import ARM, CASE, cube_stl
+from tests.formats import making_messages, making_moveit
+from tests.formats.making import ARM, CASE, PATH, cube_stl
 from tests.formats.making_case import changed, load_small
+from tests.formats.making_cell import DOOR
+from tests.formats.making_messages import display_trajectory
+from tests.formats.making_mjcf import mjcf
+from tests.formats.making_sdf import sdf
 from tests.formats.making_urdf import BOX, link, robot
+from tests.formats.motion.test_poses_in_files import STAMPED, pose
 from tests.formats.refusal import refusal
 
 GUIDE = Path(__file__).resolve().parents[2] / "scripts" / "docs" / "case_file.md"
@@ -183,3 +193,52 @@ def test_a_robot_without_joints_needs_times_only(tmp_path):
     assert check(case).worst["clearance"] == pytest.approx(0.65, abs=1e-12)
     with pytest.raises(BadShape, match="there is no joint column"):
         load_small(tmp_path, trajectory="time\n0\n1\n")
+
+
+OURS = "# what stands there, pose: none\nobstacles:\n- {name: a, sphere: {radius: 1}, pose: {xyz: [0, 0, 1]}}\n"
+HELD_STATE = {"joint_state": {"name": ["a"], "position": [0.0]}, "attached_collision_objects": []}
+MOVED = {"header": {}, "child_frame_id": "door", "transform": {}}
+
+
+def kind_told(folder, name: str, text: str) -> Kind:
+    (folder / name).write_text(text)
+    return kind_of(folder / name, InputFiles(folder))
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "text"),
+    [
+        ("scene", "a.yaml", OURS),
+        ("scene", "a.json", '{"obstacles": []}'),
+        ("scene", "a.yaml", making_moveit.MESSAGE),
+        ("scene", "a.json", json.dumps({"name": "", "robot_state": HELD_STATE, "world": {}})),
+        ("scene", "a.scene", making_moveit.FIRST),
+        ("scene", "a.world", sdf()),
+        ("scene", "a.xml", mjcf("")),
+        ("trajectory", "a.yaml", making_messages.ROS2),
+        ("trajectory", "a.json", json.dumps(display_trajectory(making_messages.MESSAGE))),
+        ("trajectory", "a.json", json.dumps({"goal": {"trajectory": making_messages.MESSAGE}})),
+        ("trajectory", "a.csv", PATH),
+        ("trajectory", "a.csv", "time;qx;qy;qz;qw\n0;0;0;0;1\n"),
+        ("trajectory", "a.bag", ""),
+        ("poses", "a.yaml", STAMPED),
+        ("poses", "a.json", json.dumps({"header": {}, "poses": [pose(0.0, 1)]})),
+        ("poses", "a.json", json.dumps({"transforms": [MOVED]}, indent=2)),
+        ("poses", "a.csv", DOOR),
+        ("poses", "a.txt", "time [ms];z;y;x_mm;qw;qx;qy;qz\n0;0;0;0;1;0;0;0\n"),
+    ],
+)
+def test_a_file_says_what_it_holds(tmp_path, kind, name, text):
+    assert kind_told(tmp_path, name, text) == kind
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "fault", "says"),
+    [
+        ("a.yaml", "", BadShape, "a.yaml: the file is empty; a trajectory, a scene or poses"),
+        ("a.yaml", "- 1\n- 2\n", BadInput, "the content of this file is not recognised; --kind says it"),
+        ("a.yaml", CASE, BadInput, "this is a case file, not a trajectory, a scene or poses"),
+    ],
+)  # fmt: skip
+def test_what_does_not_is_asked_for_or_refused(tmp_path, name, text, fault, says):
+    assert says in refusal(kind_told, tmp_path, name, text, of=fault)

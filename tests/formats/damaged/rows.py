@@ -30,7 +30,7 @@ from tests.formats.damaged.trees import json_damaged, yaml_damaged
 from tests.formats.making import CUBE, CUBE_TRIANGLES, cube_stl, text_stl
 from tests.formats.making_clouds import pcd, ply, table
 from tests.formats.making_meshes import binary_ply, off, text_ply
-from tests.formats.making_moveit import FIRST
+from tests.formats.making_moveit import FIRST, SECOND
 from tests.formats.making_octree import octree
 from tests.formats.making_step import cylinder_step
 
@@ -129,7 +129,7 @@ def _scenes() -> dict[str, Reader]:
         "scene": Reader("cell.yaml", cases.SCENE, read, yaml_damaged, where, (".yml",)),
         "PlanningScene": Reader("cell.yaml", texts.PLANNING_SCENE, read, yaml_damaged, where),
         "octomap message": Reader("cell.yaml", cells, read, yaml_damaged, where),
-        "scene text": Reader("cell.scene", texts.SCENE_TEXT, read, lines_damaged, where),
+        "scene text": Reader("cell.scene", SECOND.encode(), read, lines_damaged, where),
         "scene text 1": Reader("cell.scene", FIRST.encode(), read, lines_damaged, where),
         "SDF": Reader("cell.sdf", texts.SDF, read, xml_damaged, where, (".world",)),
         "MJCF scene": Reader("world.xml", texts.MJCF, read, xml_damaged, where, (".mjcf",)),

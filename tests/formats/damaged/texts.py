@@ -194,36 +194,6 @@ world:
 is_diff: false
 """
 
-SCENE_TEXT = b"""cell
-* post
-1 0 0
-0 0 0 1
-2
-sphere
-0.25
-0 2 0
-0 0 0 1
-0 0 0 0
-mesh
-4 4
-0 0 0
-1 0 0
-0 1 0
-0 0 1
-0 2 1
-0 1 3
-1 2 3
-0 3 2
-0 2 0
-0 0 0 1
-0 0 0 0
-1
-grip
-0 0 0
-0 0 0 1
-.
-"""
-
 SDF = b"""<?xml version="1.0"?>
 <sdf version="1.7"><world name="w"><frame name="f" attached_to="m"><pose>1 0 0 0 0 0.5</pose></frame>
 <model name="m"><static>true</static><pose>0 0 1 0 0 0</pose>

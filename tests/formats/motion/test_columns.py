@@ -17,7 +17,7 @@ from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.world.plausible_motion import notices_on_motion
 from tests.formats.making import ARM
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
-from tests.formats.motion.test_foreign_tables import read
+from tests.formats.motion.test_joint_tables import read
 from tests.formats.refusal import refusal
 
 ABOVE, BLANKS = "above the header, passed over:", "columns are separated by tabs or blanks"

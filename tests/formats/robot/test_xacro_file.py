@@ -14,7 +14,8 @@ from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot import request as robot_request
 from clearance.formats.robot.request import RobotRequest, load_robot
 from clearance.formats.robot.urdf import xacro_file
-from clearance.formats.robot.urdf.xacro_file import expanded
+from clearance.formats.robot.urdf.xacro_file import expanded, variables_asked
+from clearance.world.case import Source
 from tests.formats.refusal import refusal
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
@@ -217,3 +218,19 @@ def test_it_writes_no_file(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert "File too large" in done.stderr and not (tmp_path / "a").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("<a x='$(env LENGTH)' y='$(optenv WIDTH 0.2)'/>", ("LENGTH", "WIDTH")),
+        ("<a x='$( env _A1 )$(env _A1)'/>", ("_A1",)),
+        ("<a x='$(arg env) $(find env) ${env}'/>", ()),
+    ],
+)
+def test_which_are_asked_for(text, names, tmp_path):
+    path = tmp_path / "robot.urdf.XACRO"
+    path.write_text(text)
+    gone = Source("gone.xacro", "2", 0, str(tmp_path / "gone.xacro"))
+    table = Source("t.csv", "1", len(text), str(path.with_suffix(".csv")))
+    assert variables_asked([gone, Source("r", text, len(text), str(path)), table]) == names

@@ -1,52 +1,118 @@
-"""Poses as people have them: other units and separators in tables, stamped messages; each way told in a note."""
+"""Poses as people have them: tables in any units, stamped messages; no cut-off file is read otherwise."""
 
+from __future__ import annotations
+
+import io
 import json
 import re
 from io import BytesIO
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.cli import run
-from clearance.errors import BadInput, BadTime
+from clearance.errors import (
+    BadInput,
+    BadPose,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+    UnknownKey,
+)
 from clearance.formats.motion.requests import PoseRequest, read_samples
 from tests.formats.making_cell import DOOR, load_cell, write_cell
 from tests.formats.refusal import refusal
 
-STAMPED = """header:
-  stamp:
-    sec: 1700000000
-    nanosec: 100000000
-  frame_id: map
-pose:
-  position:
-    x: 4.0
-    y: 0.0
-    z: 0.0
-  orientation:
-    x: 0.0
-    y: 0.0
-    z: 0.0
-    w: 1.0
----
-header:
-  stamp:
-    sec: 1700000001
-    nanosec: 100000000
-  frame_id: map
-pose:
-  position:
-    x: 4.0
-    y: 1.0
-    z: 0.0
-  orientation:
-    x: 0.0
-    y: 0.0
-    z: 0.6
-    w: 0.8
----
-"""
+TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
+
+
+def samples_of(text, name):
+    data = text.encode()
+    return read_samples(PoseRequest(lambda: io.BytesIO(data)), name)
+
+
+def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():
+    whole = samples_of(TEXT, "door.csv").samples
+    header = TEXT.index("\n") + 1
+    for n in range(len(TEXT)):
+        try:
+            cut = samples_of(TEXT[:n], "door.csv").samples
+        except BadInput:
+            continue
+        assert n > header
+        rows = len(cut.times)
+        assert np.array_equal(cut.times, whole.times[:rows])
+        assert np.array_equal(cut.positions, whole.positions[:rows])
+        assert np.abs(cut.quaternions - whole.quaternions[:rows]).max() < 1e-6
+
+
+@given(st.lists(st.floats(-10, 10, allow_subnormal=False), min_size=4, max_size=4))
+def test_a_quaternion_is_read_or_its_line_is_named(numbers):
+    length = float(np.linalg.norm(numbers))
+    cells = ",".join(map(repr, numbers))
+    try:
+        table = samples_of(f"time,x,y,z,qx,qy,qz,qw\n0,0,0,0,{cells}\n", "a.csv").samples.table()
+    except BadInput as error:
+        assert "a.csv: line 2: the quaternion" in str(error) and abs(length - 1) > 0.9e-3
+    else:
+        assert np.abs(table.quaternions[0] * length - numbers).max() < 1e-12
+
+
+STAMPED = "".join(
+    f"header:\n  stamp: {{sec: {1700000000 + i}, nanosec: 100000000}}\n  frame_id: map\npose:\n"
+    f"  position: {{x: 4.0, y: {i}, z: 0.0}}\n  orientation: {{x: 0.0, y: 0.0, z: {z}, w: {w}}}\n---\n"
+    for i, (z, w) in enumerate([(0.0, 1.0), (0.6, 0.8)])
+)
+
+DIGITS = (
+    "time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0.707,0.707\n2,0,0,0,0.5,0.5,0.5,0.5\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("a.csv", DIGITS), ("a.yaml", STAMPED.replace("0.6", "0.707").replace("0.8", "0.707"))],
+)
+def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(name, text):
+    samples, notes = samples_of(text, name)
+    assert samples.table().quaternions[1].tolist() == pytest.approx(
+        [0, 0, 0.5**0.5, 0.5**0.5], abs=1e-15
+    )
+    told = "1 quaternion is rounded to three digits or so and made of length 1"
+    assert [note for note in notes if "rounded" in note] == [told]
+    assert "0.98994" in refusal(samples_of, text.replace("0.707", "0.7"), name, of=BadInput)
+
+
+HEADER = "time,x,y,z,qx,qy,qz,qw\n"
+FIRST = HEADER + "0,0,0,0,0,0,0,1\n"
+
+
+@pytest.mark.parametrize(
+    ("table", "fault", "says"),
+    [
+        ("", BadSyntax, "the file is empty"),
+        (HEADER, BadShape, "there are no rows"),
+        (HEADER.replace(",qw", ""), MissingKey, "there is no column 'qw'"),
+        (FIRST.replace("time", "when"), MissingKey, "there is no column 'time'"),
+        (FIRST.replace("\n", ",w\n", 1), UnknownKey, "column 'w' is not of a table of poses"),
+        (FIRST.replace("y", "x", 1), DuplicateName, "column 'x' is there twice"),
+        (FIRST + "\n1,0,0,0,0,0,0.1,1\n", BadPose, "line 4: the quaternion [0.0, 0.0, 0.1, 1.0] has"),
+        (HEADER + "0,0,0,0,1e200,0,0,1\n", BadPose, "line 2: the quaternion"),
+        (FIRST + "0,0,0,0,0,0,0,1\n", BadTime, "line 3: time 0.0 follows 0.0"),
+        (HEADER + "0,0,0,nan,0,0,0,1\n", NotFinite, "line 2: nan in column 'z'"),
+        (HEADER + "0,0,0,1e160,0,0,0,1\n", BadPose, "line 2: a position is 1e+160 m away"),
+        (HEADER + "0,0,0,0,0,0,0\n", BadShape, "line 2: 7 columns; the header has 8"),
+        (HEADER + "0,0,0,a,0,0,0,1\n", BadSyntax, "line 2: 'a' in column 'z' is not a number"),
+    ],
+)  # fmt: skip
+def test_faults_name_file_and_row(table, fault, says):
+    assert refusal(samples_of, table, "door.csv", of=fault).startswith(f"door.csv: {says}")
 
 
 def read(text: str | bytes, name: str = "door.yaml", length: str | None = None):
@@ -132,8 +198,8 @@ def test_paths_transforms_and_covariances_are_poses_too():
         for one in stamped
     ]
     expected = read("\n".join(map(json.dumps, stamped)), "a.json")[0]
-    for given in ([path], covered, moved, [{"transforms": moved}]):
-        found = read("\n".join(map(json.dumps, given)), "a.json")[0]
+    for messages in ([path], covered, moved, [{"transforms": moved}]):
+        found = read("\n".join(map(json.dumps, messages)), "a.json")[0]
         assert np.array_equal(found.columns, expected.columns)
         assert found.times.tolist() == [0.0, 2.0]
 
