@@ -166,14 +166,11 @@ def test_a_pcd_file_that_is_not_as_it_says_is_refused(fault):
         (b"//X Y Z\n2\n1 2 3\n4 5 6\n", "line 2: 1 column; three or more: x, y, z; remove a line"),
         (b"1 2 3\n4 5\n", "line 2: 2 columns; there are 3 names"),
         (b"1 2 3\n4 5 a\n", "line 2: 'a' in column 'z' is not a number"),
-        (
-            b"1;2;3,5\n4;5;6.5\n",
-            "line 2: '6.5' in column 'z' is not a number; decimals have commas",
-        ),
+        (b"1;2;3,5\n4;5;6.5\n", "line 2: '6.5' in column 'z' is not a number; decimals have commas"),
         (b"x [mm],y,z\n1,2,3\n", "some of x, y and z name a unit"),
         (b"x [deg],y [deg],z [deg]\n1,2,3\n", "is a length, not in deg"),
     ],
-)
+)  # fmt: skip
 def test_a_table_that_is_no_points_is_refused(data, told):
     assert told in refusal(cloud_from_bytes, data, "a.xyz", 0.01, of=BadInput)
 

@@ -115,14 +115,7 @@ def main() -> None:
         found, firsts, seconds = fuzz(kind, given.how, n_files, given.seed, given.keep)
         faults = {said: n for said, n in found.items() if said not in ("read", "refused")}
         n_faults += sum(faults.values())
-        row = [
-            kind,
-            n_files,
-            found["read"],
-            found["refused"],
-            sum(faults.values()),
-            round(seconds),
-        ]
+        row = [kind, n_files, found["read"], found["refused"], sum(faults.values()), round(seconds)]
         print("| " + " | ".join(map(str, row)) + " |", flush=True)
         for said, n in sorted(faults.items(), key=lambda item: -item[1]):
             print(f"  {n} x {said} (file {firsts.get(said, 'unknown')})", flush=True)

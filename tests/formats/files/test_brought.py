@@ -47,11 +47,7 @@ def robots(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "path"),
-    [
-        ("ur5", "ur/ur5_robot.urdf"),
-        ("robots/c/model.urdf", "c/model.urdf"),
-    ],
+    ("name", "path"), [("ur5", "ur/ur5_robot.urdf"), ("robots/c/model.urdf", "c/model.urdf")]
 )
 def test_a_robot_is_called_by_its_file_or_path(robots, tmp_path, name, path):
     given = f"example-robot-data:{name}"

@@ -166,10 +166,7 @@ INSTANCES = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
     ("document", "says"),
     [
         (changed(DOCUMENT, REQUIRED, ["KHR_draco_mesh_compression"]), "requires the extension"),
-        (
-            changed(DOCUMENT, *PRIMITIVE, "extensions", DRACO),
-            "KHR_draco_mesh_compression, which is not read",
-        ),
+        (changed(DOCUMENT, *PRIMITIVE, "extensions", DRACO), "KHR_draco_mesh_compression, which is not read"),
         (changed(DOCUMENT, "bufferViews", 0, "extensions", MESHOPT), "EXT_meshopt_compression"),
         (changed(DOCUMENT, "nodes", 0, "extensions", INSTANCES), "EXT_mesh_gpu_instancing"),
         (changed(DOCUMENT, "nodes", 0, "skin", 0), "skinned geometry"),
@@ -185,7 +182,7 @@ INSTANCES = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
         (changed(DOCUMENT, "buffers", 0, "uri", "cube.bin"), "not in the file"),
         (changed(DOCUMENT, *PRIMITIVE, "mode", 7), "mode 7"),
     ],
-)
+)  # fmt: skip
 def test_what_would_be_another_surface_is_refused(document, says):
     said = refusal(load, document, of=BadInput)
     assert says in said

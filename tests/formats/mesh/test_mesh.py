@@ -5,14 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from clearance.errors import (
-    BadDimension,
-    BadPolygon,
-    BadSyntax,
-    EmptyMesh,
-    MissingFile,
-    NotFinite,
-)
+from clearance.errors import BadDimension, BadPolygon, BadSyntax, EmptyMesh, MissingFile, NotFinite
 from clearance.formats.mesh.mesh_file import OPEN, mesh_from_bytes, read_mesh, triangles_from_bytes
 from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl, cube_stl, signed_volume, text_stl
 from tests.formats.making_meshes import obj

@@ -73,16 +73,13 @@ def test_a_ply_file_that_is_cut_off_anywhere_is_refused(write, faces):
         (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 8"), "vertex 8"),
         (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 1_0"), "'1_0' is not a whole number"),
         (text_ply(QUADS).replace(b"double z", b"double y"), "'y' is there twice"),
-        (
-            text_ply(QUADS).replace(b"double z", b"triple z"),
-            "header has the line 'property triple z'",
-        ),
+        (text_ply(QUADS).replace(b"double z", b"triple z"), "header has the line 'property triple z'"),
         (text_ply(QUADS).replace(b"vertex_indices", b"texcoord"), "0 lists of vertex indices"),
         (text_ply(QUADS).replace(b"uchar int", b"uchar float"), "vertex indices are fractions"),
         (text_ply(QUADS).replace(b"format ascii", b"format binary"), "not a PLY file"),
         (text_ply([], CUBE), "no faces"),
     ],
-)
+)  # fmt: skip
 def test_a_ply_file_that_does_not_add_up_is_refused(data, says):
     assert says in refusal(mesh_from_bytes, data, "m.ply", of=BadInput)
 

@@ -48,14 +48,11 @@ def test_a_file_cut_off_anywhere_is_refused():
         (HEAD + TAIL, "the STEP file has no faces"),
         (HEAD + "#1=TRIANGULATED_FACE('',1);" + TAIL, "TRIANGULATED_FACE is not read"),
         (HEAD + "#1=DOCUMENT_FILE('other.stp');" + TAIL, "names other files, which are not opened"),
-        (
-            box_step().replace("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.MEGA.,.METRE.)"),
-            "is no length unit",
-        ),
+        (box_step().replace("SI_UNIT(.MILLI.,.METRE.)", "SI_UNIT(.MEGA.,.METRE.)"), "is no length unit"),
         (box_step(uncertainty=1e9), "is given as a length"),
         (box_step(uncertainty=1e5), "its accuracy is 100 m"),
     ],
-)
+)  # fmt: skip
 def test_each_fault_is_one_line(text, says):
     assert says in refusal(step_facts, text.encode(), of=BadSyntax)
 

@@ -43,10 +43,7 @@ WAYS = [
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
     ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", [BLANKS]),
     ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", [BLANKS]),
-    (
-        "# t shoulder lift\r\n0.0 1 2\r\n1.0 3 4\r\n",
-        [BLANKS, "column 't' is taken for time"],
-    ),
+    ("# t shoulder lift\r\n0.0 1 2\r\n1.0 3 4\r\n", [BLANKS, "column 't' is taken for time"]),
     (
         "time\tshoulder\tlift\n0\t1,0\t2\n1\t3\t4,0\n",
         ["columns are separated by tabs or blanks, decimals written with commas"],

@@ -14,11 +14,7 @@ from clearance.errors import (
     NotFinite,
     UnknownKey,
 )
-from clearance.formats.motion.requests import (
-    TrajectoryRequest,
-    parse_trajectory,
-    read_trajectory,
-)
+from clearance.formats.motion.requests import TrajectoryRequest, parse_trajectory, read_trajectory
 from clearance.formats.schema.timed import Choice
 from tests.formats.making_messages import (
     MESSAGE,

@@ -213,13 +213,9 @@ def test_paths_transforms_and_covariances_are_poses_too():
         ([{"poses": [{"position": {"x": 1}}]}], BadInput, r"poses\[0\].*has no header"),
         ([[1]], BadInput, "a list of 1 is not a message"),
         ([pose(0, 2, offset=1)], BadInput, "message 1: unknown field 'offset'"),
-        (
-            [pose(0, 2) | {"pose": pose(0, 2)["pose"] | {"scale": 2}}],
-            BadInput,
-            "pose: unknown field 'scale'",
-        ),
+        ([pose(0, 2) | {"pose": pose(0, 2)["pose"] | {"scale": 2}}], BadInput, "pose: unknown field 'scale'"),
     ],
-)
+)  # fmt: skip
 def test_what_is_no_motion_of_one_thing_is_refused(messages, fault, said):
     assert re.search(said, refusal(read, "\n".join(map(json.dumps, messages)), "a.json", of=fault))
 

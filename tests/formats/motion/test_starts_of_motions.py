@@ -268,12 +268,9 @@ def test_segments_that_are_not_chosen_stand_in_the_headline(tmp_path):
         ({"name": ["a"], "position": []}, "trajectory_start.joint_state: position is"),
         ({"name": ["a"], "position": ["x"]}, "a finite number for each name"),
         ({"name": ["a"], "position": [0.0], "velocity": [1, 2]}, "velocity is"),
-        (
-            {"name": ["a"], "position": [0.0], "velocty": [1]},
-            "unknown field 'velocty'; did you mean 'velocity'",
-        ),
+        ({"name": ["a"], "position": [0.0], "velocty": [1]}, "unknown field 'velocty'; did you mean 'velocity'"),
     ],
-)
+)  # fmt: skip
 def test_a_start_that_is_no_state_is_refused(start, says):
     with pytest.raises(BadInput, match=says):
         read(displayed(plan(point(1.0, 0.1), names=("a",)), {"joint_state": start}))

@@ -42,11 +42,7 @@ def test_a_cubic_that_leaves_the_limits_between_samples_is_told():
 
 @pytest.mark.parametrize(
     ("positions", "velocities"),
-    [
-        ([0.9, 0.9, 0.0], [0.3, -0.3, -1.0]),
-        ([-1.0, 1.0], [0.0, 0.0]),
-        ([0.5], [9.0]),
-    ],
+    [([0.9, 0.9, 0.0], [0.3, -0.3, -1.0]), ([-1.0, 1.0], [0.0, 0.0]), ([0.5], [9.0])],
 )
 def test_what_stays_within_its_limits_is_not(positions, velocities):
     assert notes(positions, velocities) == []

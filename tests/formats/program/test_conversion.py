@@ -285,20 +285,12 @@ def test_a_controller_whose_base_is_not_the_root_asks_for_it():
         ([HOME], {"axes": {"joint_9": {}}}, "axes: unknown joint 'joint_9'"),
         ([HOME], {"axes": {"joint_1": {"axis": 2}, "joint_2": {"axis": 2}}}, "each of 1 to 6 once"),
         ([HOME], {"axes": {"joint_1": {"axis": "E1"}}}, "6 axes are given, and the arm has 5"),
-        (
-            [HOME],
-            {"axes": {"joint_2": {"offset": "90 mm"}}},
-            "'90 mm' is given; a number, or degrees",
-        ),
+        ([HOME], {"axes": {"joint_2": {"offset": "90 mm"}}}, "'90 mm' is given; a number, or degrees"),
         ([ControllerWait(Line(3), 1.0)], {}, "nothing moves"),
         ([HOME, replace(POSE, to=PoseTarget(at(4e8, 0, 0)))], {}, "line 3: a point 4e+08 m away"),
-        (
-            [HOME],
-            {"link": "finger_left"},
-            "axes: joint 'finger_joint' slides, and axes are read as",
-        ),
+        ([HOME], {"link": "finger_left"}, "axes: joint 'finger_joint' slides, and axes are read as"),
     ],
-)
+)  # fmt: skip
 def test_what_has_no_meaning_for_the_robot_is_refused_with_its_line(moves, asked, told):
     said = refusal(made, *moves, **asked)
     assert told in said

@@ -239,10 +239,7 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
             FRAMES + "L P[2] 100mm/sec CNT100 ;",
             "line 8: CNT100 does not say where the corner begins; program: {zones: {CNT100: 0.05}}",
         ),
-        (
-            FRAMES + "L P[1] 100mm/sec FINE ;",
-            "line 8: P[1] was taught in UTOOL 2, and UTOOL_NUM is 1",
-        ),
+        (FRAMES + "L P[1] 100mm/sec FINE ;", "line 8: P[1] was taught in UTOOL 2, and UTOOL_NUM is 1"),
         (FRAMES + "L P[2] 0mm/sec FINE ;", "line 8: a speed of 0 mm/sec; more than 0"),
         ("UFRAME[1]=PR[5] ;\n" + L2 + " ;", "line 9: P[2]: UFRAME[1] is set in the program"),
         (
@@ -251,10 +248,7 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
         ),
         (FRAMES + "L P[6] 100mm/sec FINE ;", "line 8: P[6] has no X; a taught position"),
         (FRAMES + "A P[2] 100mm/sec FINE ;", "line 8: A with 1 points is not read"),
-        (
-            "WAIT DI[1]=ON ;",
-            "line 6: WAIT waits for what is not known: only the controller knows DI[1]",
-        ),
+        ("WAIT DI[1]=ON ;", "line 6: WAIT waits for what is not known: only the controller knows DI[1]"),
         ("IF DI[1]=ON,JMP LBL[1] ;", "line 6: IF decides on JMP at line 6"),
         ("P[2]=P[5] ;\n" + L2 + " ;", "line 9: P[2] is given a value before"),
         ("JMP LBL[1] ;", "line 6: JMP goes to label 1, which is in no block around it"),
@@ -274,7 +268,7 @@ L2 = FRAMES + "L P[2] 100mm/sec FINE"
             "line 11: IF decides on L at line 14, and is not known: 'R[1]' is given a value at line 8",
         ),
     ],
-)
+)  # fmt: skip
 def test_what_a_listing_does_not_decide_is_refused_with_its_line(body, told):
     untaught = point(6, 0.0, 0.0).replace("    0.000  mm,\tY", " ********  mm,\tY")
     said = refusal(program, body, POINTS + point(5, 0.0, 0.0, 7) + untaught, skip=SKIP)

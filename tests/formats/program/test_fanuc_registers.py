@@ -79,8 +79,7 @@ def test_a_position_register_of_the_case_is_seen_from_the_frame_in_force():
         ("PR[5]=P[2] ;\nIF (DI[1]=ON) THEN ;\nPR[5,1]=3 ;\nENDIF ;\n" + L5,
          "'PR[5]' is given a value at line 10"),
         ("PR[5]=P[5] ;\nJ P[1] 9% FINE Offset,PR[5] ;", AWAY),
-        ("PR[5]=P[2] ;\nUFRAME_NUM=2 ;\n" + L5,
-         "PR[5] was taught in UFRAME 1, and UFRAME_NUM is 2"),
+        ("PR[5]=P[2] ;\nUFRAME_NUM=2 ;\n" + L5, "PR[5] was taught in UFRAME 1, and UFRAME_NUM is 2"),
         ("PR[5]=P[1] ;\nUFRAME[1]=PR[5] ;\nL P[2] 9mm/sec FINE ;",
          "UFRAME[1] is set in the program, and is not known: it is no pose"),
         ("UFRAME[1]=PR[5] ;\nL P[2] 9mm/sec FINE ;",
@@ -126,8 +125,7 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
 @pytest.mark.parametrize(
     ("body", "asked", "told"),
     [
-        (WAY, {},
-         'let the file decide it, or program: {variables: {"R[1]": 0}}, if it holds that at the start'),
+        (WAY, {}, 'let the file decide it, or program: {variables: {"R[1]": 0}}, if it holds that at the start'),
         ("DO[5]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {}, "only the controller knows DO[5]; let"),
         (go(2), {"variables": {"DO[1]": 1}}, "variables: DO[1]: 1 is given; true or false"),
         (go(2), {"variables": {"SO[1]": True}}, "variables: 'SO[1]' is given; a register or a signal, as R[1]"),

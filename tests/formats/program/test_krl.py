@@ -238,29 +238,17 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         (FRAMES + "CIRC XP1,XP1,CA 90", "line 9: CA is not read; C_DIS, C_PTP, WITH, or nothing"),
         (FRAMES + "LIN XP1 C_DIS", "line 9: C_DIS: $APO.CDIS, its length, is not in the files"),
         (FRAMES + "$VEL.CP=0\nLIN XP1", "line 10: $VEL.CP is 0; more than 0"),
-        (
-            FRAMES + "PTP XHOME\nLIN {Z 500}",
-            "line 10: the tool's pose before this move is not known",
-        ),
-        (
-            FRAMES + LINE + "\nLIN_REL {A 10}",
-            "line 10: a relative move that turns the tool is not read",
-        ),
+        (FRAMES + "PTP XHOME\nLIN {Z 500}", "line 10: the tool's pose before this move is not known"),
+        (FRAMES + LINE + "\nLIN_REL {A 10}", "line 10: a relative move that turns the tool is not read"),
         (FRAMES + "$IPO_MODE=#TCP\nLIN XP1", "line 10: $IPO_MODE is #TCP: the tool may stand"),
-        (
-            FRAMES + "$TECH[1].MODE=#CYCLE\nLIN XP1",
-            "line 10: $TECH[1] is on: it moves the tool beside its path",
-        ),
+        (FRAMES + "$TECH[1].MODE=#CYCLE\nLIN XP1", "line 10: $TECH[1] is on: it moves the tool beside its path"),
         (
             FRAMES + "$TECH=wave\nLIN XP1",
             "line 10: $TECH is not known: 'WAVE' is in no file that is given; set $TECH",
         ),
         (FRAMES + "$WORLD.X=1.0\nPTP XP1", "line 10: $WORLD is set"),
         (FRAMES + "PTP XP1\n$ROBROOT.Z=1.0\nPTP XP1", "line 11: $ROBROOT changes between moves"),
-        (
-            FRAMES + "$ROBROOT.Z=8E2\nPTP XP1",
-            "base: {on: base, xyz: [0, 0, -0.8], rpy: [0, 0, 0]}",
-        ),
+        (FRAMES + "$ROBROOT.Z=8E2\nPTP XP1", "base: {on: base, xyz: [0, 0, -0.8], rpy: [0, 0, 0]}"),
         (FRAMES + "$ORI_TYPE=#JOINT\nLIN XP1", "line 10: $ORI_TYPE is #JOINT"),
         (FRAMES + "LIN XHOME", "line 9: axes are given; X, Y, Z, A, B and C"),
         (FRAMES + LINE + "\nLIN_REL {X 1,E1 5}", "line 10: a relative move of external axes"),
@@ -272,10 +260,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             FRAMES + LINE + "\nPTP_REL {A6 15}",
             "line 10: the axes before this move are not known: the one before ends at a pose",
         ),
-        (
-            FRAMES + LINE + "\nPTP {A1 15}",
-            "A6, and where it is before is not known: the one before",
-        ),
+        (FRAMES + LINE + "\nPTP {A1 15}", "A6, and where it is before is not known: the one before"),
         ("PTP {A1 ATAN2(1,1)}", "line 7: a position is not known: ATAN2 is not read"),
         (FRAMES + f"CIRC $POS_ACT,{{X 0,Y 9,Z 0,{DOWN}}}", "line 9: the target is not known"),
         (
@@ -288,10 +273,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
             "SIGNAL open $IN[7]\nIF open THEN\nPTP XHOME\nENDIF",
             "line 8: IF decides on PTP at line 9, and is not known: only the controller knows $IN[7]",
         ),
-        (
-            "WAIT FOR $IN[3]",
-            "line 7: WAIT FOR waits for what is not known: only the controller knows $IN[3];",
-        ),
+        ("WAIT FOR $IN[3]", "line 7: WAIT FOR waits for what is not known: only the controller knows $IN[3];"),
         (
             "grip()",
             "line 7: 'GRIP' is no known instruction, and may move the robot; program: {beside: [GRIP.src]}",
@@ -306,7 +288,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ("PTP {A1 0, A2 -90", "line 7: the line ends; ',' or '}' is needed"),
         ("FOR I=1 TO 3\nPTP XHOME", "line 7: FOR has no ENDFOR before 'END' at line 9"),
     ],
-)
+)  # fmt: skip
 def test_what_the_files_do_not_decide_is_refused_with_its_line(body, told):
     text = f"{HEAD}{body}\n" + ("" if body.endswith("EN") else "END\n")
     said = refusal(read, "weld.src", text, {"weld.dat": POINTS.encode()})

@@ -250,7 +250,7 @@ def test_a_new_case_moves_between_keyframes_and_rests_in_one(tmp_path, monkeypat
 
 LOWERED = mjcf(
     '<body name="a" pos="0.1 0 1" euler="0 0 90"><freejoint name="root"/>'
-    f'<geom size="0.1"/><body name="b" pos="1 0 0"><joint name="j" ref="20"/>{BALL}</body></body>',
+    f'<geom size="0.1"/><body name="b" pos="1 0 0"><joint name="j" ref="20"/>{BALL}</body></body>'
 )
 """A ball 1 m up, a quarter turn about z, and another on a hinge that is at 20 degrees as it is written."""
 ONLY_X = "time,root/x\n0,0.1\n1,0.6\n"

@@ -176,13 +176,7 @@ def test_a_default_namespace_changes_nothing(tmp_path):
         assert [j.name for j in found.joints] == [j.name for j in expected.joints]
 
 
-@pytest.mark.parametrize(
-    "empty",
-    [
-        collision('<box size="0 0.0 .0"/>'),
-        "<collision/>",
-    ],
-)
+@pytest.mark.parametrize("empty", [collision('<box size="0 0.0 .0"/>'), "<collision/>"])
 def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, empty):
     arm = load_robot(tmp_path, robot(link(BOX + empty), link(empty, "b"), joint("j", "a", "b")))
     assert [body.name for body in arm.bodies] == ["a"]
@@ -256,10 +250,7 @@ def test_visual_shapes_that_reach_far_out_of_the_collision_shapes_are_warned_of(
             "link 'a' by 0.45 m; add collision shapes, or give robot: {geometry: visual}"
         ]
     assert warned(fingers, "visual") == []
-    for near in (
-        _seen('<box size="0.2 0.2 0.2"/>', 0.0),
-        _seen('<sphere radius="0.001"/>', 1.0),
-    ):
+    for near in (_seen('<box size="0.2 0.2 0.2"/>', 0.0), _seen('<sphere radius="0.001"/>', 1.0)):
         assert warned(near) == []
 
 

@@ -110,8 +110,7 @@ def test_rotations_are_read_as_they_are_written(tmp_path, text):
 
 
 @pytest.mark.parametrize(
-    "shape",
-    ["", "<sphere><radius>0</radius></sphere>", "<box><size>0 0.0 0</size></box>"],
+    "shape", ["", "<sphere><radius>0</radius></sphere>", "<box><size>0 0.0 0</size></box>"]
 )
 def test_collisions_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, shape):
     document = sdf(model(link(collision(), collision(shape, name="d"), "<collision name='e'/>")))
