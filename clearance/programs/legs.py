@@ -237,9 +237,11 @@ def _stretch(arm: Arm, start: np.ndarray, move: PathMove, joints: np.ndarray) ->
     if move.keeps_orientation:
         end = end.copy()
         end[:3, :3] = start[:3, :3]
-    found = line(start, end) if move.via is None else arc(start, move.via, end, move.along)
-    if not found.length <= LONGEST:
-        raise BadProgram(f"a way of {found.length:.3g} m", valid=f"{LONGEST:g} m or less")
+    with np.errstate(over="ignore"):  # a way so long is refused
+        found = line(start, end) if move.via is None else arc(start, move.via, end, move.along)
+        length = found.length
+    if not length <= LONGEST:
+        raise BadProgram(f"a way of {length:.3g} m", valid=f"{LONGEST:g} m or less")
     return replace(found, joints_on_path=joints_on_path(arm, move.hold, joints, move.free))
 
 
