@@ -10,8 +10,6 @@ from random import Random
 import mujoco  # noqa: F401 - its import starts a process, so it comes before any test
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from clearance.errors import BadInput
 from clearance.formats.known_formats import ANY, FORMATS, Kind
@@ -54,19 +52,9 @@ def soundly(kind: str, data: bytes, folder: Path) -> str:
 @pytest.mark.parametrize("kind", KINDS)
 def test_files_of_another_structure_are_read_or_refused(kind, tmp_path, capfd):
     reader = READERS[kind]
-    n_examples = share_of(4 if kind == "STEP" else 25)
-
-    @settings(
-        max_examples=n_examples,
-        derandomize=True,
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(st.builds(reader.damage, st.just(reader.valid), st.randoms(use_true_random=False)))
-    def holds(data):
-        assert soundly(kind, data, tmp_path) in ("read", "refused")
-
-    holds()
+    for seed in range(share_of(4 if kind == "STEP" else 25)):
+        data = reader.damage(reader.valid, Random(seed))
+        assert soundly(kind, data, tmp_path) in ("read", "refused"), seed
     assert capfd.readouterr() == ("", "")
 
 

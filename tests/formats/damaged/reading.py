@@ -59,9 +59,12 @@ def among(files: dict[str, bytes], read: Callable[[Path, str], object]) -> Read:
     """A reader of a folder with these files, of which one is damaged or beside which it is."""
 
     def reads(data: bytes, folder: Path, name: str) -> object:
-        for other, content in (files | {name: data}).items():
-            (folder / other).parent.mkdir(exist_ok=True)
-            (folder / other).write_bytes(content)
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        for other, content in files.items():
+            if not (folder / other).exists():
+                (folder / other).write_bytes(content)
+        path.write_bytes(data)
         return read(folder, name)
 
     return reads
@@ -134,7 +137,9 @@ def _bag(path: Path) -> object:
 
 def _bag_folder(path: Path) -> object:
     """A bag that is a folder, of which the file beside the messages is damaged."""
-    (path.parent / "run.db3").write_bytes(bags.bag("rosbag2 sqlite3"))
+    messages = path.parent / "run.db3"
+    if not messages.exists():
+        messages.write_bytes(bags.bag("rosbag2 sqlite3"))
     return _bag(path.parent)
 
 

@@ -9,8 +9,11 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable
+from functools import cache
 from random import Random
 from typing import Any
+
+from ruamel.yaml import YAML
 
 
 class Bare(str):
@@ -45,13 +48,15 @@ Slot = tuple[Any, Any]
 
 def yaml_damaged(valid: bytes, random: Random) -> bytes:
     """A YAML file of which values, keys or parts are exchanged, in all its documents."""
-    from ruamel.yaml import YAML
-
-    text = valid.decode()
-    documents = [one for one in YAML(typ="safe", pure=True).load_all(text) if one is not None]
-    documents = json.loads(json.dumps(documents, default=str))  # aliases are values of their own
-    damaged = tree_damaged(documents, random, ODD + YAML_ONLY)
+    damaged = tree_damaged(_documents(valid), random, ODD + YAML_ONLY)
     return "---\n".join(_block(one) for one in damaged).encode()
+
+
+@cache
+def _documents(valid: bytes) -> list[Any]:
+    """What a file of YAML holds; aliases are values of their own."""
+    read = YAML(typ="safe", pure=True).load_all(valid.decode())
+    return json.loads(json.dumps([one for one in read if one is not None], default=str))
 
 
 def json_damaged(valid: bytes, random: Random) -> bytes:
@@ -93,16 +98,8 @@ def _change_number(slots: list[Slot], random: Random, odd: tuple[Any, ...]) -> N
     numbers = [(held, key) for held, key in slots if isinstance(held[key], int | float)]
     held, key = random.choice(numbers or slots)
     value = held[key] if isinstance(held[key], int | float) else 0
-    changed = (
-        -value,
-        value + 1,
-        value - 1,
-        value / 1000,
-        value * 1000.0,
-        value * 1e6,
-        str(value),
-        [value],
-    )
+    factors = (-value, value + 1, value - 1, value / 1000, value * 1000.0, value * 1e6)
+    changed = (*factors, str(value), [value])
     held[key] = random.choice(changed)
 
 

@@ -106,7 +106,7 @@ def test_a_face_that_its_corners_do_not_lie_on_is_refused():
         solid(place + rest)
 
 
-@pytest.mark.parametrize("share", [0.3, 0.9])
+@pytest.mark.parametrize("share", [0.9])
 def test_a_file_with_a_part_missing_is_refused(share):
     text = box_step()
     begin = text.index("DATA;") + int(

@@ -96,15 +96,17 @@ PAIRS = mjcf(
     '<body name="a" pos="0.1 0.2 0.3" euler="10 20 30"><joint/><geom {}/></body>'
     '<body name="b" pos="1.5 1.2 0.9" euler="50 10 0"><joint/><geom {}/></body>'
 )
-FLAT = ('type="box" size="0.1 0.2 0.3"',)
+BOX = 'type="box" size="0.1 0.2 0.3"'
 ROUND = (
     'type="sphere" size="0.2"', 'type="capsule" size="0.1 0.4"', 'type="cylinder" size="0.2 0.3"',
     'type="capsule" fromto="0 0 0 0.3 0.2 0.1" size="0.1"',
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("first", [*FLAT, *ROUND])
-@pytest.mark.parametrize("second", [*FLAT, *ROUND[:2]])
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [(BOX, BOX), *((BOX, one) for one in ROUND), (ROUND[0], ROUND[1]), (ROUND[1], ROUND[3])],
+)
 def test_distances_are_mujocos_within_the_facets(tmp_path, first, second):
     robot = load_mjcf(tmp_path, PAIRS.format(first, second))
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "toy.xml"))

@@ -34,18 +34,18 @@ def test_bodies_are_links_and_the_world_is_the_root(tmp_path):
 
 
 SEEN = mjcf(
-    f'<body name="a"><joint/>{BALL}<geom size="0.2" contype="0" conaffinity="0" group="2"/></body>'
-    '<body name="b"><geom size="0.3" contype="0" conaffinity="0"/></body>'
-    f'<body name="c"><geom size="0.4" group="3"/></body>'
+    f'<body name="a"><joint/>{BALL}<geom size="0.12" contype="0" conaffinity="0" group="2"/></body>'
+    '<body name="b"><geom size="0.03" contype="0" conaffinity="0"/></body>'
+    f'<body name="c"><geom size="0.04" group="3"/></body>'
 )
 
 
 @pytest.mark.parametrize(
     ("geometry", "radii"),
     [
-        ("collision", {"a": 0.1, "c": 0.4}),
-        ("visual", {"a": 0.2, "b": 0.3}),
-        ("collision_or_visual", {"a": 0.1, "b": 0.3, "c": 0.4}),
+        ("collision", {"a": 0.1, "c": 0.04}),
+        ("visual", {"a": 0.12, "b": 0.03}),
+        ("collision_or_visual", {"a": 0.1, "b": 0.03, "c": 0.04}),
     ],
 )
 def test_geoms_collide_or_are_seen(tmp_path, geometry, radii):

@@ -95,7 +95,7 @@ def test_a_robot_that_stands_elsewhere_in_the_scene_than_in_the_case_is_suspect(
 ):
     state = f"multi_dof_joint_state: {{joint_names: [vj], transforms: [{{translation: {{x: {x}, y: 0, z: 0}}}}]}}"
     given = NAMED.replace("arm.urdf", f"arm.urdf, base: {{xyz: [{base}, 0, 0]}}")
-    message = f"robot_state: {{{state}}}\nworld: {{collision_objects: [{BALL % 'odom'}]}}\n"
+    message = f"robot_state: {{{state}}}\nworld: {{collision_objects: [{CRATE % 'odom'}]}}\n"
     case = load_small(tmp_path, given, cell__yaml=message)
     told = [one.severity for one in case.notices if one.kind == "frame" and "'vj'" in one.text]
     assert told == [Severity.SUSPECT] * is_told
@@ -115,7 +115,7 @@ def test_joints_that_rest_elsewhere_than_the_scene_has_them_stand_in_the_headlin
 ):
     """The shoulder is moved by a trajectory."""
     given = NAMED.replace("arm.urdf", f"arm.urdf{joints}")
-    message = f"robot_state: {{joint_state: {{{state}}}}}\nworld: {{collision_objects: [{BALL % 'world'}]}}\n"
+    message = f"robot_state: {{joint_state: {{{state}}}}}\nworld: {{collision_objects: [{CRATE % 'world'}]}}\n"
     found = load_small(tmp_path, given, urdf=TWO_JOINTS, cell__yaml=message).notices
     texts = [one.text for one in found if one.kind == "rest"]
     assert len(texts) == bool(told)
@@ -223,8 +223,8 @@ def test_rows_of_an_object_of_several_shapes_are_of_them_all(tmp_path):
     assert content_of(tmp_path, matrix + LISTS).allow == (("can/*", "base"),)
 
 
-BALL = "{id: a, header: {frame_id: %s}, primitives: [{type: 2, dimensions: [1]}]}"
-FRAMED = f"world: {{collision_objects: [{BALL}]}}\n"
+CRATE = "{id: a, header: {frame_id: %s}, primitives: [{type: 1, dimensions: [1, 1, 1]}]}"
+FRAMED = f"world: {{collision_objects: [{CRATE}]}}\n"
 
 
 @pytest.mark.parametrize(
