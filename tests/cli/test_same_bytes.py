@@ -14,6 +14,7 @@ import pytest
 from clearance.record.every_pair import EveryPair
 from tests.cart import ROOT, files
 
+ASKED = ["--quiet", "--need", "pairs", "--fail-mm", "1"]
 FILL = ("17", "99")
 """What glibc fills memory with that it hands out; pyarrow is told to ask it. Elsewhere chance has to do."""
 
@@ -21,13 +22,13 @@ FILL = ("17", "99")
 @pytest.mark.cold
 def test_every_file_of_a_report(tmp_path: Path) -> None:
     """Seconds each: two whole runs, with report and page, in processes of their own."""
-    case = ROOT / "scenes" / "iiwa_pipe_rack" / "case.yaml"
+    case = ROOT / "scenes" / "box_pipe" / "case.yaml"
     reports = []
     for fill in FILL:
         out = tmp_path / fill / "report"
         memory = {"MALLOC_PERTURB_": fill, "ARROW_DEFAULT_MEMORY_POOL": "system"}
         subprocess.run(
-            [sys.executable, "-m", "clearance", "check", case, "--quiet", "--out", out, "--need", "pairs"],
+            [sys.executable, "-m", "clearance", "check", case, *ASKED, "--out", out],
             env={**os.environ, "PYTHONPATH": str(ROOT), **memory}, check=True,
         )  # fmt: skip
         reports.append(files(out))
