@@ -116,12 +116,6 @@ def test_a_motion_of_which_samples_do_not_say_all_is_refused(
     assert says in told and "name the file itself in a case" in told
 
 
-def test_a_late_first_point_stays_one_in_a_message(tmp_path):
-    (tmp_path / "a.yaml").write_text(LATE)
-    assert convert(tmp_path / "a.yaml", tmp_path / "b.json") == 0
-    assert parse_trajectory((tmp_path / "b.json").read_bytes(), "b.json").has_way_in
-
-
 @pytest.mark.parametrize("name", ["a [deg]", "time", "b/velocity", "x\ty;z"])
 def test_names_that_a_table_would_read_otherwise_are_refused(name):
     trajectory = Trajectory(np.arange(2.0), (name,), np.ones((2, 1)))

@@ -290,12 +290,6 @@ def test_joints_that_cannot_be_at_zero_rest_at_their_limit(capsys):
     assert load_case("out/case.yaml").robots[0].fixed_positions == {"lift": 0.05}
 
 
-def test_check_leaves_with_the_exit_code_of_the_check_and_a_report():
-    Path("cell/scene.yaml").write_text("obstacles: [{name: b, box: {size: [1, 1, 1]}}]\n")
-    assert new(*USUAL, "--check") == 1
-    assert Path("out/report/report.html").is_file()
-
-
 @pytest.mark.parametrize(
     ("words", "says"),
     [

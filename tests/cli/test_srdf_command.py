@@ -56,15 +56,6 @@ def test_pairs_that_never_meet_are_proven(robot, capsys):
     assert any(line.startswith("  lower - upper  Adjacent  can meet") for line in told)
 
 
-@pytest.mark.slow
-def test_a_pair_that_can_meet_is_told_first_with_its_pose(robot, capsys):
-    assert run(["srdf", "audit", *robot(upper=0.4)]) == 1
-    told = capsys.readouterr().out.splitlines()
-    assert told[0] == "of 1 pair excused as Never: 1 can meet"
-    assert told[1].startswith("  base - upper   Never     can meet at shoulder ")
-    assert ", elbow " in told[1] and told[1].endswith("°")
-
-
 def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsys):
     urdf, _ = robot()
     out = tmp_path / "made.srdf"
@@ -90,21 +81,6 @@ def test_neighbours_that_lie_apart_at_home_and_can_meet_fail_an_audit(robot, cap
     assert run(["srdf", "audit", urdf, srdf, "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
     assert objections("audit", found) == [] and found["adjacent_refuted"] == 1
-
-
-def test_a_proposal_excuses_no_neighbours_that_are_apart_at_home_and_can_meet(
-    robot, tmp_path, capsys
-):
-    """The arm's upper link begins 50 mm beyond its joint: folded back, it lies in the lower one."""
-    urdf, _ = robot(upper=0.25)
-    Path(urdf).write_text(Path(urdf).read_text().replace('"-2" upper="2"', '"-3" upper="3"'))
-    assert run(["srdf", "make", urdf]) == 0
-    told = capsys.readouterr().out
-    assert "<!-- measured: lower - upper: can meet at elbow " in told
-    (tmp_path / "made.srdf").write_text(told)
-    matrix = load_srdf(tmp_path / "made.srdf", load_robot(urdf))
-    assert matrix.reason("lower", "upper") is None
-    assert matrix.reason("base", "lower") == "Adjacent"
 
 
 def test_bad_input_is_one_line_and_2(robot, refusal):

@@ -98,23 +98,6 @@ def test_a_name_is_of_case_rule_bodies_and_occurrence_alone():
     assert len(name.id) == 16
 
 
-@pytest.mark.slow
-def test_a_program_that_runs_slower_and_a_little_beside_keeps_its_names():
-    """Other times, other coordinates, more samples: the same names."""
-    before = run("iiwa_pipe_rack", RACK, "limit")
-    (placed,) = before.record.case.robots
-    given = placed.given_trajectory
-    n = 2 * given.n_steps - 1
-    at = np.linspace(0, given.n_steps - 1, n)
-    columns = [np.interp(at, np.arange(given.n_steps), c) for c in given.positions.T]
-    positions = np.column_stack(columns) + 2e-4
-    times = 1.7 * np.interp(at, np.arange(given.n_steps), given.times) + 3.0
-    slower = before.record.case.with_trajectory(times, positions)
-    after = cl.check(slower, need="limit", limits=RACK)
-    names = [{finding.id for finding in findings_of(one)} for one in (before, after)]
-    assert names[0] == names[1]
-
-
 def test_joints_beyond_their_limits_are_a_finding_a_robot():
     notices = tuple(
         Notice(Severity.VIOLATED, "joint limits", f"{name}: elbow by {by} rad", name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import re
 import subprocess
 import sys
@@ -91,17 +90,6 @@ def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester
     assert f"page: {page}" in told and page.is_file()
     assert "Traceback" not in told and "collected.py" not in told
     assert "--clearance-out DIR writes the page" in inside().stdout.str()
-
-
-def test_each_case_has_a_report_of_its_own(inside, pytester):
-    for folder, name, gates in (("weld", "a-x", BROKEN), ("weld-a", "x", CLEAR)):
-        (pytester.path / folder).mkdir()
-        write_case(pytester.path / folder, gates, name=f"{name}.clearance.yaml")
-    result = inside("--clearance-out", "reports")
-    result.assert_outcomes(passed=2, failed=2)
-    assert "_ weld/a-x.clearance.yaml: verdict _" in result.stdout.str()
-    summary = pytester.path / "reports" / "weld" / "a-x.clearance.yaml" / "summary.json"
-    assert not json.loads(summary.read_text())["passed"]
 
 
 def test_a_case_that_is_refused_leaves_no_older_report_green(inside, pytester):
@@ -278,16 +266,6 @@ def test_suspect_input_is_never_clear_whichever_pair_is_asked_about(tmp_path):
             assert_clear(suspect, **asked)
     accepted = dataclasses.replace(suspect.record.case, accept=("units",))
     assert_clear(cl.check(accepted, need="limit"), between=("box", A))
-
-
-def test_pairs_that_are_not_there_are_an_error_with_the_nearest_name(run):
-    for between, told in (
-        (("box", "gate_aa"), "did you mean 'gate_a'?"),
-        ((A, B), "no pair is measured between"),
-    ):
-        with pytest.raises(BadInput, match="no") as error:
-            assert_clear(run, between=between)
-        assert told in str(error.value)
 
 
 def test_what_is_asked_is_proven_whatever_the_run_is(tmp_path):
