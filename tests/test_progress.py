@@ -57,3 +57,12 @@ def test_commands_are_within_it(name, monkeypatch, capsys):
         asked = [*asked, "--quiet"]
         assert run(asked) == ExitCode.INTERRUPTED
         assert capsys.readouterr().err == "interrupted\n"
+
+
+def test_a_part_that_shows_nothing_itself_is_named_by_the_whole(monkeypatch, capsys):
+    end = counted_end(monkeypatch, 1)
+    with never_silent(lambda: "gain"), never_silent(lambda: "a Checker"):
+        with doing(lambda: "searching"):
+            pass
+        end.pass_all()
+    assert capsys.readouterr().err == "a Checker, 10 s so far\n"

@@ -143,3 +143,13 @@ def test_a_baseline_that_cannot_be_one_is_refused_before_anything_is_measured(fo
         capsys.readouterr()
         assert batch(out, "--baseline", baseline) in (2, 4)
         assert told in capsys.readouterr().err and sorted(folder.rglob("*")) == before
+
+
+def test_less_that_is_known_and_new_suspect_input_alarm(folder, capsys):
+    assert batch("new", "--samples-only") == 1
+    code, lines = compared(capsys)
+    assert code == 1 and lines[0].startswith(
+        "since the baseline: NEW, WORSE OR LESS KNOWN in 4 cases"
+    )
+    known = "less is known: the motion was proven, and now only the samples are measured"
+    assert lines[1] == f"{known} (t000 and 3 more)"

@@ -307,3 +307,11 @@ def test_on_the_command_line(tmp_path, refusal, capsys):
     assert "body gaps   " in capsys.readouterr().out
     told = refusal("check", file, "--body-gaps", "--need", "minimum")
     assert "body gaps need the least of every pair" in told
+
+
+def test_padding_is_told_where_there_is_some():
+    wall = box("wall", (0.1, 1, 1), at(1.6), padding=0.01)
+    case = cell(WIDE, (sliding("arm", LEFT),), (wall,), ())
+    moment = read(moments_text(cl.check(case)))["moments"][0]
+    assert moment["padding"] == 0.01
+    assert moment["distance"] == pytest.approx(moment["clearance"] + 0.01, abs=1e-15)
