@@ -6,6 +6,7 @@ import pytest
 import clearance as cl
 from clearance.geometry import boolean, decompose
 from clearance.geometry.convex_parts import convex_parts, hull_drawn_in
+from clearance.geometry.envelope import envelope
 from tests.made_cases import l_prism
 
 L_VOLUME = 4.0  # a 2 x 1 foot and a 1 x 2 stem, 1 thick
@@ -103,3 +104,14 @@ def test_a_dented_hull_is_drawn_in_below_its_dent(dent):
     )
     said = "its hull stands for it, its dents are at most 0.05 mm deep"
     assert (parts.note == said) == parts.tight == (dent < 0.001)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_an_envelope_holds_its_points(seed):
+    points = np.random.default_rng(seed).normal(size=(300, 3)) * [1.0, 0.3, 0.01] + [
+        10.0,
+        0.0,
+        -5.0,
+    ]
+    rows = envelope(points).half_spaces
+    assert (points @ rows[:, :3].T + rows[:, 3]).max() <= 1e-11

@@ -209,6 +209,7 @@ BENT = {"path": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "inner_radius": 0.05, "outer_
         (lambda: sphere(1, 1e-9), "tolerance"),
         (lambda: cylinder(1, 0), "length"),
         (lambda: cylinder(1, 1, sections=2), "sections"),
+        (lambda: cylinder(1, 1, tolerance=1e-12), "tolerance"),
         (lambda: capsule(1, -1), "length"),
         (lambda: pipe(inner_radius=-1, outer_radius=1, length=1), "inner_radius"),
         (lambda: pipe(inner_radius=1, outer_radius=1, length=1), "inner_radius"),

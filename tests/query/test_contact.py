@@ -198,6 +198,15 @@ def ball(n, random, centre=(0.0, 0.0, 0.0), radius=1.0):
     return cl.Polytope(radius * points / np.linalg.norm(points, axis=1)[:, None] + centre)
 
 
+@pytest.mark.parametrize("deep", [1.0, 1e-3, 1e-9, 1e-12])
+def test_a_box_pushed_into_a_box_by_d_is_d_deep(deep):
+    a = cl.Polytope.from_polyhedron(cl.box((4.0, 4.0, 4.0)))
+    b = cl.Polytope(a.vertices + [4.0 - deep, 0.25, -0.5])
+    found = penetration(a, b)
+    assert found.depth == pytest.approx(deep, abs=1e-15)
+    assert found.direction.tolist() == [-1.0, 0.0, 0.0]
+
+
 def test_bounds_by_26_directions_are_never_below_the_depth():
     random = np.random.default_rng(9)
     hulls = [cl.Polytope(random.normal(size=(12, 3)) + random.normal(size=3)) for _ in range(10)]

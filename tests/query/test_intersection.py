@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
-from clearance.query import cutting, intersection
+from clearance.query import cutting, intersection, thin
 from clearance.query.common_point import common_point, common_point_paper
 from clearance.query.intersection import intersect
 from tests.examples import first_fast
@@ -229,6 +229,12 @@ def test_boxes_in_any_attitude_that_overlap_little(overlap, shift):
         assert found == pytest.approx(exact, rel=1e-13, abs=0.0)
     else:
         assert found == 0.0
+
+
+def test_a_thin_region_near_too_many_planes_keeps_its_first_digits(monkeypatch):
+    monkeypatch.setattr(thin, "MOST_PLANES", 0)
+    exact, found = exact_and_found(turned(CUBE, 3), turned(CUBE + [1.0 - 1e-9, 0.3, 0.2], 3))
+    assert found == pytest.approx(exact, rel=1e-4)
 
 
 @pytest.mark.slow

@@ -78,10 +78,10 @@ def calls_of(ask: Callable[[], object]) -> dict[str, int]:
 
 
 def scene() -> Case:
-    """An arm of three links that have limits, among boxes."""
+    """An arm of three links that have limits, each in the next, among boxes."""
     posts = [(cl.box((0.1, 0.1, 1.0)), at(x, y)) for x, y in ((0.9, 0.2), (-0.5, 0.6))]
     positions = np.linspace([0.0, 0.1, 0.2], [1.0, -0.4, 0.3], 200)
-    case = arm("arm", [cl.box((0.2, 0.1, 0.1))] * 3, posts, positions)
+    case = arm("arm", [cl.box((0.3, 0.1, 0.1))] * 3, posts, positions)
     (one,) = case.robots
     joints = tuple(
         replace(joint, kind=JointKind.REVOLUTE, lower=-3.0, upper=3.0) for joint in one.robot.joints

@@ -171,6 +171,16 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
         assert said == ["starting anew: the interrupted run had other inputs"]
 
 
+def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
+    case: Case, tmp_path: Path
+) -> None:
+    with open_resumable_rows(tmp_path / "kept", print) as kept:
+        run = cl.check(case, resources=cl.Resources(rows=kept))
+    assert list(run.pair_minima) == list(cl.check(case).pair_minima)
+    run.save(tmp_path / "out")
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
 def test_a_full_disk_is_told_before_anything_is_mapped(
     case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
