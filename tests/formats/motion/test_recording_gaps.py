@@ -223,11 +223,8 @@ def test_a_case_says_what_a_hole_means(tmp_path):
         "assumed: joints stay until one usual interval before their next message (gaps: hold); no position of "
         "shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
     )
-    assert "gaps" in refusal(
-        load_case,
-        write_case(tmp_path, changed("file: path.csv", "file: path.csv, gaps: none"), **files),
-        of=BadInput,
-    )
+    none = changed("file: path.csv", "file: path.csv, gaps: none")
+    assert "gaps" in refusal(load_case, write_case(tmp_path, none, **files), of=BadInput)
     again = changed("file: path.csv", "file: path.csv, gaps: not_measured, after: loop")
     with pytest.raises(BadInput, match="has holes and repeats"):
         load_case(write_case(tmp_path, again, **files))

@@ -55,6 +55,15 @@ def load(folder, message, key="", urdf=TWO_JOINTS, robot="", **files):
     return load_small(folder, case, urdf=urdf, path__json=json.dumps(message), **files)
 
 
+def new_case(folder):
+    """The case that `clearance new` makes of the files of the small case and a scene."""
+    (folder / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
+    files = {"robot": "arm.urdf", "trajectory": "path.json", "scene": "scene.yaml"}
+    asked = [word for key, name in files.items() for word in (f"--{key}", str(folder / name))]
+    assert run(["new", str(folder / "made"), *asked]) == 0
+    return load_case(folder / "made" / "case.yaml")
+
+
 def kinds(case):
     return [one.kind for one in notices_of(case)]
 
@@ -114,11 +123,7 @@ def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
 
 def test_a_new_case_keeps_that_the_way_to_the_first_point_is_not_known(tmp_path, capsys):
     load(tmp_path, LATE)
-    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
-    files = {"robot": "arm.urdf", "trajectory": "path.json", "scene": "scene.yaml"}
-    asked = [word for key, name in files.items() for word in (f"--{key}", str(tmp_path / name))]
-    assert run(["new", str(tmp_path / "made"), *asked]) == 0
-    case = load_case(tmp_path / "made" / "case.yaml")
+    case = new_case(tmp_path)
     assert kinds(case) == ["start"]
     assert "start_state: {shoulder: 0.0, lift: 0.0}" in (tmp_path / "made/case.yaml").read_text()
 
@@ -227,11 +232,7 @@ def test_whole_turns_are_no_other_rest_of_a_continuous_joint(tmp_path, rests, is
 
 def test_a_new_case_has_joints_at_rest_where_the_message_has_them(tmp_path):
     load(tmp_path, MOVE)
-    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
-    files = {"robot": "arm.urdf", "trajectory": "path.json", "scene": "scene.yaml"}
-    asked = [word for key, name in files.items() for word in (f"--{key}", str(tmp_path / name))]
-    assert run(["new", str(tmp_path / "made"), *asked]) == 0
-    case = load_case(tmp_path / "made" / "case.yaml")
+    case = new_case(tmp_path)
     assert case.robots[0].fixed_positions == {"lift": 0.04} and kinds(case) == []
 
 

@@ -129,20 +129,18 @@ def test_a_variable_that_is_imported_is_not_known():
     assert heights(f"{FRAMES}b()\nLIN {at('m')}", b_src=b, config_dat=of_all) == [300, 300]
 
 
+WHEN = "INTERRUPT DECL 9 WHEN $IN[2] DO "
+
+
 def test_an_interrupt_in_a_branch_that_only_the_controller_decides_is_followed():
     """Its routine moves nothing, changes variables at any time, and is asked in what is left out too."""
-    for declared in (
-        "INTERRUPT DECL 9 WHEN $IN[2] DO c()",
-        "GLOBAL INTERRUPT DECL 9 WHEN $IN[2] DO d()",
-    ):
-        routine = "DEF c()\nPTP {A1 9}\nEND\nDEF d()\nINTERRUPT DECL 8 WHEN $IN[3] DO c()\nEND\n"
+    routine = "DEF c()\nPTP {A1 9}\nEND\nDEF d()\nINTERRUPT DECL 8 WHEN $IN[3] DO c()\nEND\n"
+    for declared in (WHEN + "c()", f"GLOBAL {WHEN}d()"):
         branch = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\n{HOME}\nEND\n{routine}"
         assert "line 2: IF decides on INTERRUPT at line 3" in refusal(read, "a.src", branch)
         skipped = f"DEF a()\nb()\n{HOME}\nEND\nDEF b()\n{declared}\nEND\n{routine}"
-        assert re.search(
-            r"line 2: INTERRUPT '[CD]' moves the robot, or may",
-            refusal(read, "a.src", skipped, skip=["b"]),
-        )
+        told = refusal(read, "a.src", skipped, skip=["b"])
+        assert re.search(r"line 2: INTERRUPT '[CD]' moves the robot, or may", told)
     text = f"DEF a()\nIF $IN[1] THEN\n{declared}\nENDIF\nn=1\n{HOME}\nPTP {{A1 n}}\nEND\n"
     text += "DEF d()\nn=2\nEND\n"
     assert "INTERRUPT 'D' may change it at any time" in refusal(read, "a.src", text)
