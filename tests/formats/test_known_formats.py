@@ -209,7 +209,6 @@ def kind_told(folder, name: str, text: str) -> Kind:
     ("kind", "name", "text"),
     [
         ("scene", "a.yaml", OURS),
-        ("scene", "a.json", '{"obstacles": []}'),
         ("scene", "a.yaml", making_moveit.MESSAGE),
         ("scene", "a.json", json.dumps({"name": "", "robot_state": HELD_STATE, "world": {}})),
         ("scene", "a.scene", making_moveit.FIRST),
@@ -217,7 +216,6 @@ def kind_told(folder, name: str, text: str) -> Kind:
         ("scene", "a.xml", mjcf("")),
         ("trajectory", "a.yaml", making_messages.ROS2),
         ("trajectory", "a.json", json.dumps(display_trajectory(making_messages.MESSAGE))),
-        ("trajectory", "a.json", json.dumps({"goal": {"trajectory": making_messages.MESSAGE}})),
         ("trajectory", "a.csv", PATH),
         ("trajectory", "a.csv", "time;qx;qy;qz;qw\n0;0;0;0;1\n"),
         ("trajectory", "a.bag", ""),

@@ -30,18 +30,14 @@ WAYS = [
         "timestamp_ns,shoulder,lift\n0,1,2\n1000000000,3,4\n",
         ["column 'timestamp_ns' is taken for time", "read in nanoseconds: 'time'"],
     ),
-    ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
     ("% time shoulder lift\n0 1 2\n1 3 4\n", [BLANKS]),
-    ("# time,shoulder,lift\n0,1,2\n1,3,4\n", []),
     ("# run 7\n# of arm\ntime,shoulder,lift\n0,1,2\n1,3,4\n", [f"{ABOVE} 'run 7', 'of arm'"]),
     ("\ufeff# run 7, 1 kHz\n\n#time,shoulder,lift\n0,1,2\n1,3,4\n", [f"{ABOVE} 'run 7, 1 kHz'"]),
-    ("# run 7\n# time shoulder lift\n0 1 2\n1 3 4\n", [f"{ABOVE} 'run 7'", BLANKS]),
     (
         "% run; 7\ntime;shoulder;lift\n0;1,0;2\n1;3;4\n",
         [f"{ABOVE} 'run; 7'", "columns are separated by semicolons, decimals written with commas"],
     ),
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
-    ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", [BLANKS]),
     ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", [BLANKS]),
     ("# t shoulder lift\r\n0.0 1 2\r\n1.0 3 4\r\n", [BLANKS, "column 't' is taken for time"]),
     (

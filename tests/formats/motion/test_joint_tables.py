@@ -98,7 +98,6 @@ def read(text: str | bytes, turns=TURNS, **choice):
 DEG = math.pi / 180
 WAYS = {
     "brackets": ("time [s],shoulder [deg],lift [mm]\n0,10,5\n1,20,7\n", {}),
-    "parentheses": ("time (ms),shoulder(deg),lift (mm)\n0,10,5\n1000,20,7\n", {}),
     "endings": ("time_ms,shoulder_deg,lift_mm\n0,10,5\n1000,20,7\n", {}),
     "units": ("time,shoulder,lift\n0,10,5\n1,20,7\n", {"units": DEGREES}),
     "semicolons": ("time;shoulder [deg];lift\n0;10.0;0.005\n1;20;0.007\n", {}),
@@ -107,7 +106,6 @@ WAYS = {
     "time last": ("10,5,0\n20,7,1\n", {"joints": ["shoulder", "lift", "time"], "units": DEGREES}),
     "period": ("shoulder [deg],lift\n10,0.005\n20,0.007\n", {"period": 1.0}),
     "numbers alone": ("\n10;5\n\n20;7\n", {"joints": ["shoulder", "lift"], "period": 1.0, "units": DEGREES}),
-    "commas alone": ("0,0;10,0;5\n1;20;7,0", {"joints": ["shoulder", "lift"], "units": DEGREES}),
 }  # fmt: skip
 
 

@@ -66,9 +66,7 @@ def test_a_tool_that_only_the_controller_knows_is_that_of_the_point_and_told():
 
 
 def test_motions_in_frames_and_by_axes_become_moves_with_their_lines():
-    body = (
-        FRAMES
-        + """  !a remark ;
+    body = """  !a remark ;
 J P[1:HOME] 50% FINE    ;
 L P[2] 250mm/sec CNT50 ACC100    ;
 L P[3] 300cm/min CNT100 TB .10sec,CALL GRIP ;
@@ -77,8 +75,7 @@ C P[2]
 : P[4] 100mm/sec FINE    ;
 WAIT   1.50(sec) ;
 """
-    )
-    found = program(body, zones={"CNT50": 0.02, "CNT": 0.01}, skip=["GRIP"])
+    found = program(FRAMES + body, zones={"CNT50": 0.02, "CNT": 0.01}, skip=["GRIP"])
     home, line, next_, arc, wait = found.moves
     degrees = [10.0, 20.0, -5.0, 0.0, -45.0, 30.0]
     assert np.degrees(home.to.axes) == pytest.approx(degrees) and home.share == 0.5
@@ -100,9 +97,7 @@ WAIT   1.50(sec) ;
 
 
 def test_loops_calls_and_registers_are_resolved():
-    body = (
-        FRAMES
-        + """R[2:speed]=100 ;
+    body = """R[2:speed]=100 ;
 FOR R[1]=1 TO 2 ;
 IF (R[1]=2) THEN ;
 L P[3] R[2]mm/sec FINE ;
@@ -113,9 +108,8 @@ ENDFOR ;
 CALL SUB ;
 L P[4] R[9]mm/sec FINE ;
 """
-    )
     sub = listing("L P[2] R[2]mm/sec FINE ;\nR[2]=50 ;", point(2, 0.0, 0.0)).replace("CELL", "SUB")
-    found = read("CELL.LS", listing(body), {"SUB.LS": sub.encode()}, **CASE)
+    found = read("CELL.LS", listing(FRAMES + body), {"SUB.LS": sub.encode()}, **CASE)
     assert [(move.line.file, move.line.number) for move in found.moves] == [
         *(("", 13), ("", 11), ("SUB.LS", 6), ("", 17))
     ]

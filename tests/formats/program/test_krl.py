@@ -78,9 +78,7 @@ LIN XP1:GRID[1]"""
 
 
 def test_calls_loops_and_what_stays_become_moves_with_their_lines():
-    body = (
-        FRAMES
-        + """$VEL.CP=0.2
+    body = """$VEL.CP=0.2
 LIN {X 0, Y 0, Z 100, A 0, B 0, C 180}
 FOR I=0 TO 2 STEP 2
   stitch(I*10.0, 5)
@@ -95,20 +93,12 @@ DEF stitch(at:IN, deep:IN)
   LIN {X at}
   LIN_REL {Z -deep}
 """
-    )
-    first, one, _, two, down, back, wait, last = moves_of(body)
-    assert [move.line.number for move in (first, one, two, down, back, last)] == [
-        10,
-        21,
-        21,
-        22,
-        14,
-        16,
-    ]
+    first, one, _, two, down, back, wait, last = moves_of(FRAMES + body)
+    numbers = [move.line.number for move in (first, one, two, down, back, last)]
+    assert numbers == [10, 21, 21, 22, 14, 16]
     # x of the base is y of the robot
-    assert place(one) == pytest.approx([0.5, 0.0, 0.4]) and place(two)[1:] == pytest.approx(
-        [0.02, 0.395]
-    )
+    assert place(one) == pytest.approx([0.5, 0.0, 0.4])
+    assert place(two)[1:] == pytest.approx([0.02, 0.395])
     assert place(down) == pytest.approx([0.5, 0.02, 0.39])
     # the tool looks down: its z is the robot's -z; y of the base is -x of the robot
     assert place(back) == pytest.approx([0.5, 0.02, 0.37])
@@ -120,13 +110,7 @@ DEF stitch(at:IN, deep:IN)
 def test_arcs_turn_as_their_types_say_and_a_line_may_keep_the_tool():
     arc = f"CIRC {{X 10, Y 10, Z 0}}, {{X 20, Y 0, Z 0, {DOWN}}}\n"
     start = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}\n"
-    types = (
-        "$ORI_TYPE=#CONSTANT\n"
-        + arc
-        + "$CIRC_TYPE=#PATH\n"
-        + arc
-        + f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
-    )
+    types = f"$ORI_TYPE=#CONSTANT\n{arc}$CIRC_TYPE=#PATH\n{arc}LIN {{X 0, Y 0, Z 0, {DOWN}}}"
     _, plain, constant, tangent, line = moves_of(FRAMES + start + arc + types)
     found = [move.orientation for move in (plain, constant, tangent, line)]
     assert found == ["to", "constant", "tangent", "constant"]
@@ -143,18 +127,15 @@ def test_a_spline_circle_whose_auxiliary_point_turns_the_tool_is_in_the_headline
 
 
 def test_a_move_after_a_kept_rotation_counts_from_the_tool_as_it_is():
-    body = (
-        FRAMES
-        + f"""LIN {{X 0, Y 0, Z 0, {DOWN}}}
+    body = f"""LIN {{X 0, Y 0, Z 0, {DOWN}}}
 $ORI_TYPE=#CONSTANT
 LIN {{X 9, Y 0, Z 0, A 0, B 90, C 0}}
 LIN_REL {{Z 10}} #TOOL"""
-    )
     # the tool still looks down, along the robot's -z
-    assert place(moves_of(body)[-1]) == pytest.approx([0.5, 0.009, 0.29])
+    assert place(moves_of(FRAMES + body)[-1]) == pytest.approx([0.5, 0.009, 0.29])
     circle = f"$CIRC_TYPE=#PATH\nCIRC {{X 4, Y 4, Z 0}}, {{X 8, Y 0, Z 0, {DOWN}}}"
     with pytest.raises(cl.ClearanceError, match="the tool's pose before this move is not known"):
-        moves_of(body.replace("LIN {X 9, Y 0, Z 0, A 0, B 90, C 0}", circle))
+        moves_of(FRAMES + body.replace("LIN {X 9, Y 0, Z 0, A 0, B 90, C 0}", circle))
 
 
 def test_whole_numbers_round_and_divide_as_such():
