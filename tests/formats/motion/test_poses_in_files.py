@@ -9,8 +9,6 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.cli import run
@@ -50,18 +48,6 @@ def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():
         assert np.array_equal(cut.times, whole.times[:rows])
         assert np.array_equal(cut.positions, whole.positions[:rows])
         assert np.abs(cut.quaternions - whole.quaternions[:rows]).max() < 1e-6
-
-
-@given(st.lists(st.floats(-10, 10, allow_subnormal=False), min_size=4, max_size=4))
-def test_a_quaternion_is_read_or_its_line_is_named(numbers):
-    length = float(np.linalg.norm(numbers))
-    cells = ",".join(map(repr, numbers))
-    try:
-        table = samples_of(f"time,x,y,z,qx,qy,qz,qw\n0,0,0,0,{cells}\n", "a.csv").samples.table()
-    except BadInput as error:
-        assert "a.csv: line 2: the quaternion" in str(error) and abs(length - 1) > 0.9e-3
-    else:
-        assert np.abs(table.quaternions[0] * length - numbers).max() < 1e-12
 
 
 STAMPED = "".join(

@@ -139,32 +139,6 @@ def test_a_register_that_decides_is_asked_for(body, asked, told):
     assert told in refusal(names, body, **asked)
 
 
-F, OFF = WAY.replace("R[1]=2", "F[1]=ON"), {"variables": {"F[1]": False}}
-
-
-@pytest.mark.parametrize(
-    ("body", "ends"),
-    [
-        ("F[1]=(!F[1]) ;\n", "3"),
-        ("F[2]=(ON) ;\n", "23"),
-        ("IF DI[1],F[1]=(ON) ;\n", "not known: 'F[1]' is given a value at line 8; let the file decide it, or "
-         'program: {variables: {"DI[1]"'),
-        ("L P[4] 9mm/sec FINE TB .1sec,F[1]=(ON) ;\n", "'F[1]' is given a value on the way of a motion"),
-        ("L P[4] 9mm/sec FINE TB .1sec,P-SPS ;\nF[1]=(ON) ;\n------ ;\n", "may change it at any time"),
-    ],
-)  # fmt: skip
-def test_an_output_or_a_flag_of_the_case_holds_until_the_lines_change_it(body, ends):
-    if "known" in ends or "F[1]" in ends or "time" in ends:
-        assert ends in refusal(names, body + F, **OFF)
-        return
-    found = program(FRAMES + body + F, **OFF)
-    assert [one.to.name for one in found.moves] == [f"P[{one}]" for one in ends]
-    (told,) = found.doubts
-    assert told.endswith(
-        "F[1] of the case decides, which is taken to hold that until these files change it"
-    )
-
-
 @pytest.mark.parametrize(
     ("given", "line"), [({"DO[5]": False}, "GO[1]=255"), ({"GO[5]": 0}, "DO[1]=ON")]
 )

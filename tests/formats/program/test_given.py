@@ -85,7 +85,7 @@ def test_all_values_that_the_files_lack_are_asked_for_at_once(name, text, asked)
 
 HOLDS = "of the case, which is taken to hold that all the time, unless a wait needs another"
 WAY = "the way not taken is not measured;"
-INPUT, UNTIL = f"DI[1] {HOLDS}", "which is taken to hold that until these files change it"
+INPUT = f"DI[1] {HOLDS}"
 NEXT = "LBL[1] ;\nL P[3] 9mm/sec FINE ;"
 
 

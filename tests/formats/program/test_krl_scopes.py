@@ -107,18 +107,6 @@ def test_data_of_a_name_that_two_files_give_to_all_are_not_known():
     assert heights(f"{FRAMES}LIN PT", a_dat=data("a", f"DECL E6POS PT={at(3)}"), **beside) == [3]
 
 
-@pytest.mark.parametrize("order", [("b.src", "b.dat", "c.dat"), ("c.dat", "b.dat", "b.src")])
-def test_types_hold_in_whatever_order_the_case_has_the_files(order):
-    files = {
-        "b.src": f"DEF b()\nm=2.5\nn=6.5\nLIN {at('m')}\nLIN {at('n')}\nEND",
-        "b.dat": data("b", "DECL INT m"),
-        "c.dat": data("c", "DECL GLOBAL INT n"),
-    }
-    beside = {name: files[name].encode() for name in order}
-    found = read("a.src", f"DEF a()\nDECL REAL m\n{FRAMES}b()\nEND\n", beside).moves
-    assert [round(move.to.pose[1, 3] * 1e3, 6) for move in found] == [3, 7]
-
-
 def test_a_variable_that_is_imported_is_not_known():
     of_all, own = data("$CONFIG", "DECL INT m=300"), data("b", "IMPORT INT m IS /R1/c..m", "IMPORT")
     b = f"DEF b()\nLIN {at('m')}\nEND"
