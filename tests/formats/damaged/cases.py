@@ -1,8 +1,22 @@
-"""Small valid files of scenes, batches, waivers and findings. Not for: damaging them (`campaign`)."""
+"""Small valid files of scenes, batches, findings, programs and bags. Not for: damaging them (`campaign`)."""
 
 from __future__ import annotations
 
+import functools
+import tempfile
 from collections.abc import Iterable
+from pathlib import Path
+
+from clearance.findings.doubts import Doubt
+from clearance.findings.finding import AppliedWaiver, Finding
+from clearance.findings.findings_file import FindingList, findings_text
+from clearance.findings.measurement_conditions import (
+    MeasuredPairs,
+    MeasuredRobot,
+    MeasuredRule,
+    MeasurementConditions,
+)
+from tests.formats.making_bags import planned, state, write_bag
 
 SCENE = b"""obstacles:
 - {name: post, pose: {xyz: [2, 0, 0], rpy: [0, 0, 0.5]}, box: {size: [0.1, 0.1, 1]}}
@@ -59,16 +73,6 @@ def _signed(body: Iterable[int]) -> list[int]:
 
 def findings() -> bytes:
     """`findings.json` of one pair that breaks its rule."""
-    from clearance.findings.doubts import Doubt
-    from clearance.findings.finding import AppliedWaiver, Finding
-    from clearance.findings.findings_file import FindingList, findings_text
-    from clearance.findings.measurement_conditions import (
-        MeasuredPairs,
-        MeasuredRobot,
-        MeasuredRule,
-        MeasurementConditions,
-    )
-
     measured = MeasurementConditions(
         need="steps",
         method="exact",
@@ -194,3 +198,29 @@ P[3]{
 };
 /END
 """
+
+
+@functools.cache
+def bag(container: str) -> bytes:
+    """A bag of one planned motion."""
+    return _written(container, {"/plan": [planned([0.1, 0.0], [0.3, 0.05])]})
+
+
+def states(container: str) -> bytes:
+    """A bag of what two joints did."""
+    seen = [state(i, [0.1 * i, 0.2], velocities=[0.1, 0.0]) for i in range(3)]
+    return _written(container, {"/joint_states": seen})
+
+
+def bag_metadata() -> bytes:
+    """What stands beside the messages in a folder of rosbag2 in sqlite3."""
+    with tempfile.TemporaryDirectory() as folder:
+        topics = {"/plan": [planned([0.1, 0.0], [0.3, 0.05])]}
+        path = write_bag(Path(folder) / "made", "rosbag2 sqlite3", topics)
+        return (path / "metadata.yaml").read_bytes()
+
+
+def _written(container: str, topics: dict) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = write_bag(Path(folder) / "made", container, topics)
+        return (next(path.glob("*.db3")) if path.is_dir() else path).read_bytes()

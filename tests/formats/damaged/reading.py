@@ -35,7 +35,7 @@ from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.timed_files import load_trajectory
 from clearance.world.placed_robot import PlacedRobot
-from tests.formats.damaged import bags
+from tests.formats.damaged import cases
 from tests.formats.damaged.texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF, URDF
 from tests.formats.making import cube_stl
 from tests.formats.making_urdf import parse_document
@@ -139,7 +139,7 @@ def _bag_folder(path: Path) -> object:
     """A bag that is a folder, of which the file beside the messages is damaged."""
     messages = path.parent / "run.db3"
     if not messages.exists():
-        messages.write_bytes(bags.bag("rosbag2 sqlite3"))
+        messages.write_bytes(cases.bag("rosbag2 sqlite3"))
     return _bag(path.parent)
 
 

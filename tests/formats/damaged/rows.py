@@ -21,8 +21,8 @@ from clearance.profiles.outline_file import read_outline
 from clearance.sketch import Sketch
 from tests.formats.damaged import cases, reading, texts
 from tests.formats.damaged import meshes as shapes
-from tests.formats.damaged.bags import bag, bag_metadata, states
 from tests.formats.damaged.bytes import Damage, after_header, glb_damaged, parts_damaged
+from tests.formats.damaged.cases import bag, bag_metadata, states
 from tests.formats.damaged.lines import lines_damaged, table_damaged
 from tests.formats.damaged.markup import xml_damaged
 from tests.formats.damaged.reading import by_path

@@ -164,8 +164,8 @@ CALL SUB(3) ;
     ],
 )  # fmt: skip
 def test_a_point_whose_number_is_not_known_or_has_no_position_is_refused(before, motion, told):
-    told = refusal(program, f"{FRAMES}{before}\n{motion}\n")
-    assert told in said and told.startswith("CELL.LS: ")
+    said = refusal(program, f"{FRAMES}{before}\n{motion}\n")
+    assert told in said and said.startswith("CELL.LS: ")
 
 
 def test_other_groups_and_axes_are_external():
