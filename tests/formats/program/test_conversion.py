@@ -200,6 +200,13 @@ def test_a_turn_seen_from_the_path_is_about_one_axis_or_refused(case):
         assert re.search(told, refusal(turn_on_path, start, through, end))
 
 
+def test_a_joint_move_has_the_time_or_the_speed_of_axes_that_it_states():
+    (move,) = made(replace(HOME, share=None, axis_speed=0.8, axis_acceleration=0.7)).program.moves
+    assert (move.ptp.joint_speed, move.ptp.joint_acceleration) == (0.8, 0.7)
+    (move,) = made(replace(HOME, axis_speed=0.8, time=3.0)).program.moves
+    assert move.ptp.time == 3.0 and move.ptp.joint_speed is None
+
+
 def test_times_rest_on_accelerations_unless_all_moves_say_them_or_their_time():
     line = replace(POSE, kind="lin", acceleration=1.2)
     known = (
