@@ -8,8 +8,10 @@ import inspect
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import clearance as cl
@@ -252,3 +254,10 @@ def test_what_other_sources_made_is_not_taken_for_ones_own(room, told, monkeypat
     assert told() == before
     monkeypatch.setattr(room, "package_digest", lambda: "0" * 64)
     assert told() != before
+
+
+def test_rows_of_a_long_run_are_not_those_of_larger_balls():
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    scans = (cl.Obstacle(cl.Body("scan", cl.PointCloud(points, radius))) for radius in (0.01, 0.02))
+    cases = (replace(cell(0), obstacles=(scan,), carries=()) for scan in scans)
+    assert len({fingerprint.fingerprint(case, (), (), ()) for case in cases}) == 2

@@ -3,9 +3,12 @@
 from datetime import date
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from clearance.errors import BadInput, BadSyntax, DuplicateName
-from clearance.plain_yaml import MOST_REPEATED, plain_data
+from clearance.formats.text.yaml_text import flow
+from clearance.plain_yaml import MOST_REPEATED, parse_yaml, plain_data
 
 
 def grown(levels: int, begin: str, holds: str) -> bytes:
@@ -101,3 +104,17 @@ def test_a_day_that_is_none_stays_text():
         "2027-02-30",
         "2027-02-30T25:00:00",
     ]
+
+
+PLAIN = st.recursive(
+    st.integers(-(10**17), 10**17) | st.floats(allow_nan=False, allow_infinity=False) | st.booleans()
+    | st.text(st.characters(exclude_categories=["Cs", "Cc", "Cn", "Zl", "Zp"]), max_size=12),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text("ab -:#,'\"0", max_size=5), inner),
+)  # fmt: skip
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None)
+@given(PLAIN)
+def test_what_is_written_is_read_back(value):
+    assert repr(parse_yaml(f"a: {flow(value)}  # said\n".encode(), "a.yaml")) == repr({"a": value})

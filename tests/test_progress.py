@@ -1,7 +1,10 @@
 """Long work is never silent: a line every ten seconds of a clock that counts, whatever goes on."""
 
+import sys
+
 import pytest
 
+import clearance as cl
 from clearance.cli import progress as shown
 from clearance.progress import doing, never_silent
 from tests.counted_end import counted_end
@@ -66,3 +69,13 @@ def test_a_part_that_shows_nothing_itself_is_named_by_the_whole(monkeypatch, cap
             pass
         end.pass_all()
     assert capsys.readouterr().err == "a Checker, 10 s so far\n"
+
+
+def test_a_checker_is_within_it(monkeypatch, capsys):
+    end = counted_end(monkeypatch, 1)
+    monkeypatch.setattr(
+        "clearance.simulate.measure.checker.AskedPositions", lambda *_: sys.exit(end.pass_all())
+    )
+    with pytest.raises(SystemExit):
+        cl.Checker(cl.load_case("scenes/box_box/case.yaml"))
+    assert capsys.readouterr().err == "a Checker prepares the bodies of its case, 10 s so far\n"

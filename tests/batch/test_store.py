@@ -214,3 +214,27 @@ def test_one_that_is_damaged_is_told_in_one_line(options, item, tmp_path):
         store.write_list([options], [(0, "t0", item, 0)])
         with pytest.raises(BadInput, match="the list of cases is damaged"):
             read_list(store)
+
+
+def test_a_database_of_something_else_is_one_line_and_stays(manifest, tmp_path, capsys):
+    (tmp_path / "out").mkdir()
+    changed(tmp_path / "out", "CREATE TABLE mine (x)")
+    assert run(["batch", str(manifest), "--out", str(tmp_path / "out")]) == 2
+    err = capsys.readouterr().err
+    assert "this is no store" in err and err.count("\n") == 1
+    changed(tmp_path / "out", "INSERT INTO mine VALUES (1)")
+
+
+def test_parts_that_were_measured_elsewhere_are_merged_and_stay(manifest, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = ["batch", str(manifest), "--jobs", "1", "--quiet"]
+    for i in (1, 2):
+        run([*asked, "--out", f"part{i}", "--shard", f"{i}/2"])
+    assert run(["batch", "merge", "out", "part1", "part2"]) == 0
+    assert run([*asked, "--out", "out"]) == 1 and n_rows(tmp_path / "out") == 5
+    run([*asked, "--out", "alone"])
+    assert all(
+        (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
+        for name in ("cases.parquet", "findings.parquet")
+    )
+    assert (tmp_path / "part1" / "part-1-of-2.sqlite").is_file()

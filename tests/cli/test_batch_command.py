@@ -37,6 +37,7 @@ def test_the_exit_code_is_that_of_the_worst(folder, capsys):
     assert samples[0].endswith("3 cases: 2 near at the samples only, 1 clear at the samples only")
     assert batch("batch.yaml", "--out", "store", "--quiet") == 1
     assert capsys.readouterr().out == ""
+    assert run(["batch", "--help"]) == 0 and "--shard" in capsys.readouterr().out
 
 
 def test_tolerances_of_a_file_decide_and_status_sees_another(folder, capsys):
@@ -164,3 +165,10 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
     watch.note([], [Fault(3, "unreadable")])
     assert watch.line.startswith("4 of 4 cases measured, ")
     assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
+
+
+def test_of_many_names_the_nearest_are_told(folder, refusal):
+    write_cell(folder, [0.5] * 60)
+    batch("batch.yaml", "--out", "store", "--quiet")
+    told = refusal("view", "store", "weld")
+    assert "there is no case 'weld'; valid are 60 names, the nearest: t" in told and len(told) < 200

@@ -136,6 +136,7 @@ def test_a_case_that_is_not_there(folder, refusal, case, named):
     [
         (("--fail-mm", "5", "--warn-mm", "2"), "the warn limit 2 mm is below the fail limit 5 mm"),
         (("--unproven-ok",), "--unproven-ok: the case has no tolerances"),
+        (("--watch", "--receipt", "--out", "r"), "--watch and --receipt exclude each other"),
         (("--out", "case.yaml/below"), "case.yaml"),
         (("--out", "/proc/report"), "/proc/report"),
         (("--out", "link/deeper"), "leads nowhere"),

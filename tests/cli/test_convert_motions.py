@@ -264,3 +264,9 @@ def test_a_mistake_about_poses_is_one_line(refusal, words, says):
     Path("off.yaml").write_text(STAMPED.replace("w: 1.0", "w: 0.5"))
     Path("far.csv").write_text(TABLE.replace("1e-07", "1e160"))
     assert says in refusal("convert", *words)
+
+
+def test_a_table_of_places_without_turns_is_told_to_be_of_joints(tmp_path, capsys):
+    (tmp_path / "a.csv").write_text("time,x,y,z\n0,0,0,0\n1,1,0,0\n")
+    assert convert(tmp_path / "a.csv", tmp_path / "b.yaml") == 0
+    assert "x, y and z are joints; poses also need qx, qy, qz, qw" in capsys.readouterr().out

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from ruamel.yaml import YAML
 
+from clearance.cli import run
 from clearance.errors import BadInput
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
@@ -90,3 +91,12 @@ def test_what_it_takes_is_taken(errors, old, new):
 )
 def test_what_it_marks_is_refused(errors, old, new):
     assert_refused(errors, CASE, old, new)
+
+
+def test_a_shell_is_told_how_a_command_line_may_go_on(monkeypatch, capsys):
+    monkeypatch.setenv("_CLEARANCE_COMPLETE", "zsh_complete")
+    for words, told in (("clearance wor", "workspace"), ("clearance check --watc", "--watch")):
+        monkeypatch.setenv("COMP_WORDS", words)
+        monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
+        assert run([]) == 0
+        assert told in capsys.readouterr().out.splitlines()

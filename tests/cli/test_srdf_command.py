@@ -124,3 +124,12 @@ def test_a_leader_that_its_followers_hold_is_told(kind, factor, told, tmp_path, 
     run(["srdf", "audit", str(urdf), str(out), "--json"])
     found = json.loads(capsys.readouterr().out)
     assert objections("audit", found) == [] and found["narrowed"] == [told]
+
+
+def test_a_proposal_leaves_what_can_meet_to_be_measured(robot, tmp_path, capsys):
+    urdf, _ = robot(upper=0.4)
+    assert run(["srdf", "make", urdf]) == 0
+    told = capsys.readouterr().out
+    assert "<!-- measured: base - upper: can meet at shoulder " in told
+    (tmp_path / "made.srdf").write_text(told)
+    assert load_srdf(tmp_path / "made.srdf", load_robot(urdf)).reason("base", "upper") is None

@@ -140,7 +140,9 @@ def test_a_profile_that_is_not_kept_stands_on_top_beside_a_contact():
 
 
 def test_the_method_of_the_paper_is_a_warning():
-    warnings = cl.check(BOX, method="paper").verdict.warnings
+    found = cl.check(BOX, method="paper", paper_tolerance=0.4)
+    assert "with a tolerance of 400 mm for its first rejection rule" in page_of(found)
+    warnings = found.verdict.warnings
     assert len(warnings) == 1 and "pairs may have been left out" in warnings[0]
     assert warnings[0].endswith("[CL522]")
     assert not any("left out" in text for text in cl.check(BOX).verdict.warnings)
