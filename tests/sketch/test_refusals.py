@@ -113,6 +113,8 @@ def test_files(tmp_path):
         ("points: {a: [0, .nan]}", "points.a"),
         ("points: {a: [0, 0]}\nconstraints: [{kind: fix, of: [q]}]", "constraints[0]"),
         ("points: {a: [0, 0]}\nconstraints: [{kind: fix, off: [a]}]", "constraints[0]"),
+        ("points: {a: [0, 0]}\nconstraints: [{kind: fix, of: [a], off: 1}]", "constraints[0]"),
+        ("points: {a: [0, 0, 0]}", "points.a"),
     ):  # fmt: skip
         path.write_text(text)
         refused(lambda: Sketch.load(path), "s.yaml", word)

@@ -175,6 +175,7 @@ INSTANCES = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 0}}}
         (changed(DOCUMENT, "nodes", [{"mesh": 0, "children": [0]}]), "node 0 is placed twice"),
         (changed(DOCUMENT, "nodes", 0, "matrix", [*np.eye(4).ravel()[:15], 2.0]), "last row"),
         (changed(DOCUMENT, "nodes", 0, "rotation", [0, 0, 0, 0]), "a unit quaternion"),
+        (changed(DOCUMENT, "nodes", 0, "scale", [1, 2]), "scale of nodes[0] is [1, 2]; 3 numbers"),
         (changed(DOCUMENT, "accessors", 0, "count", 9), "reaches beyond"),
         (changed(DOCUMENT, "accessors", 0, "componentType", 5130), "componentType 5130"),
         (changed(DOCUMENT, "accessors", 1, "componentType", 5122), "unsigned whole numbers"),

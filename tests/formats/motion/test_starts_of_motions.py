@@ -157,6 +157,8 @@ def test_with_accelerations_it_goes_on_a_quintic_from_rest(tmp_path):
     [
         ("{shoulder: 0}", MissingKey, "start_state: it has no position of 'lift'"),
         ("1.5", BadInput, "start_state"),
+        ("[]", BadInput, r"start_state: \[\] is given; names of states"),
+        ("home", MissingKey, "start_state: state 'home' is in no file"),
     ],
 )  # fmt: skip
 def test_a_start_that_is_none_is_refused(tmp_path, key, fault, says):

@@ -260,6 +260,7 @@ LINE = f"LIN {{X 0, Y 0, Z 0, {DOWN}}}"
         ),
         ("BRAKE", "line 7: BRAKE stands outside of what an interrupt calls"),
         ("n=ACOS(2)", "line 7: ACOS is given data of another kind"),
+        ("n=1\nIF n==1 AND TRUE THEN\nPTP XHOME\nENDIF", "line 8: 'AND' has no value for 1 and True"),
         ("FOR n={X 1} TO 3\nENDFOR", "line 7: the range of 'N' is {'X': 1.0}; a number"),
         ("SWITCH 1\nPTP XHOME\nCASE 1\nENDSWITCH", "line 8: SWITCH begins with a statement"),
         ("PTP XHOME WITH $ORI_TYPE.X.Y = 1", "line 7: '.' has no value for '#VAR' and 'X'"),

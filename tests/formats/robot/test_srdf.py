@@ -77,6 +77,8 @@ def test_rows_of_unknown_links_are_left_out_and_named(read):
 def test_reasons_that_are_no_known_word_are_named(read):
     (note,) = read(disable("a", "b", "because"), disable("b", "c", "User")).notes
     assert note == "arm.srdf: 1 reason is none of MoveIt's and counts as User: 'because'"
+    (note,) = read(disable("a", "a"), disable("b", "c", "User")).notes
+    assert note == "arm.srdf: 1 row pairs a link with itself and is left out"
 
 
 @pytest.mark.parametrize(

@@ -195,6 +195,11 @@ def test_what_stops_it_is_told_in_one_line(tmp_path, inner, fault, says):
     assert says in refusal(made, write_package(tmp_path, body(inner)), of=fault)
 
 
+def test_an_entity_is_refused(tmp_path):
+    document = '<!DOCTYPE robot [<!ENTITY e "x">]>' + body('<link name="&e;"/>')
+    assert "an entity is declared" in refusal(made, write_package(tmp_path, document), of=BadSyntax)
+
+
 @pytest.mark.slow  # the least limit that there is, one second
 def test_work_without_end_is_ended(tmp_path, monkeypatch):
     monkeypatch.setattr(xacro_file, "MOST_WORK", 1)

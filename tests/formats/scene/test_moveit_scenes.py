@@ -372,6 +372,8 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
             "allowed_collision_matrix: entry_values: [2] is given; true or false",
         ),
         (OBJECT % SPHERE + "allowed_collision_matrix: {entry_names: [a]}", "0 entry_values of 1 entry_names"),
+        (OBJECT % SPHERE + "allowed_collision_matrix: {entry_names: [a], entry_values: [1]}",
+         "entry_values: 1 is given; 1 of true or false"),
         (
             "robot_state: {attached_collision_objects: [{link_name: l, object: {id: a, header: {frame_id: w}}}]}",
             "attached_collision_objects[0]: it is given in 'w', not in its link; frame_id: l",
