@@ -40,26 +40,6 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
         assert not page.errors and all(url.startswith(("file:", "data:")) for url in page.requests)
 
 
-@pytest.mark.parametrize(
-    "kind, how, told",
-    [
-        ("obstacle", {"obstacle": "left", "turn": "z"}, "turn about z"),
-        ("waypoints", {"keep_tool": [(1.0, 0.021, 0.01)]}, "tool at 1.000 s is moved 20.0"),
-    ],
-)
-def test_what_may_be_done_is_told_on_the_page(tmp_path, kind, how, told):
-    out = save_gain(cl.gain(write_cell(tmp_path, SLOT), kind, **how), tmp_path / "out")
-    with chromium() as page:
-        page.open(f"file://{out}/gain.html", "document.readyState === 'complete'", 420)
-        assert page.run("document.documentElement.scrollWidth") <= 420
-        assert told in page.run("document.body.textContent") and not page.errors
-        lines = page.run(
-            "[...document.querySelectorAll('td.wide')].map("
-            "td => td.clientHeight / parseFloat(getComputedStyle(td).lineHeight))"
-        )
-        assert lines and max(lines) < 4.0, "words are not broken"
-
-
 def test_a_page_of_what_cannot_be_does_not_speak_of_a_bound(tmp_path):
     cell = write_cell(tmp_path, SLOT)
     out = save_gain(cl.gain(cell, "waypoints", keep=[(0.9, 1.1)]), tmp_path / "out")

@@ -89,22 +89,6 @@ def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
             assert_contains(found, seen(case, name, times), rng)
 
 
-@examples(5)
-@given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate"]))
-def test_a_chain_is_where_its_body_is(seed, name):
-    case = cells.cell(seed)
-    names, obstacles = ([name], []) if name in LINKS else ([], [name])
-    for one in swept_bodies(over_time(case), names, obstacles):
-        if one.label != name or one.chain is None:
-            continue
-        instants = np.linspace(0.0, one.chain.n_steps - 1, 37)
-        steps = np.arange(one.chain.n_steps)
-        times = np.interp(instants, steps, one.chain.motions[0].times)
-        poses = one.chain.poses_at(instants)[1:-1, -1]
-        for t, pose in zip(times[1:-1], poses, strict=True):
-            assert pose == pytest.approx(cells.pose_at(case, name, t), abs=1e-9)
-
-
 def carrying(**changes):
     """A slider along x with a cube of 0.2 that picks a part up at half way, 1 m to its side."""
     from tests.simulate.answers.test_workspace import slider

@@ -89,15 +89,6 @@ def test_a_joint_asked_for_beyond_half_a_turn_is_found_there():
         assert np.abs(found - joints).max() < 1e-9
 
 
-def test_a_move_to_where_the_joints_are_is_no_move():
-    names = [joint.name for joint in arm("heron6").joints]
-    stays = JointMove("PTP 1", "moves[0]", joints=dict(zip(names, START, strict=True)))
-    moves = lines(first_pose(), [(0.0, 0.02, 0.0)])
-    one, two = motion(moves).trajectory, motion([stays, *moves]).trajectory
-    assert np.array_equal(one.times, two.times) and np.array_equal(one.positions, two.positions)
-    assert np.array_equal(motion([stays]).trajectory.positions[0], START)
-
-
 @pytest.mark.parametrize("by", [0.0, 0.02])
 def test_a_corner_is_proven_where_a_joint_is_held_on_both_sides(by):
     one = arm("iiwa")

@@ -11,9 +11,8 @@ import clearance as cl
 from clearance.receipt.case_data import case_data
 from clearance.receipt.proof.error_terms import along_of, most_of_balls
 from clearance.receipt.proof.items import Items
-from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.separation import Sides, centre_of
-from clearance.receipt.proof.stage import by_balls, by_directions
+from clearance.receipt.proof.stage import by_directions
 from clearance.receipt.proof.views import chain_above
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.forest import forest_of
@@ -136,17 +135,6 @@ def test_errors_do_no_more_to_any_corner_than_is_said_of_its_ball(seed):
         by_axes = [np.abs((u * part).sum(axis=1)).sum(axis=0) for part in (turned, own["slides"])]
         at_centre = most_of_balls(at.terms, place, u, centre, np.zeros(len(place)))
         assert np.allclose(at_centre, sum(by_axes) + own["anyway"], rtol=1e-11, atol=0.0)
-
-
-@pytest.mark.parametrize("seed", (0, 3))
-def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
-    case, rng = random_case(seed), np.random.default_rng(seed)
-    stage, names, machine = stage_of(case_data(case), 1), names_in(case), SampledMachine(case)
-    items, _ = rows_of(stage, 0, rng)
-    bounds = by_balls(stage, items) + stage.stretch.padding + UNIT
-    for i, (a, b) in enumerate(stage.stretch.pairs.tolist()):
-        poses = machine.poses(float(stage.stretch.times[items.start[i]]), machine.random(rng))
-        assert bounds[i] <= distance(machine, poses, names[a], names[b]) + ROUNDING
 
 
 def distance(machine: SampledMachine, poses, one: str, other: str) -> float:

@@ -185,17 +185,6 @@ def test_what_is_foreseen_is_about_what_is_found(run, narrow):
 
 
 @pytest.mark.slow
-def test_foreseeing_changes_nothing(run, narrow, monkeypatch):
-    found = evidence_for(*question(run))
-    monkeypatch.setattr(search, "WIDE", 2**14)
-    other = evidence_for(*question(run))
-    assert np.array_equal(found.all_deeds, other.all_deeds)
-    assert all(
-        np.array_equal(found.all_codes[most], other.all_codes[most]) for most in found.all_codes
-    )
-
-
-@pytest.mark.slow
 def test_too_much_is_refused_before_it_is_looked_for(run, narrow):
     n = evidence_for(*question(run)).n_items
     one = EvidenceSearch(*question(run))

@@ -87,18 +87,6 @@ def test_every_repair_repairs_and_leaves_every_circle_a_size():
         assert again(s, changes=repair.changes).solve().solved, repair
 
 
-@pytest.mark.parametrize("height", [0.5, 0.0])
-def test_no_repair_puts_a_point_on_the_other_side_of_its_line(height):
-    """A point drawn above a line and fixed below it: the distance to it has no sign that would say so."""
-    s = Sketch()
-    line, p = s.line((0, 0), (1, 0), name="line"), s.point(0.3, 0.4, name="p")
-    floor, q = s.line((0, -1), (1, -1), name="floor"), s.point(0.3, -1.5, name="q")
-    s.fix(line), s.fix(floor), s.coincident(p, q), s.distance(q, floor, 0.5, name="low")
-    s.distance(p, line, height + 0.5, name="up")
-    for repair in s.solve().repairs:
-        assert again(s, changes=repair.changes).solve().solved, repair
-
-
 def test_the_reason_says_on_which_side_circles_touch():
     result = touching_circles(0.5).solve()
     assert "touch keeps k and m outside each other, as drawn; inside=True" in result.reason

@@ -165,12 +165,3 @@ def test_dimensions_given_as_numpy_numbers_are_saved(tmp_path, driven):
     assert t.constraint("span").driven == driven and t.value("w") == 2.5
     assert t.value("span") == s.value("span") and t.entity("c").radius == s.entity("c").radius
     assert t.value("gap") == pytest.approx(s.value("gap"), rel=1e-14)
-
-
-def test_curves_are_one_closed_contour():
-    pytest.importorskip("clearance.planar.curve")
-    s = slot()
-    s.solve()
-    curve = s.curves()
-    assert curve.length == pytest.approx(8.0 + 2.0 * np.pi, rel=1e-9)
-    assert curve.is_closed

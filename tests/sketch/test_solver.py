@@ -5,30 +5,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from clearance.sketch import Sketch
-from tests.examples import examples
-from tests.sketch.patterns import shape, truth
-
-QUICK = examples(25)
-
-
-@QUICK
-@given(
-    st.integers(3, 20),
-    st.integers(0, 10**6),
-    st.floats(-3, 3),
-    st.floats(0.01, 100),
-    st.integers(-50, 50),
-)
-def test_rigid_motion_and_scaling(n, seed, turn, scale, shift):
-    s, p, _, _ = truth(n, seed)
-    t, q, _, _ = truth(n, seed, place=(shift * scale, 2.0 * scale), scale=scale, turn=turn)
-    assert s.solve().solved and t.solve().solved
-    assert shape(q) == pytest.approx(scale * shape(p), rel=1e-9, abs=1e-10 * scale)
+from tests.sketch.patterns import truth
 
 
 @pytest.mark.parametrize("seed", range(6))
