@@ -1,11 +1,17 @@
-"""What may be changed, checked as it is asked: each fault of a value in one line, with its option."""
+"""What may be changed, checked as it is asked, with each fault in one line; the amounts of a change in words."""
+
+from __future__ import annotations
 
 import math
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from clearance.errors import BadDimension, BadInput, UnknownKey
+from clearance.gains.change_parts import ChangePart
 from clearance.gains.request import Request
+from clearance.gains.sentences import signed_text
 from clearance.gains.tool_poses import ToolKeep
 from clearance.gains.turn import Turn
 from clearance.options import made, options_in
@@ -99,3 +105,29 @@ def test_what_is_said_of_a_turn_is_part_of_it():
 def test_one_robot_or_several_are_names():
     assert asked("base", robot="left").one_robot == "left" and asked("base").one_robot is None
     assert asked("waypoints", robot=["left", "right"]).robot == ("left", "right")
+
+
+FACTORS = {"m": 1e3, "rad": math.degrees(1.0), "s": 1.0, "share": 100.0}
+"""What an amount is multiplied by to be told."""
+
+ROUNDING = 1e-11
+"""[-] What counts as rounding of an amount."""
+
+
+@given(st.floats(1e-9, 10.0), st.sampled_from([-1.0, 1.0]), st.sampled_from([*FACTORS]))
+@example(0.1200434, 1.0, "m")
+@example(1.4700434, -1.0, "m")
+@example(1e-8, 1.0, "m")
+@example(0.05000000000000001, 1.0, "m")
+def test_an_amount_as_it_is_told_is_enough_and_hardly_more(size, sign, unit):
+    told, needed = signed_text(ChangePart("x", sign * size, unit)).split()[0], size * FACTORS[unit]
+    assert math.copysign(1.0, float(told)) == sign
+    assert needed * (1.0 - ROUNDING) <= abs(float(told)) < needed + 1e-3
+
+
+@pytest.mark.parametrize(
+    ("size", "told"),
+    [(0.02, "+20.000 mm"), (-0.005, "-5.000 mm"), (1e-8, "+0.0001 mm"), (1e-13, "0 mm")],
+)
+def test_what_is_round_stays_round_and_rounding_is_nothing(size, told):
+    assert signed_text(ChangePart("x", size, "m")) == told

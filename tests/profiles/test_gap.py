@@ -1,4 +1,6 @@
-"""Gaps of a sketch and an outline, proven on circles; nearest places on lines and arcs."""
+"""Gaps of a sketch and an outline, proven on circles; nearest places on lines and arcs; hulls of swept edges."""
+
+from __future__ import annotations
 
 import math
 
@@ -8,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadShape
+from clearance.kernels.profile.swept_hulls import MOST, fattened_hull, hull_of
 from clearance.planar.curve import Curve
 from clearance.profiles.contour import Contour
 from clearance.profiles.fit_rows import gaps_of_shape, sides_of
@@ -118,3 +121,27 @@ def test_beyond_a_sharp_corner_a_point_is_outside_whichever_side_is_nearest(bulg
     reported = gaps_of_shape(closed.pieces, sides, other, samples).distance > 0.0
     rows = [np.column_stack([needle.vertices, needle.bulges]).tolist()]
     assert reported.tolist() == [bool(inside(p.tolist(), rows)) for p in points]
+
+
+def slender(rng: np.random.Generator) -> np.ndarray:
+    """(4, 2) points on a line, but for rounding."""
+    a, b = rng.normal(size=(2, 2))
+    points = a + rng.random(4)[:, None] * (b - a)
+    if rng.random() < 0.5:
+        points[:, 1] = points[0, 1] * (1.0 + rng.integers(-2, 3, 4) * np.finfo(float).eps)
+    return points
+
+
+def test_the_hull_of_points_on_a_line_has_each_once_and_widened_holds_them_all():
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        points, width = slender(rng), float(10.0 ** rng.uniform(-7, -2))
+        out, widened = np.empty((40, 2)), np.empty((16, 2))
+        assert hull_of(points.copy(), 4, out) <= 4
+        n = fattened_hull(points.copy(), 4, width, widened, out)
+        assert 4 <= n <= MOST
+        corners = out[:n]
+        sides = np.roll(corners, -1, axis=0) - corners
+        for point in points:
+            away = point - corners
+            assert (sides[:, 0] * away[:, 1] - sides[:, 1] * away[:, 0] >= -1e-15).all()

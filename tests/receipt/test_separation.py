@@ -1,4 +1,4 @@
-"""Bounds on the distance of parts in motion, against distances in rational arithmetic."""
+"""Bounds on the distance of parts in motion, against rational arithmetic, and what is inside what."""
 
 import math
 
@@ -10,6 +10,7 @@ from clearance.receipt.case_data import case_data
 from clearance.receipt.fronts import codes_of
 from clearance.receipt.nearest import nearest_directions
 from clearance.receipt.proof.halving import farthest_points, halves_of, over_boxes, over_corners
+from clearance.receipt.proof.inside import closed_faces, one_point_each, winds_about_none
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.joint_paths import IntervalPieces
 from clearance.receipt.proof.motion_data import NONE, Shape
@@ -197,3 +198,32 @@ def test_what_both_bodies_stand_on_does_not_count():
             while frame != NONE:
                 assert int(stage.views.links[frame]) not in shared
                 frame = int(stage.views.above[frame])
+
+
+def winds(solid, *points):
+    shape = shape_of(solid)
+    return not winds_about_none(np.array(points, dtype=float), shape.points[closed_faces(shape)])
+
+
+def test_a_point_in_a_box_and_one_beside_it():
+    box = cl.box((1.0, 1.0, 1.0))
+    assert winds(box, (0.1, 0.2, 0.3)) and winds(box.flipped(), (0.1, 0.2, 0.3))
+    assert not winds(box, (0.6, 0.0, 0.0)) and winds(box, (0.6, 0.0, 0.0), (0.4999, 0.0, 0.0))
+
+
+def test_nothing_is_in_a_bore_a_cavity_or_an_open_surface():
+    pipe = cl.pipe(inner_radius=0.16, outer_radius=0.18, length=0.8)
+    assert not winds(pipe, (0.0, 0.0, 0.0)) and winds(pipe, (0.17, 0.0, 0.0))
+    shell = cl.Polyhedron.merged([cl.box((1.0, 1.0, 1.0)), cl.box((0.5, 0.5, 0.5)).flipped()])
+    assert not winds(shell, (0.0, 0.0, 0.0)) and winds(shell, (0.4, 0.0, 0.0))
+    box = cl.box((1.0, 1.0, 1.0))
+    lidless = cl.Polyhedron(box.vertices, box.triangles()[2:])
+    assert not winds(lidless, (0.0, 0.0, 0.0))
+
+
+def test_every_part_of_a_body_has_a_point():
+    far = np.eye(4)
+    far[0, 3] = 3.0
+    both = cl.Polyhedron.merged([cl.box((1.0, 1.0, 1.0)), cl.box((1.0, 1.0, 1.0)).transformed(far)])
+    points = one_point_each(shape_of(both))
+    assert sorted(np.sign(points[:, 0] - 1.5)) == [-1.0, 1.0]
