@@ -127,7 +127,7 @@ def test_the_cut_of_an_open_arm_stands_in_the_headline():
         "profile 'zone': l1 is not closed: its cut is that of its surface, without what it encloses"
     )
     assert warnings(found) == [said] and said in found.verdict.text()
-    swept = cl.swept_profile(turning(hollow, [0.0, 0.5, 1.0]), section=0.05)
+    swept = cl.swept_profile(turning(hollow, [0.0, 0.1]), section=0.05)
     assert "<desc>contains the surfaces that are swept; exceeds" in svg_text(swept)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+import lzma
 import operator
 import re
 import shutil
@@ -49,6 +50,7 @@ def answered_once(monkeypatch, tmp_path):
     """A case is answered, proven and reported once, however often one asks: it is the same each time."""
     made = tmp_path / "made"
     monkeypatch.setattr(tempfile, "TemporaryDirectory", lambda: nullcontext(made))
+    monkeypatch.setattr(lzma, "compress", functools.cache(lzma.compress))
     monkeypatch.setattr(Run, "save", once(Run.save))
     monkeypatch.setattr(remade_report, "maker", once(remade_report.maker))
     for name in ("answer", "proven", "case_data"):
