@@ -108,21 +108,6 @@ def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
     assert arm.trajectory.drives == ("turntable",) and table.timing == arm.timing
 
 
-def test_what_rides_on_a_table_carries_frames_and_a_free_table_follows(tmp_path):
-    """On the part, 0.1 m out and 0.3 m above the plate's frame."""
-    xyz = np.array(on_plate((0.0, -0.05, 0.05))) - [0.1, 0.0, 0.3]
-    move = {"lin": {"to": {"frame": "jig", "xyz": xyz.tolist()}, "free": ["turntable/turn"]}}
-    arm, table = cl.load_case(written(tmp_path, driving(tmp_path, [move], "part"))).robots
-    made = arm.trajectory
-    turn = float(table.trajectory.positions[-1, 0])
-    last = dict(zip(made.joint_names, map(float, made.positions[-1]), strict=True))
-    at = tool_at(last)[:3, 3] + np.array(BASE) - AXIS
-    assert abs(turn - 0.5) > 1e-3 and made.frames == ("part",)
-    seen = turned((0.0, 0.0, -turn)) @ at - [0.1, 0.0, 0.3]
-    assert np.abs(seen - xyz).max() < 1e-8
-    assert table.trajectory.path_error == made.path_error > 0.0
-
-
 @pytest.mark.parametrize(
     ("hold", "on"), [({"turntable/turn": 0.6}, "base"), ({}, "turntable/plate"), ({}, "part")]
 )

@@ -102,29 +102,6 @@ def at_base() -> np.ndarray:
     return at(*BASE)
 
 
-def test_another_tool_is_what_the_next_line_is_of(tmp_path):
-    tip = tool_at(START)
-    other = at(0.05, 0.0, 0.1)
-    there, back = tip @ other, (tip @ other)[:3, :3] @ rotation_about_z(0.3)
-    to = {**place(there[:3, 3]), "quat_xyzw": quaternions_of(back[None])[0].tolist()}
-    moves = [
-        {"lin": {"to": place(tip[:3, 3])}},
-        {"tool": {"xyz": other[:3, 3].tolist()}},
-        {"lin": {"to": place(there[:3, 3])}},
-        {"lin": {"to": to, "speed": 0.1}},
-    ]
-    one = cl.load_case(case(tmp_path, moves, [far()])).robots[0].trajectory
-    poses = [tool_at(dict(zip(JOINTS, row, strict=True))) @ other for row in one.positions]
-    assert [move.name for move in one.moves] == ["LIN 4"] and len(poses) > 10
-    assert max(np.abs(pose[:3, 3] - there[:3, 3]).max() for pose in poses) < 1e-9
-    assert np.allclose(poses[-1][:3, :3], back, atol=1e-9)
-
-
-def rotation_about_z(angle: float) -> np.ndarray:
-    sine, cosine = np.sin(angle), np.cos(angle)
-    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-
-
 @pytest.mark.slow
 def test_the_verdict_names_the_move(tmp_path):
     move, middle, _ = line_and_arc_of_joints()

@@ -195,13 +195,31 @@ def two_recordings(folder, apart, *changes, **more):
     return replace(case, robots=(left, right))
 
 
-def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
-    assert reported(two_recordings(tmp_path, 3.25)) == [
-        "CHECK CLOCKS: by its stamps the recording of robot 'right' begins 3.25 s after that of 'left', "
-        "but it is taken from 0 s; beside its file, `start: 3.25` keeps the delay and `start: 0` drops it"
-    ]
-    assert "robot 'left' begins 3.25 s after" in reported(two_recordings(tmp_path, -3.25))[0]
-    assert not reported(two_recordings(tmp_path, 5e-4))
+@pytest.mark.parametrize(
+    ("apart", "is_message", "severity", "says"),
+    [
+        (3.25, False, "suspect",
+         "CHECK CLOCKS: by its stamps the recording of robot 'right' begins 3.25 s after that of 'left', "
+         "but it is taken from 0 s; beside its file, `start: 3.25` keeps the delay and `start: 0` drops it"),
+        (-3.25, False, "suspect", "robot 'left' begins 3.25 s after"),
+        (1.25, False, "suspect", "begins 1.25 s after that of 'left'"),
+        (0.25, False, "warning", "begins 0.25 s after that of 'left'"),
+        (5e-4, False, None, ""),
+        (0.25, True, "suspect", "the message of robot 'right' begins 0.25 s after that of 'left'"),
+        (0.05, True, "warning", "begins 0.05 s after that of 'left'"),
+    ],
+)  # fmt: skip
+def test_recordings_and_messages_that_begin_apart_are_told(
+    tmp_path, apart, is_message, severity, says
+):
+    """Two drivers of one rate never send their first messages at one moment. These send two a second.
+
+    The stamps of two planned messages at once are nearer than a tenth, whatever is between their points.
+    """
+    case = two_recordings(tmp_path, apart, is_message=is_message)
+    found = [notice for notice in notices_of(case) if notice.kind == "clocks"]
+    assert [notice.severity for notice in found] == ([severity] if severity else [])
+    assert all(says in notice.text for notice in found)
 
 
 @pytest.mark.parametrize(
@@ -225,25 +243,6 @@ def test_recorded_poses_are_held_against_the_stamps_of_robots(tmp_path, late, sa
     found = reported(replace(case, robots=case.robots[:1], obstacles=(door, *others)))
     assert len(found) == (says is not None)
     assert all(says in text for text in found)
-
-
-def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_path):
-    """Two drivers of one rate never send their first messages at one moment. These send two a second."""
-    case = two_recordings(tmp_path, 0.25)
-    (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
-    assert one.severity == "warning" and "begins 0.25 s after that of 'left'" in one.text
-    (one,) = [n for n in notices_of(two_recordings(tmp_path, 1.25)) if n.kind == "clocks"]
-    assert one.severity == "suspect"
-
-
-def test_planned_messages_that_begin_apart_are_suspect_whatever_is_between_their_points(tmp_path):
-    """The points are half a second apart; the stamps of two messages at once are nearer than a tenth."""
-    (text,) = reported(two_recordings(tmp_path, 0.25, is_message=True))
-    assert "by its stamps the message of robot 'right' begins 0.25 s after that of 'left'" in text
-    for late, severity in ((0.25, "suspect"), (0.05, "warning")):
-        case = two_recordings(tmp_path, late, is_message=True)
-        (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
-        assert one.severity == severity
 
 
 def test_a_planned_message_does_not_excuse_recordings_that_begin_apart(tmp_path):
