@@ -8,6 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+import clearance as cl
 from clearance.errors import BadDimension, BadInput, UnknownKey
 from clearance.gains.change_parts import ChangePart
 from clearance.gains.request import Request
@@ -15,6 +16,8 @@ from clearance.gains.sentences import signed_text
 from clearance.gains.tool_poses import ToolKeep
 from clearance.gains.turn import Turn
 from clearance.options import made, options_in
+from clearance.simulate.measure import inside
+from tests.gains.gantries import slot
 
 
 def asked(kind, **given):
@@ -105,6 +108,16 @@ def test_what_is_said_of_a_turn_is_part_of_it():
 def test_one_robot_or_several_are_names():
     assert asked("base", robot="left").one_robot == "left" and asked("base").one_robot is None
     assert asked("waypoints", robot=["left", "right"]).robot == ("left", "right")
+
+
+def test_what_is_proposed_tells_whether_an_open_body_may_hold_another_though_no_search_asks(
+    monkeypatch,
+):
+    asked = []
+    told = inside.notices
+    monkeypatch.setattr(inside, "notices", lambda plan: asked.append(plan) or told(plan))
+    found = cl.gain(slot(fail=0.04, off=0.03), "base")
+    assert found.kept and found.n_measured > 1 and len(asked) == 2
 
 
 FACTORS = {"m": 1e3, "rad": math.degrees(1.0), "s": 1.0, "share": 100.0}
