@@ -1,15 +1,12 @@
 """Sketches whose truth is known: points are placed first, dimensions measured, then the drawing is shaken."""
 
-import math
-
 import numpy as np
 
 from clearance.sketch import Sketch
 
 
-def truth(n, seed, extra=0, missing=0, off=0.03, place=(0.0, 0.0), scale=1.0, turn=0.0):
-    """A sketch of n points: a triangulated strip, with some edges more or fewer; (sketch, points,
-    truth)."""
+def truth(n, seed, missing=0, off=0.03):
+    """A sketch of n points: a triangulated strip, with some edges missing; (sketch, its points, truth, edges)."""
     random = np.random.default_rng(seed)
     points = np.array([(0.5 * k, 0.9 * (k % 2)) for k in range(n)]) + random.uniform(
         -0.1, 0.1, (n, 2)
@@ -17,16 +14,8 @@ def truth(n, seed, extra=0, missing=0, off=0.03, place=(0.0, 0.0), scale=1.0, tu
     edges = [(0, 1)] + [(k - j, k) for k in range(2, n) for j in (1, 2)]
     chosen = list(random.permutation(len(edges)))
     edges = [edges[k] for k in sorted(chosen[missing:])]
-    far = [(a, b) for a in range(n) for b in range(a + 3, n)]
-    edges += [far[k] for k in random.permutation(len(far))[:extra]]
     drawn = points + random.uniform(-off, off, points.shape)
-    c, s_ = math.cos(turn), math.sin(turn)
-    drawn = scale * drawn @ np.array([[c, s_], [-s_, c]]) + np.array(place)
-    s = Sketch()
-    p = [s.point(*q) for q in drawn]
-    for a, b in edges:
-        s.distance(p[a], p[b], scale * float(np.linalg.norm(points[a] - points[b])))
-    return s, p, points, edges
+    return *distances(points, drawn, edges), points, edges
 
 
 def again(s, without=(), driven=(), changes=None):
@@ -48,11 +37,6 @@ def again(s, without=(), driven=(), changes=None):
             own = c.options | {"driven": True} if name in driven else c.options
             t.add(c.kind, *(e.name for e in c.entities), value=value, name=name, **own)
     return t
-
-
-def shape(p):
-    x = np.array([q.position for q in p])
-    return np.linalg.norm(x[:, None] - x[None], axis=2)
 
 
 def distances(points, drawn, edges):

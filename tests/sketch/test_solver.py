@@ -1,4 +1,4 @@
-"""Properties of solving, on sketches whose truth is known, and bit-exact ones: twice the sketch, the solved stays."""
+"""Properties of solving, on sketches whose truth is known, and bit-exact ones: twice the sketch, and shifted."""
 
 import math
 from pathlib import Path
