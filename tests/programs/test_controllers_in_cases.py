@@ -151,24 +151,6 @@ def test_a_blend_of_more_than_half_of_a_move_stands_in_the_headline(tmp_path, fi
     assert len(told) == is_cut and all("LIN 3: a blend of 70 mm" in one for one in told)
 
 
-def test_points_beside_a_program_are_read_along_and_listed(tmp_path):
-    at = tool_at(START)
-    (x, y, z), turn = (at[:3, 3] * 1e3).tolist(), frame_angles(at)
-    axes = [f"A{i} {float(np.degrees(value))!r}" for i, value in enumerate(START.values(), 1)]
-    points = f"DEFDAT a\nDECL E6AXIS XP1={{{', '.join(axes)}}}\nENDDAT\n"
-    (tmp_path / "a.dat").write_text(points)
-    body = f"BAS(#BASE,0)\nBAS(#TOOL,0)\n$VEL.CP=0.1\nPTP XP1\nLIN {{X {x!r}, Y {y + 100!r}, Z {z!r}, {turn}}}\n"
-    path = controller_case(tmp_path, "a.src", f"DEF a()\n{body}END\n", axes_as="plain")
-    found = cl.load_case(path)
-    move = {
-        "lin": {"to": {"frame": "base", "xyz": [x / 1e3, y / 1e3 + 0.1, z / 1e3]}, "speed": 0.1}
-    }
-    own = cl.load_case(case(tmp_path, [move], [far()]))
-    one, two = (each.robots[0].trajectory for each in (found, own))
-    assert np.abs(one.positions - two.positions).max() < 1e-9
-    assert {"a.src", "a.dat"} <= {source.path for source in found.sources}
-
-
 def frame_angles(pose: np.ndarray) -> str:
     """A, B and C of a pose in degrees, as KRL has them."""
     angles = Rotation.from_matrix(pose[:3, :3]).as_euler("ZYX", degrees=True)

@@ -313,8 +313,9 @@ def beside_a_turntable(folder: Path, moves: list, rows: str = "", **more) -> Pat
     return written(folder, content)
 
 
-@pytest.mark.parametrize("base", [{}, {"on": "far", "xyz": [-3.0, -5.0, -5.0]}])
-@pytest.mark.parametrize("rows", ["", "0,0.5\n9,0.5\n"])
+@pytest.mark.parametrize(
+    ("rows", "base"), [("", {"on": "far", "xyz": [-3.0, -5.0, -5.0]}), ("0,0.5\n9,0.5\n", {})]
+)
 def test_a_frame_on_a_link_that_stands_is_where_the_link_is(tmp_path, rows, base):
     start = tool_at(START)[:3, 3] + np.array(BASE)
     turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])

@@ -257,9 +257,16 @@ def violated() -> cl.Case:
     return replace(turning_arm(), limits=cl.Limits(0.15, 0.3))
 
 
+@pytest.fixture(scope="module")
+def violated_report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("violated")
+    saved(violated(), folder)
+    return folder
+
+
 @pytest.mark.slow
-def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
-    saved(violated(), tmp_path)
+def test_a_violated_run_whose_limits_were_lowered_is_found(violated_report, tmp_path):
+    shutil.copytree(violated_report, tmp_path, dirs_exist_ok=True)
 
     def lowered(summary):
         summary["limits"] |= {"fail": 0.001, "warn": 0.002}
@@ -276,23 +283,19 @@ def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
     assert first_line(tmp_path, violated()) == told
 
 
-@pytest.mark.slow
-def test_a_clearance_that_was_raised_is_found_whatever_made_the_report(tmp_path):
-    saved(turning_arm(), tmp_path)
-
+def test_a_clearance_that_was_raised_is_found_whatever_made_the_report(folder):
     def raised(summary):
         summary["worst"]["clearance"] += 0.8
 
-    with_summary(tmp_path, raised)
-    hashed(tmp_path, maker=read_receipt(tmp_path / FILE_NAME).head["maker"] | OTHER)
+    with_summary(folder, raised)
+    hashed(folder, maker=read_receipt(folder / FILE_NAME).head["maker"] | OTHER)
     told = r"NOT PROVEN: summary\.json says \S+ for worst\.clearance, a fresh run says \S+"
-    assert re.fullmatch(told, first_line(tmp_path, turning_arm()))
+    assert re.fullmatch(told, first_line(folder))
 
 
 @pytest.mark.slow
-def test_a_violated_run_is_not_read_as_one_that_keeps_its_limits(tmp_path):
-    saved(violated(), tmp_path)
-    found = cl.verify(tmp_path, violated())
+def test_a_violated_run_is_not_read_as_one_that_keeps_its_limits(violated_report):
+    found = cl.verify(violated_report, violated())
     assert found.proven and found.verdict == "violated" and found.below == {"default": 0.15}
     assert "(default, BELOW ITS LIMIT of 150 mm)" in found.headline
     assert "; verdict violated; self-collision not checked [CL531]; every byte" in found.headline
@@ -317,8 +320,10 @@ def waived() -> cl.Case:
 
 
 @pytest.mark.slow
-def test_waivers_that_a_report_tells_of_and_the_case_does_not_have_are_found(tmp_path):
-    saved(violated(), tmp_path)
+def test_waivers_that_a_report_tells_of_and_the_case_does_not_have_are_found(
+    violated_report, tmp_path
+):
+    shutil.copytree(violated_report, tmp_path, dirs_exist_ok=True)
 
     def one_waiver(summary):
         summary |= {"verdict": "clear", "n_waivers": 1}
