@@ -8,6 +8,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, Unwritable
 from clearance.gains.folder import save_gain
+from clearance.gains.sentences import lines_of
 from clearance.gains.turn import Turn
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.trajectory import Hole
@@ -99,6 +100,7 @@ CASES = {
     ),
     "turned base": (lambda folder: write_cell(folder, SLOT), "base", {"turn": "z"}),
     "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
+    "moving, turned": (lambda folder: write_cell(folder, MOVING), "obstacle", {"turn": "z"}),
     "slowed": (
         lambda folder: write_cell(folder, CROSSING),
         "timing",
@@ -127,6 +129,11 @@ def saved(request, tmp_path_factory):
 def test_what_is_written_is_read_as_what_was_claimed(saved):
     found, out = saved
     assert found.kept and not found.before.passed
+    told = " ".join(line for _, line in lines_of(found))
+    is_turned = found.request.turn is not None and found.request.obstacle is None
+    assert ("its origin at its first sample" in told) == (
+        is_turned and found.request.kind == "obstacle"
+    )
     run = cl.check(out / "case.yaml")
     assert run.passed
     for column in ("clearance", "lower_bound"):

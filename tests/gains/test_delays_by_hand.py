@@ -115,3 +115,13 @@ def test_windows_that_a_delay_leaves_are_named_and_parts_that_change_hands_refus
     handed = replace(case, carries=(first, Carry("part", "one/tool", Window(0.5))))
     with pytest.raises(cl.BadInput, match="'part' changes hands"):
         gain(handed, "timing", robot="other")
+
+
+def test_no_delay_takes_a_part_past_a_post_in_its_way(monkeypatch):
+    """Without the post, the fifteenth delay that is tried keeps the rules."""
+    monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 40)
+    post = standing("post", cl.box((0.02, 0.02, 0.02)), (0.0, 0.5, 0.2))
+    found = gain(handing(post), "timing", robot="other")
+    assert not found.kept and "part and post" in str(found.blocked)
+    told = dict(lines_of(found))["not kept"]
+    assert told == "no delay up to 60 s was found with which every rule holds"

@@ -17,7 +17,7 @@ from clearance.gains.shortfalls import proven
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle
 from clearance.world.placed_robot import MotionLimit
-from clearance.world.robot import Mimic
+from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.rules import Waiver
 from clearance.world.timing import Timing
 from clearance.world.trajectory import MoveSpan
@@ -296,3 +296,17 @@ def test_a_pair_that_nothing_moves_may_be_at_its_limit_but_for_rounding():
     post = Obstacle(Body("post", cl.box((0.1, 0.02, 0.1))), at(0.602))
     found = gain(replace(one, obstacles=(*one.obstacles, post)), "obstacle", obstacle="post")
     assert found.kept and found.change == pytest.approx([0.003, 0.0, 0.0], abs=FINE)
+
+
+def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():
+    """A block below a roof, on a slide along it that falls by 2 mm a metre."""
+    slide = Joint("x", JointKind.PRISMATIC, "base", "tool", np.eye(4), [-1.0, -0.002, 0.0])
+    block = cl.Body("tool", cl.box((0.1, 0.1, 0.1)))
+    robot = cl.Robot("slider", ("base", "tool"), (slide,), (block,))
+    path = cl.Trajectory(np.linspace(0.0, 1.0, 41), ("x",), np.zeros((41, 1)))
+    roof = standing("roof", cl.box((3.0, 0.1, 1.0)), (0.0, 0.15, 0.0))
+    case = cl.Case("roof", (cl.PlacedRobot(robot, path),), (roof,), cl.Limits(fail=0.05002))
+    found = gain(case, "waypoints", keep_ends=False)
+    assert found.kept and found.size == pytest.approx(2.0 * 0.01, rel=0.05)
+    told = dict(lines_of(gain(case, "waypoints")))["not kept"]
+    assert told.endswith("while the ends of the path are kept (--free-ends frees them)")

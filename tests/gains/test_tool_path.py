@@ -9,6 +9,7 @@ import clearance as cl
 from clearance.errors import UnknownLink
 from clearance.gains.folder import save_gain
 from clearance.gains.search import Search
+from clearance.gains.sentences import lines_of
 from clearance.gains.shift import base_shift
 from clearance.gains.tool_path import tool_path_kept
 from clearance.gains.turn import Turn
@@ -173,6 +174,10 @@ def test_a_tool_that_may_move_far_enough_does_and_no_farther(time):
     (move,) = found.tool_moves
     assert found.kept and found.after.passed and move.link == "tool"
     assert 0.0199 < move.far <= 0.0201 and move.turn == 0.0
+    (line,) = [
+        line for _, line in lines_of(found) if line.startswith(f"tool at {time:.3f} s is moved")
+    ]
+    assert "mm of 20.1 and turned 0 deg of 0.0572958" in line
 
 
 def test_what_the_tool_keeps_from_is_said():

@@ -25,7 +25,7 @@ SCENES = Path(__file__).parents[2] / "scenes"
 @pytest.fixture(scope="module")
 def profile():
     return cl.swept_profile(
-        turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4]), per_link=True
+        turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4]), per_link=True, tolerance=2e-3
     )
 
 
@@ -46,7 +46,8 @@ def test_our_yaml_keeps_every_bit(profile, tmp_path):
 def test_dxf_keeps_the_curve_and_opens_elsewhere(profile, tmp_path):
     import trimesh
 
-    one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4]))
+    case = turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4])
+    one = cl.swept_profile(case, tolerance=2e-3)
     path = tmp_path / "p.dxf"
     write_profile(one, path)
     found = cl.hausdorff(cl.read_curve(str(path)), one.curve)
@@ -250,13 +251,16 @@ def test_refusals_of_the_commands_are_one_line(arguments, said, tmp_path, monkey
         ("{name: a, sketch: zone.yaml, mode: around}", BadInput, "profiles[0].mode"),
         ("{name: a, sketch: zone.yaml, links: [hand]}", UnknownLink, "profiles[0]: links"),
         ("{name: a, sketch: open.yaml}", BadInput, "profiles[0]: sketch"),
+        ("{name: a, sketch: points.yaml}", BadInput, "the sketch draws nothing"),
     ],
 )
 def test_refusals_of_a_case_name_the_profile(entry, fault, said, tmp_path):
     free_circle(2.0).save(tmp_path / "zone.yaml")
-    open_ = "points: {a: [0, 0], b: [1, 0]}\nsegments: {ab: [a, b]}\n"
+    points = "points: {a: [0, 0], b: [1, 0]}\n"
+    (tmp_path / "points.yaml").write_text(points)
+    (tmp_path / "open.yaml").write_text(points + "segments: {ab: [a, b]}\n")
     with pytest.raises(fault) as caught:
-        load_small(tmp_path, CASE + f"profiles: [{entry}]\n", open__yaml=open_)
+        load_small(tmp_path, CASE + f"profiles: [{entry}]\n")
     assert said in str(caught.value)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -69,8 +70,19 @@ def test_a_robot_in_the_overlap_of_two_zones_that_it_keeps_out_of_is_not_clear()
 
 def test_a_zone_with_a_hole_is_what_the_guide_says():
     assert checked("inside", (-2.0, 2.0), (-0.8, 0.8)).passed
+    assert not checked("inside", (-2.0, 2.0)).passed
+
+
+@pytest.mark.slow
+def test_a_zone_that_is_not_kept_violates_the_case_and_the_page_shows_it(tmp_path):
     found = checked("inside", (-2.0, 2.0))
-    assert not found.passed and found.status == "violated"
+    assert found.status == "violated" and found.record.profiles[0].gap < -0.03
+    found.save(tmp_path)
+    told = json.loads((tmp_path / "summary.json").read_text())
+    assert told["verdict"] == "violated" and told["profiles"][0]["passed"] is False
+    assert "picture" not in told["profiles"][0]
+    page = (tmp_path / "report.html").read_text()
+    assert "<h2>Profiles</h2>" in page and "data:image/svg+xml" in page
 
 
 def test_outlines_that_only_have_to_be_near_may_cross():

@@ -413,3 +413,25 @@ def test_errors_of_what_is_followed_are_errors_of_the_joints():
         true = joints_for(arm("heron6"), (wanted[:3, :3], wanted[:3, 3]), own)
         worst = max(worst, float(np.abs(true - own).max()))
     assert off < worst <= made.path_error
+
+
+def test_a_tool_goes_with_a_part_on_a_turntable_that_has_a_program_of_its_own(tmp_path):
+    """The file may name the arm first; the tool keeps 80 mm from a cube that rides beside it."""
+    moves = [{"lin": {"to": {"frame": "jig", "xyz": ON_PART}}}, {"wait": 2.5}]
+    path = beside_a_turntable(tmp_path, moves, frames={"jig": {"on": "part"}})
+    content = yaml.safe_load(path.read_text())
+    table = content["robots"][1]
+    turns = [{"ptp": {"joints": {"turn": at}, "speed": 0.5}} for at in (0.7, 0.6)]
+    program = {"tool": {"link": "plate"}, "start": table.pop("joints"), "moves": turns}
+    table["trajectory"] = {"program": program}
+    content["scene"]["obstacles"] += torch_and_rider()
+    content["allow"] = [[name, "*"] for name in ("arm/*", "turntable/*", "part", "far")]
+    run = cl.check(written(tmp_path, content))
+    clearances = run.steps["clearance"].to_numpy() + run.record.timeline.path_error
+    assert np.abs(clearances - 0.08).max() < 5e-7
+    assert run.record.certificate.lower_bound.min() > 0.08 - run.record.timeline.path_error - 1.2e-4
+    made = next(one.trajectory for one in run.record.case.robots if one.robot.name == "arm")
+    assert made.rides == ("turntable/plate",) and not made.unproven
+    turns[0]["ptp"]["zone"] = 0.01
+    with pytest.raises(cl.ClearanceError, match="moves by a program with corner zones"):
+        cl.load_case(written(tmp_path, content))

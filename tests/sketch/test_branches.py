@@ -127,6 +127,7 @@ def test_a_dimension_too_many_that_holds_on_another_branch_only_takes_that_branc
     s, p = crossed(math.sqrt(3.0))
     result = s.solve()
     assert (result.status, result.redundant) == ("over", ["distance6"])
+    assert any("distance6" in part for part in result.over_constrained)
     base = p[0].position[1]
     assert (p[2].position[1] - base) * (p[3].position[1] - base) == pytest.approx(-0.75)
     solved = list(s._lists.numbers)

@@ -133,6 +133,29 @@ def two_pieces():
     return s
 
 
+def planets():
+    """A sun, a ring and three planets that touch both, a third of a turn apart; sun and ring have one centre."""
+    s = Sketch()
+    m = s.point(0, 0)
+    sun, rim = s.circle(m, 1.0), s.circle(m, 3.0)
+    s.radius(sun, 1.0), s.radius(rim, 3.0)
+    for k in range(3):
+        t = 2.0 * math.pi * k / 3.0
+        c = s.circle((2.1 * math.cos(t), 2.1 * math.sin(t)), 0.9)
+        s.tangent(sun, c, inside=False), s.tangent(rim, c, inside=True)
+    return s
+
+
+def square_of_equal_sides():
+    s = Sketch()
+    p, e = ring(s, [(0, 0), (1.1, 0), (1, 1.2), (0, 1)])
+    s.fix(p[0]), s.horizontal(e[0]), s.horizontal(e[2]), s.vertical(e[1]), s.vertical(e[3])
+    for i in range(3):
+        s.equal_length(e[i], e[i + 1])
+    s.distance(p[0], p[1], 1.5, name="w")
+    return s
+
+
 def flat_four_bar():
     """Where its two branches meet the kernel has two motions; every solution near it has one."""
     s = Sketch()
@@ -157,6 +180,8 @@ def fillet_and_a_spoke():
 
 
 TRUTH = {
+    planets: ("under", 2),
+    square_of_equal_sides: ("over", 0),
     flat_four_bar: ("under", 1),
     fillet_and_a_spoke: ("over", 3),
     rectangle_of_equal_sides: ("over", 0),

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from clearance.errors import BadDimension
 from clearance.sketch import Sketch
 from clearance.sketch.effort import TimeLimit
 from scripts.makers.point_sketches import irreducible, shaken, sketched, slivered
+
+SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 
 
 class Clock:
@@ -163,3 +166,10 @@ def test_what_conflicts_is_looked_for_as_long_as_a_solve():
 def test_what_is_no_number_of_seconds_is_refused(seconds):
     with pytest.raises(BadDimension, match="seconds is"):
         cluster().solve(seconds=seconds)
+
+
+def test_the_search_for_other_solutions_ends_with_its_time():
+    sketch = Sketch.load(SKETCHES / "bar_length.yaml")
+    found = solved_with(sketch, TimeLimit(10.0, Clock(math.inf)))
+    found._problem.limit = TimeLimit(10.0, Clock(3))
+    assert found.alternatives == []
