@@ -101,7 +101,7 @@ SECOND = f"""cell
 0 0 0 1
 1
 sphere
-0.25
+0.025
 {_POSE}
 {_COLOUR}
 1
@@ -113,7 +113,7 @@ grip
 0 0 0 1
 1
 sphere
-0.5
+0.05
 {_POSE}
 {_COLOUR}
 0

@@ -20,7 +20,7 @@ from tests.formats.making_bags import planned, state, write_bag
 
 SCENE = b"""obstacles:
 - {name: post, pose: {xyz: [2, 0, 0], rpy: [0, 0, 0.5]}, box: {size: [0.1, 0.1, 1]}}
-- {name: ball, pose: {xyz: [2, 1, 0], rpy: [0.1, 0, 0]}, sphere: {radius: 0.2}}
+- {name: ball, pose: {xyz: [2, 1, 0], rpy: [0.1, 0, 0]}, sphere: {radius: 0.02}}
 - {name: rod, on: post, cylinder: {radius: 0.1, length: 0.5}}
 - {name: part, pose: {xyz: [-2, 1, 0]}, mesh: {file: m.stl, scale: [0.5, 1, -1]}}
 """

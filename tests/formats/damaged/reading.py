@@ -36,14 +36,14 @@ from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.timed_files import load_trajectory
 from clearance.world.placed_robot import PlacedRobot
 from tests.formats.damaged import cases
-from tests.formats.damaged.texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF, URDF
+from tests.formats.damaged.texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF
 from tests.formats.making import cube_stl
 from tests.formats.making_urdf import parse_document
 
 Read = Callable[[bytes, Path, str], object]
 
 MESH = {"m.stl": cube_stl()}
-CASE_FILES = {"case.yaml": CASE, "arm.urdf": URDF, "path.csv": PATH, **MESH}
+CASE_FILES = {"case.yaml": CASE, "arm.urdf": BOXES, "path.csv": PATH, **MESH}
 ROBOT_FILES = {
     "arm.urdf": BOXES, "arm.srdf": SRDF, "limits.yaml": LIMITS, "control.yaml": CONTROL, **MESH,
 }  # fmt: skip

@@ -61,7 +61,7 @@ robot: {urdf: arm.urdf, base: {xyz: [0, 0, 0.5], rpy: [0, 0, 1.57]}, exclude_lin
 scene:
   obstacles:
   - {name: post, pose: {xyz: [2, 0, 0]}, box: {size: [0.1, 0.1, 1]}}
-  - {name: ball, pose: {xyz: [2, 1, 0]}, sphere: {radius: 0.2}}
+  - {name: ball, pose: {xyz: [2, 1, 0]}, sphere: {radius: 0.02}}
   - {name: part, pose: {xyz: [-2, 1, 0]}, mesh: {file: m.stl, scale: 0.5}}
 trajectory: {file: path.csv}
 limits: {fail: 0.005, warn: 0.02}
@@ -203,7 +203,7 @@ SDF = b"""<?xml version="1.0"?>
 <link name="b"><collision name="d"><geometry><mesh><uri>m.stl</uri><scale>0.5 0.5 0.5</scale></mesh></geometry>
 </collision></link></model>
 <model name="n"><pose relative_to="f">3 0 0 0 0 0</pose><link name="a">
-<collision name="c"><geometry><cylinder><radius>0.2</radius><length>1</length></cylinder></geometry></collision>
+<collision name="c"><geometry><cylinder><radius>0.02</radius><length>1</length></cylinder></geometry></collision>
 <collision name="e"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision></link></model>
 </world></sdf>
 """

@@ -388,14 +388,14 @@ def test_a_fault_is_one_line_with_its_field(tmp_path, document, says):
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ("sphere\n0.25", "cone\n1 2", "'post': a cone is not read"),
-        ("sphere\n0.25", "blob\n1", "line 6: 'post': 'blob' is no shape; sphere, box"),
-        ("0.25", "0.2 5", "line 7: 'post': '0.2 5' is given; the dimensions of a sphere: 1 numbers"),
-        ("0.25", "O.25", "line 7: 'post': 'O.25' is not a number"),
+        ("sphere\n0.025", "cone\n1 2", "'post': a cone is not read"),
+        ("sphere\n0.025", "blob\n1", "line 6: 'post': 'blob' is no shape; sphere, box"),
+        ("0.025", "0.2 5", "line 7: 'post': '0.2 5' is given; the dimensions of a sphere: 1 numbers"),
+        ("0.025", "O.25", "line 7: 'post': 'O.25' is not a number"),
         ("* ball", "ball", "line 15: 'ball' is given; * and the object's name"),
         ("* ball", "*", "line 15: '*' is given"),
         (".\n", ".\nmore", "there is more behind the point"),
-        ("1\nsphere\n0.25", "9999\nsphere\n0.25", "how many shapes, as many as there are"),
+        ("1\nsphere\n0.025", "9999\nsphere\n0.025", "how many shapes, as many as there are"),
     ],
 )  # fmt: skip
 def test_a_fault_of_text_is_one_line_with_its_line(tmp_path, old, new, says):
