@@ -123,6 +123,17 @@ def test_containment_is_contact_for_the_peer_too(link, obstacle):
     assert cross_check(record).agrees
 
 
+def test_one_of_two_parts_inside_is_contact():
+    small = box(0.2, 0.2, 0.2)
+    two = Polyhedron(
+        np.vstack([small.vertices, small.vertices + np.array([5.0, 0, 0])]),
+        [*small.face_vertices.reshape(-1, 4), *(small.face_vertices.reshape(-1, 4) + 8)],
+    )
+    rows = [(0.0, "solid", (5.0, 0.0, 0.0), (5.0, 0.0, 0.0))]
+    record = rail_record(two, {"solid": (box(2, 2, 2), (5, 0, 0))}, [0.0], rows)
+    assert cross_check(record).agrees
+
+
 def test_an_open_body_has_no_inside():
     lidless = box(2.0, 2.0, 2.0)
     open_box = Polyhedron(lidless.vertices, lidless.face_vertices.reshape(-1, 4)[:5])

@@ -54,6 +54,19 @@ def voxel_surface(cells: set[tuple[int, int, int]], diagonals: list[bool]):
     return np.array(list(vertices), dtype=float), np.array(triangles)
 
 
+def test_a_grid_becomes_one_rectangle_whose_straight_corners_are_gone():
+    vertices, triangles = voxel_surface(
+        {(x, y, 0) for x in range(5) for y in range(3)}, [True, False]
+    )
+    shape = merged(vertices, triangles)
+    assert shape.n_faces == 6 and len(shape.vertices) == 8
+
+
+def test_coordinates_beyond_the_exact_range_are_unchanged():
+    square = np.array([[0, 0, 0], [1e-200, 0, 0], [1e-200, 1e-200, 0], [0, 1e-200, 0]])
+    assert merged(square, [[0, 1, 2], [0, 2, 3]]).n_faces == 2
+
+
 def test_an_l_shape_is_cut_into_convex_parts():
     vertices, triangles = voxel_surface({(0, 0, 0), (1, 0, 0), (0, 1, 0)}, [False])
     shape = merged(vertices, triangles)

@@ -74,6 +74,14 @@ def test_normals_of_a_needle_are_right_and_of_a_line_zero():
     assert np.allclose(flat.normals[1], np.array([1, -1, 0]) / np.sqrt(2), atol=1e-12)
 
 
+@pytest.mark.parametrize("size", [1e-150, 1e-9, 1.0, 1e9, 1e150])
+def test_planes_do_not_depend_on_scale(size):
+    shape, one = box((size, size, size)), box((1, 1, 1))
+    assert np.array_equal(shape.normals, one.normals)
+    assert np.allclose(shape.radii / size, np.sqrt(0.5), rtol=1e-15)
+    assert np.allclose(shape.centres / size, one.centres, rtol=1e-15)
+
+
 def test_a_box_knows_itself():
     shape = box((1, 2, 3))
     assert shape.closed and shape.oriented and shape.manifold and shape.volume == 6.0

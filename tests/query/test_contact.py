@@ -61,6 +61,16 @@ def test_boxes_that_overlap_by_d():
     is_what_it_says(BOX, BOX, pose, np.eye(4), found)
 
 
+def test_the_answer_moves_with_the_bodies():
+    world = at(3.0, -2.0, 1.0, turn=0.7)
+    here = cl.contact(BOX, BOX, pose_a=at(0.9, 0.1, 0.2))
+    there = cl.contact(BOX, BOX, pose_a=world @ at(0.9, 0.1, 0.2), pose_b=world)
+    assert there.penetration == pytest.approx(here.penetration, abs=1e-14)
+    assert there.volume == pytest.approx(here.volume, rel=1e-13)
+    assert there.direction == pytest.approx(world[:3, :3] @ here.direction, abs=1e-14)
+    assert there.centroid == pytest.approx((world @ [*here.centroid, 1.0])[:3], abs=1e-14)
+
+
 @pytest.mark.parametrize("shift", [(1.0, 0.1, 0.2), (1.0, 1.0, 0.2), (1.0, 1.0, 1.0)])
 def test_touching_is_0_deep_with_a_volume_of_exactly_0(shift):
     found = cl.contact(BOX, BOX, pose_a=at(*shift))

@@ -77,6 +77,15 @@ def test_a_body_that_may_stand_outside_its_facets_is_refused():
 
 
 @WITH_MANIFOLD
+def test_of_three_robots_what_two_reach_counts_once():
+    cases = [slider("x", (1, 0, 0), -1, 1), slider("y", (0, 1, 0), -1, 1, (0.0, 0.0, 0.001))]
+    cases.append(slider("z", (0, 0, 1), -1, 1, (0.0, 0.001, 0.0)))
+    found = shared_workspace(cases)
+    assert found.volume == pytest.approx(0.2**3, rel=0.05)
+    assert len(found.links) == 3
+
+
+@WITH_MANIFOLD
 def test_what_may_be_passed_in_a_corner_zone_is_shared():
     """The two are 10 mm apart, and the first may be 15 mm off on part of its way."""
     one, other = (
@@ -139,6 +148,18 @@ def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
     on_cubics = dataclasses.replace(motion, velocities=wild)
     assert greatest_escape(pieces_of(on_cubics, 0.01), on_cubics, 100) <= 0.0
     assert greatest_escape(pieces_of(motion, 0.01), on_cubics, 100) > 0.0
+
+
+def test_a_slider_on_a_cubic_swings_beyond_its_samples():
+    """Both ends at 0 with velocities 8 and -8: half way it stands at 2; 16 / 8 / 15^2 is below 0.01."""
+    case = slider("one", (1, 0, 0), 0.0, 0.0, n_steps=2)
+    motion = kinematic_motion(case.robots[0])
+    motion = dataclasses.replace(motion, velocities=np.array([[8.0], [-8.0]]))
+    pieces = pieces_of(motion, 0.01)
+    assert len(pieces) == 15
+    assert max(p.leaves for p in pieces) == pytest.approx(2.0 / 15**2, rel=1e-9)
+    assert greatest_escape(pieces, motion, 100) <= 0.0
+    assert max(p.points[:, 0].max() for p in pieces) < 2.1
 
 
 @WITH_MANIFOLD

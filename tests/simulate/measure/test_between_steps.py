@@ -92,6 +92,25 @@ def test_what_is_named_really_occurs_there():
     assert apart == pytest.approx(moment.clearance, abs=1e-12)
 
 
+def test_a_moment_on_cubics_is_where_the_cubic_is():
+    """With velocities the arm passes the post at another time: the pose is that of the cubic."""
+    velocities = np.array([[0.0, 0.0], [3.0, 0.0]])
+    run = cl.check(sweeping(THROUGH, post_height=PAST, velocities=velocities))
+    moment, share = run.certificate.worst, run.certificate.worst.time / 2.0
+    step, e0, e1 = 2.0, 0.0 - 2.0, 6.0 - 2.0
+    rest = 1.0 - share
+    expected = -1.0 + share * step + share * rest * (rest * e0 - share * e1)
+    assert moment.positions[0][0] == pytest.approx(expected, abs=1e-12)
+    assert abs(expected) < 0.2  # over the post
+
+
+def test_the_deepest_between_is_told_where_a_step_is_less_deep():
+    """The step at 0.05 rad is in the post, less deep than the fore arm gets on its way there."""
+    record = cl.check(sweeping([[-1.0, 0.0], [0.05, 0.0]])).record
+    assert record.worst_sample.depth.penetration < record.worst.depth.penetration
+    assert record.worst.between and record.worst.depth.penetration > 0.044
+
+
 @pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
 @pytest.mark.parametrize(("height", "status"), [(1.0, "contact"), (PAST, "violated")])
 def test_every_need_is_certified(need, height, status):

@@ -81,6 +81,7 @@ def test_padding_is_taken_off_and_tolerances_are_warned_of():
         assert_row(checker.distance(row), run.steps, i)
     many, plain = checker.distances(given), cl.Checker(case).distances(given)
     assert np.array_equal(many.distances, run.record.clearances) and (many.distances < 0.0).any()
+    assert np.array_equal(many.points[:, 0, 0], run.steps["link_x"].to_numpy())
     assert {checker.pairs[i] for i in many.pairs} != {checker.pairs[i] for i in plain.pairs}
     assert not many.contacts.any()
     touching = replace(padded, obstacles=(far, replace(near, world_from_body=at(x=0.3))))
