@@ -23,6 +23,8 @@ from clearance.package_digest import digest_of_sources
 from clearance.planar.dxf import read_dxf
 from clearance.receipt import remade_report
 from clearance.record import fingerprint
+from clearance.world.motion import kinematic_motion
+from clearance.world.trajectory import CornerZone
 from tests.cells import cell
 
 STUB = ast.parse(Path(cl.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
@@ -261,3 +263,13 @@ def test_rows_of_a_long_run_are_not_those_of_larger_balls():
     scans = (cl.Obstacle(cl.Body("scan", cl.PointCloud(points, radius))) for radius in (0.01, 0.02))
     cases = (replace(cell(0), obstacles=(scan,), carries=()) for scan in scans)
     assert len({fingerprint.fingerprint(case, (), (), ()) for case in cases}) == 2
+
+
+def test_rows_of_a_long_run_are_not_those_of_wider_corners():
+    placed = next(one for one in cell(0).robots if one.trajectory is not None)
+    found = set()
+    for end in (0.2, 0.3):
+        zone = CornerZone("LIN 1", 0.1, end, 0.02, {})
+        cornered = replace(placed, trajectory=replace(placed.trajectory, corners=(zone,)))
+        found.add(fingerprint.fingerprint(cell(0), [kinematic_motion(cornered)], (), ()))
+    assert len(found) == 2

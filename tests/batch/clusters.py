@@ -71,11 +71,9 @@ def n_kept(place: Path) -> int:
 def below(process: int) -> list[int]:
     """The processes that one has started, and theirs."""
     found = []
-    for status in Path("/proc").glob("[0-9]*/stat"):
+    for listed in Path(f"/proc/{process}/task").glob("*/children"):
         with suppress(OSError):
-            text = status.read_text()
-            if int(text.rsplit(")", 1)[1].split()[1]) == process:
-                child = int(status.parent.name)
+            for child in map(int, listed.read_text().split()):
                 found += [child, *below(child)]
     return found
 

@@ -135,13 +135,14 @@ def test_a_batch_tells_what_is_new_since_its_baseline_and_keeps_its_exit_code(fo
 def test_a_baseline_that_cannot_be_one_is_refused_before_anything_is_measured(folder, capsys):
     batch("part", "--shard", "1/2")
     before = sorted(folder.rglob("*"))
-    for out, baseline, told in (
-        ("old", "old", "--baseline is the store that --out writes"),
-        ("new", "none", "none: not a store"),
-        ("new", "part", "part: this batch has no answer yet"),
+    for out, baseline, more, told in (
+        ("old", "old", (), "--baseline is the store that --out writes"),
+        ("new", "old", ("--shard", "1/2"), "--baseline compares whole batches"),
+        ("new", "none", (), "none: not a store"),
+        ("new", "part", (), "part: this batch has no answer yet"),
     ):
         capsys.readouterr()
-        assert batch(out, "--baseline", baseline) in (2, 4)
+        assert batch(out, "--baseline", baseline, *more) in (2, 4)
         assert told in capsys.readouterr().err and sorted(folder.rglob("*")) == before
 
 

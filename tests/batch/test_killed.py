@@ -31,7 +31,7 @@ pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
 ]
 
-N_CASES = 60
+N_CASES = 80
 
 
 @pytest.fixture(scope="module")

@@ -101,6 +101,7 @@ def test_view_writes_the_page_of_one_case_and_links_it(folder, refusal, capsys):
         (["batch.yaml"], "Missing option '--out'"),
         (["batch.yaml", "--out", "cell.yaml"], "cell.yaml: is a file"),
         (["batch.yaml", "--out", "."], "is a folder of something else"),
+        (["batch.yaml", "--out", "store", "--shard", "3/2"], "'3/2' is no part; i/n with i from 1 to n"),
         (["batch.yaml", "--out", "store", "--scheduler", "x"], "leave it out with --scheduler"),
         (["batch.yaml", "--out", "store", "--waivers", "none.yaml"], "there is no file 'none.yaml'"),
         (["batch.yaml", "--out", "store", "--tolerance", "t.yaml"], "t.yaml: tracking.file: there is no file"),

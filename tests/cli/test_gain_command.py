@@ -61,6 +61,8 @@ def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--margin-mm", "20")
     assert code == 1 and "binding   tool and right have no more to give" in text
     assert "can make" not in text
+    code, text, _ = said(capsys, slot, "--kind", "all", "--margin-mm", "20", "--within-mm", "0,1,0")
+    assert code == 1 and "waypoints" in text
 
 
 @pytest.mark.slow
@@ -77,6 +79,7 @@ def test_a_slow_down_is_told(tmp_path, capsys):
     "options, told",
     [
         (["--kind", "obstacle"], "there are several obstacles; name one with --obstacle; one of left, right"),
+        (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "waypoints", "--keep", "5:6"], "is not in the run; times from 0.5 s to 1.5"),
         (["--kind", "base", "--keep", "1:2"], "keep says nothing with kind base; kind waypoints"),
@@ -101,6 +104,9 @@ def test_all_kinds_are_tried_with_each_of_several_robots(tmp_path, refusal, caps
             assert cl.check(out / kind / robot / "case.yaml").passed == figures["kept"]
             assert figures["who"] == robot and (figures["kept"] or kind == "waypoints")
     assert "--force overwrites it" in refusal("gain", path, "--kind", "all", "--out", out)
+    again = ["gain", str(path), "--kind", "all", "--out", str(out), "--force", "--no-such-option"]
+    assert run(again) == 2
+    assert "Not finished" in (out / "base" / "one" / "gain.html").read_text()
 
 
 def test_where_no_kind_applies_it_is_bad_input(slot, capsys):
