@@ -64,6 +64,7 @@ def test_a_baseline_is_told_and_does_not_change_the_exit_code(reports, capsys):
     assert "since the baseline: BREAKS A RULE in 1 finding; 1 worse" in capsys.readouterr().out
     page = (reports / "now" / "report.html").read_text()
     assert "Since the baseline: BREAKS A RULE in 1 finding; 1 worse." in page
+    assert "worse, was 3.000 mm" in page
     assert check("clear/case.yaml", "--baseline", "of_broken") == 0
     assert "since the baseline: 1 gone" in capsys.readouterr().out
 
