@@ -69,6 +69,7 @@ OF_THE_MODEL = [
     (CASE + "allow: [[base]]\n", BadShape, "allow[0]: ['base'] is given; 2 values are needed"),
     (CASE + "allow: [base, post]\n", BadInput, "allow[0]: 'base' is given; rows of two patterns: [["),
     (CASE + "clock: comon\n", BadInput, "clock: 'comon' is given; did you mean 'common'?"),
+    (CASE + "clock:\n", BadInput, "clock: nothing is given; common, unsynchronised or"),
     (CASE + "clock: {slack: -1}\n", BadInput, "clock.slack: -1 is given"),
     (CASE + "carry: [{part: a, by: b}]\n", MissingKey, "carry[0]: 'from' is missing"),
     (CASE + "carry: [{part: a, by: b, from: 2, until: 1}]\n", BadTime, "carry[0]: from 2 s until 1 s"),

@@ -16,7 +16,7 @@ import clearance as cl
 from clearance.case import packed
 from clearance.case.packing import BEGIN, case_contents, write_pack
 from clearance.cli import run
-from clearance.errors import BadInput, BadPack
+from clearance.errors import BadInput, BadPack, MissingFile
 from tests.formats.making import ARM, CASE, cube_stl, write_case
 
 WAIVERS = """- {between: [upper, post], at_least: 0.001, reason: shown, by: ann, until: 2099-01-01}
@@ -219,3 +219,12 @@ def test_other_zips_and_packed_cases_are_told_apart(tmp_path, parts):
         from clearance.receipt.verifying import verify
 
         verify(tmp_path / "cell.zip")
+
+
+def test_what_cannot_be_read_is_said_as_of_any_case(tmp_path):
+    for path, told in ((tmp_path / "none.zip", "there is no file"), (tmp_path, "is a folder")):
+        with pytest.raises(MissingFile, match=told):
+            cl.load_case(path)
+    long = tmp_path / ("x" * 300)
+    with pytest.raises(MissingFile, match="name too long"):
+        cl.load_case(long)

@@ -7,6 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import UnknownLink
+from clearance.gains.figures import figures_of
 from clearance.gains.folder import save_gain
 from clearance.gains.search import Search
 from clearance.gains.sentences import lines_of
@@ -177,6 +178,8 @@ def test_a_tool_that_may_move_far_enough_does_and_no_farther(time):
     (line,) = [
         line for _, line in lines_of(found) if line.startswith(f"tool at {time:.3f} s is moved")
     ]
+    told = {"link": "tool", "time": time, "far": move.far, "turn": 0.0}
+    assert figures_of(found)["tool"] == [told | {"most_far": 0.0201, "most_turn": 1e-3}]
     assert "mm of 20.1 and turned 0 deg of 0.0572958" in line
 
 
