@@ -68,6 +68,7 @@ def test_a_code_that_was_given_once_keeps_its_meaning():
         assert entry.group and all(told) and "[CL" not in entry.example
 
 
+@pytest.mark.slow
 def test_each_class_of_errors_and_each_kind_has_its_own_code():
     kinds = {finding.JOINT_LIMITS, doubts.DISPUTED, doubts.UNUSED_WAIVER, doubts.NOTE, *NOT_CHECKED}
     kinds |= {*notice.KINDS, *finding.KINDS, *kinds_of_notices()}

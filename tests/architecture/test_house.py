@@ -62,6 +62,7 @@ def test_pre_commit_asks_with_the_tools_that_are_installed_here():
     assert all(Path(sys.executable).with_name(tool).is_file() for tool in asked.values())
 
 
+@pytest.mark.slow
 def test_every_module_opens_with_what_it_is_for():
     assert faults()["docstring"] == []
 

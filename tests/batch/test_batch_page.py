@@ -26,6 +26,7 @@ def many(tmp_path_factory):
     return page
 
 
+@pytest.mark.slow
 def test_ten_thousand_cases_are_a_small_file(many):
     assert many.stat().st_size < 5_000_000
     assert b"</script><b>" not in many.read_bytes()

@@ -91,6 +91,7 @@ def test_cases_that_one_batch_has(folder, capsys):
 WAIVER = "- {{between: [slider, wall], at_least: 0.03, reason: soft, by: N. N., until: {}}}\n"
 
 
+@pytest.mark.slow
 def test_a_waiver_that_is_gone_or_unused_alarms(folder, capsys):
     (folder / "w.yaml").write_text(WAIVER.format("2027-03-31"))
     assert batch("old", "--waivers", "w.yaml", "--today", "2026-11-01") == 0

@@ -64,6 +64,7 @@ TABLE = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", TABLE)
 def test_truth_table(what, folder, capsys):
     text, code, headline, line = TABLE[what]

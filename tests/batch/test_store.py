@@ -72,6 +72,7 @@ def changed(place, asked, *values):
         db.execute(asked, values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("column", ["status", "exit_code", "clearance", "findings", "digest"])
 def test_a_row_that_is_damaged_is_measured_again(column, manifest, tmp_path):
     run_here(manifest, tmp_path / "out")
@@ -81,6 +82,7 @@ def test_a_row_that_is_damaged_is_measured_again(column, manifest, tmp_path):
     assert told.measured == ["t002"] and answer_bytes(tmp_path / "out") == first
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("read", ["[", "[[1]]", "null"])
 def test_what_is_damaged_of_the_lists_of_files_is_measured_again(read, manifest, tmp_path):
     run_here(manifest, tmp_path / "out")
@@ -225,6 +227,7 @@ def test_a_database_of_something_else_is_one_line_and_stays(manifest, tmp_path, 
     changed(tmp_path / "out", "INSERT INTO mine VALUES (1)")
 
 
+@pytest.mark.slow
 def test_parts_that_were_measured_elsewhere_are_merged_and_stay(manifest, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     asked = ["batch", str(manifest), "--jobs", "1", "--quiet"]

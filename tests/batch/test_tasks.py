@@ -136,6 +136,7 @@ def cut(queue, n_hands):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_hands", [1, 4, 16])
 def test_each_case_is_in_one_task_and_the_last_are_small(many, n_hands):
     tasks = cut(Queue(many, "batch"), n_hands)

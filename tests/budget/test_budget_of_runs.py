@@ -123,6 +123,7 @@ def test_what_even_none_of_an_error_does_not_keep_has_no_largest(run):
     assert all(number is None for source in least_sources(run) for number in source.largest)
 
 
+@pytest.mark.slow
 def test_contact_is_never_kept_and_its_report_tells_no_deviation(tmp_path):
     """No direction leads from one body to the other there; the report is written, and says nothing of it."""
     run = cl.check(random_case(3))

@@ -186,6 +186,7 @@ def test_a_case_that_reads_beside_its_zip_is_refused(tmp_path, parts):
         cl.load_case(zipped(tmp_path, manifest, members))
 
 
+@pytest.mark.slow
 def test_no_message_shows_where_a_zip_is_unpacked(tmp_path, capsys):
     """A report in which a file is missing; a case that breaks its limit, which is annotated on the zip."""
     (tmp_path / "cell").mkdir()

@@ -168,6 +168,7 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
     assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
 
 
+@pytest.mark.slow
 def test_of_many_names_the_nearest_are_told(folder, refusal):
     write_cell(folder, [0.5] * 60)
     batch("batch.yaml", "--out", "store", "--quiet")

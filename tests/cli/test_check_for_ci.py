@@ -143,6 +143,7 @@ def test_the_hook_without_files_checks_all_below_the_folder(place, refusal, caps
     assert "broken/case.yaml: VIOLATED" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows_are_left", [True, False])
 def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(
     reports, capsys, rows_are_left

@@ -79,6 +79,7 @@ def same_bytes(one, other) -> bool:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [

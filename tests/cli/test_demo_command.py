@@ -42,6 +42,7 @@ def test_the_second_scene_is_violated_between_its_rows_only(capsys, monkeypatch)
     assert cl.check(FOLDER / "post.yaml", certify=False).verdict.exit_code == 0
 
 
+@pytest.mark.slow
 def test_without_the_extra_it_is_checked_and_one_line_says_what_a_report_needs(
     folder, capsys, monkeypatch
 ):
@@ -60,6 +61,7 @@ def test_the_scenes_are_listed(capsys):
     assert (code, err) == (0, "") and [line.split()[0] for line in out.splitlines()] == [*SCENES]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES)
 def test_a_copy_is_the_whole_case_and_stands_alone(folder, capsys, monkeypatch, scene):
     code, out, err = demo(capsys, scene, "--copy", "my cell")

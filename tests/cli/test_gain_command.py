@@ -20,6 +20,7 @@ def said(capsys, *arguments):
     return code, told.out, told.err
 
 
+@pytest.mark.slow
 def test_a_change_that_is_enough_is_told_and_written(slot, tmp_path, capsys):
     out = tmp_path / "out"
     code, text, _ = said(capsys, slot, "--kind", "obstacle", "--obstacle", "left", "--out", out)
@@ -116,6 +117,7 @@ def test_where_no_kind_applies_it_is_bad_input(slot, capsys):
     assert code == 2 and text.count("does not apply") == 4
 
 
+@pytest.mark.slow
 def test_what_was_found_is_written_before_the_reader_of_its_lines_leaves(
     slot, tmp_path, monkeypatch
 ):

@@ -263,6 +263,7 @@ def test_what_a_scene_says_is_held_is_carried_also_between_states():
     assert (carry.part, carry.by, carry.window.start) == ("tool", "tip", 0.0)
 
 
+@pytest.mark.slow
 def test_limit_files_are_named_where_they_lie(capsys):
     Path("cell/l.yaml").write_text(
         "joint_limits: {shoulder: {has_velocity_limits: true, max_velocity: 0.1}}"
@@ -348,6 +349,7 @@ def test_paths_are_relative_where_that_is_short_and_means_one_place(tmp_path):
     assert path_from(tmp_path / "link", "cell/arm.urdf") == str(tmp_path / "cell/arm.urdf")
 
 
+@pytest.mark.slow
 def test_what_no_table_says_of_a_motion_stays_in_a_file_that_does(tmp_path):
     """A recording with a hole, and points with accelerations."""
     pytest.importorskip("rosbags", reason="bags are made by rosbags")

@@ -45,6 +45,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 def test_our_cases_follow_it(errors):
     assert len(CASES) > 10
     assert {path: errors(path.read_text()) for path in CASES} == {path: [] for path in CASES}

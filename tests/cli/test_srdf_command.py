@@ -56,6 +56,7 @@ def test_pairs_that_never_meet_are_proven(robot, capsys):
     assert any(line.startswith("  lower - upper  Adjacent  can meet") for line in told)
 
 
+@pytest.mark.slow
 def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsys):
     urdf, _ = robot()
     out = tmp_path / "made.srdf"

@@ -70,6 +70,7 @@ def test_what_became_of_each_finding(what, before, tmp_path):
     assert sum(comparison.counts.values()) == len(comparison.rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("gate", "change", "why"),
     [
@@ -113,6 +114,7 @@ def waived_found(folder, gates) -> FindingList:
     return found(folder, gates, "waivers: [waivers.yaml]")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("least", [0.003, 0.004])
 def test_what_lost_its_waiver_is_worse_however_near_it_is(least, before, tmp_path):
     waived = waived_found(tmp_path / "waived", BEFORE)

@@ -113,6 +113,7 @@ def test_joints_beyond_their_limits_are_a_finding_a_robot():
     assert right.body_a == "right" and right.broken and "0.2 rad" in right.text
 
 
+@pytest.mark.slow
 def test_where_too_many_steps_are_near_the_nearest_pairs_are_told_and_that_is_said(monkeypatch):
     one = cl.check(case("iiwa_pipe_rack"), limits=RACK)
     whole = run("iiwa_pipe_rack", RACK).findings

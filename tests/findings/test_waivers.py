@@ -277,6 +277,7 @@ def test_a_comparison_names_what_is_newly_waived(tmp_path):
         assert compared(before, now).excused == ()
 
 
+@pytest.mark.slow
 def test_a_waiver_of_every_pair_is_warned_of_and_one_of_some_pairs_is_not(tmp_path):
     every = dataclasses.replace(waiver(), between=("*", "*"))
     told = {one: checked(tmp_path, NEAR_A, one).verdict.warnings for one in (every, waiver("*"))}

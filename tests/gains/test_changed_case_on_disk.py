@@ -126,6 +126,7 @@ def saved(request, tmp_path_factory):
     return found, out
 
 
+@pytest.mark.slow
 def test_what_is_written_is_read_as_what_was_claimed(saved):
     found, out = saved
     assert found.kept and not found.before.passed
@@ -179,6 +180,7 @@ def test_the_same_again_is_the_same_bytes_and_needs_force(tmp_path):
     assert (one / "before" / "mine.txt").read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_comments_stay_and_paths_lead_to_the_same_files(tmp_path):
     path = write_cell(tmp_path / "cell", SLOT)
     out = save_gain(cl.gain(path, "obstacle", obstacle="left"), tmp_path / "out")
@@ -188,6 +190,7 @@ def test_comments_stay_and_paths_lead_to_the_same_files(tmp_path):
     assert "limits: {fail: 0.04, warn: 0.04}  # agreed" in text
 
 
+@pytest.mark.slow
 def test_a_case_of_no_file_and_an_input_are_refused(tmp_path):
     path = write_cell(tmp_path, SLOT)
     with pytest.raises(BadInput, match="no file"):

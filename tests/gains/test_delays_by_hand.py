@@ -75,6 +75,7 @@ def handing(*obstacles, allow=()):
     return replace(crossing(0.05), obstacles=(part, *obstacles), carries=(carry,), allow=allow)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slow_down", [False, True])
 def test_a_part_is_picked_up_where_the_robot_is_there_later(slow_down):
     found = gain(handing(), "timing", robot="other", slow_down=slow_down)
@@ -102,6 +103,7 @@ def test_what_holds_from_0_on_holds_from_the_start_of_a_run_that_begins_later():
         run(0.05)
 
 
+@pytest.mark.slow
 def test_windows_that_a_delay_leaves_are_named_and_parts_that_change_hands_refused():
     row = Allowance(("one/*", "other/*"), Window(0.8, 0.9))
     lines = [*lines_of(gain(handing(allow=(row,)), "timing", robot="other"))]
@@ -117,6 +119,7 @@ def test_windows_that_a_delay_leaves_are_named_and_parts_that_change_hands_refus
         gain(handed, "timing", robot="other")
 
 
+@pytest.mark.slow
 def test_no_delay_takes_a_part_past_a_post_in_its_way(monkeypatch):
     """Without the post, the fifteenth delay that is tried keeps the rules."""
     monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 40)

@@ -41,6 +41,7 @@ def told(gain: Gain, *labels: str) -> list[Line]:
     return [(label, line) for label, line in lines_of(gain) if label in labels]
 
 
+@pytest.mark.slow
 def test_a_profile_that_the_change_breaks_is_named(found_for):
     """The bar sweeps y from -20 to 80 mm before, and from -40 to 60 mm after."""
     found = found_for(-0.03, 0.09)
@@ -63,6 +64,7 @@ def test_a_profile_that_the_change_breaks_is_named(found_for):
     assert row.endswith("; the changed case is not passed: violated")
 
 
+@pytest.mark.slow
 def test_nothing_is_said_of_a_profile_that_is_kept(found_for):
     found = found_for(-0.09, 0.09)
     assert found.kept and figures_of(found)["kept"] is True

@@ -29,6 +29,7 @@ from tests.simulate.measure.test_refine import sliding
 FINE = 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind, who", [("base", {}), ("obstacle", {"obstacle": "left"})])
 def test_a_bar_through_a_slot_is_moved_by_what_is_missing(kind, who):
     found = gain(slot(fail=0.04, off=0.03), kind, **who)
@@ -94,6 +95,7 @@ def test_the_least_delay_of_two_that_cross(fail):
     assert found.lower_bound <= least * (1.0 + 1e-9) and least <= found.size <= least + 2e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fail", [0.02, 0.1])
 def test_the_least_slow_down_of_two_that_cross(fail):
     found = gain(crossing(fail), "timing", robot="one", slow_down=True)
@@ -175,6 +177,7 @@ def quick(n, speed, acceleration=np.inf):
     return cl.Case("quick", (placed,), (post,), cl.Limits(fail=0.03, joints="fail"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n, speed, acceleration", [(5, 0.05, 0.2), (41, 0.03, np.inf)])
 def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
     found = gain(quick(n, speed, acceleration), "waypoints")

@@ -75,6 +75,7 @@ def past_a_swing(timing=None):
     return cl.Case("swing", (along_x(gantry()),), (bar,), cl.Limits(fail=0.05))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("x", [np.zeros(4), np.array([0.02, -0.01, 0.03, 0.1])])
 @pytest.mark.parametrize("timing", [None, Timing(start=-0.4, rate=1.5, after="loop")])
 def test_the_gradient_of_a_turned_motion_is_that_of_distances(x, timing):

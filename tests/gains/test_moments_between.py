@@ -26,6 +26,7 @@ def leaping(y=0.07, n=4, rates=False, timing=None):
     return cl.Case("leap", (placed,), (post,), cl.Limits(fail=0.01))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("y, missing", [(0.07, 0.04), (0.105, 0.005)])
 @pytest.mark.parametrize("kind", ["obstacle", "base"])
 def test_a_shift_parts_what_meets_between_samples(kind, y, missing):
@@ -41,6 +42,7 @@ def test_a_margin_is_kept_between_samples_too():
     assert abs(found.change[1]) == pytest.approx(0.003, abs=5e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("timing", [None, Timing(0.5, 0.8)])
 @pytest.mark.parametrize("rates", [False, True])
 def test_a_path_bends_around_what_it_meets_between_samples(rates, timing):
@@ -69,6 +71,7 @@ def test_a_path_along_a_beam_goes_beside_it():
     assert found.size == pytest.approx(2.0 * (0.05 + 0.06 + ASIDE), abs=10.0 * FINE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("timing", [None, Timing(0.5, 0.8)])
 @pytest.mark.parametrize("rates", [False, True])
 def test_a_path_of_two_samples_whose_ends_are_kept_is_said_to_stay_as_it_is(rates, timing):

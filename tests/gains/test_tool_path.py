@@ -37,6 +37,7 @@ def footed(x_range=(-np.inf, np.inf), rates=False):
     return cl.Case("foot", (placed,), (wall,), cl.Limits(fail=0.05))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rates", [False, True])
 def test_a_foot_steps_back_and_slides_make_up_for_it(rates):
     case = footed(rates=rates)
@@ -150,6 +151,7 @@ limits: {fail: 0.05}
 """
 
 
+@pytest.mark.slow
 def test_base_and_path_are_written(tmp_path):
     path = write_cell(tmp_path, FOOT)
     urdf = (tmp_path / "robots" / "one.urdf").read_text()
@@ -183,6 +185,7 @@ def test_a_tool_that_may_move_far_enough_does_and_no_farther(time):
     assert "mm of 20.1 and turned 0 deg of 0.0572958" in line
 
 
+@pytest.mark.slow
 def test_what_the_tool_keeps_from_is_said():
     found = cl.gain(posted(), keep_tool=[(0.49, 0.01, 1e-3)])
     assert not found.kept and found.tool_moves[0].far <= 0.011

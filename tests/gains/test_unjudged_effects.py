@@ -51,6 +51,7 @@ ON_TABLE = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "kind", "options", "said"),
     [

@@ -41,6 +41,7 @@ def run_and_reference(request):
     return cl.check(case, certify=False), reference
 
 
+@pytest.mark.slow
 def test_the_clearance_is_the_exact_one(run_and_reference):
     run, reference = run_and_reference
     for truth in reference["steps"]:

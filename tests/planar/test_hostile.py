@@ -115,6 +115,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", first_fast(CASES, 6))
 def test_hostile_classes_agree_with_the_oracle(name):
     (a, one), (b, two) = CASES[name]

@@ -148,6 +148,7 @@ def sweep(case, *asked, **cut):
     return DrawnOutline(asked[0] if asked else "xy", found.curve, found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plane", ["0.5 0 0.4 0 0 1", "0 0 0 0 0 -1"])
 def test_sweeps_in_planes_of_other_coordinates_are_not_compared(plane):
     """Two outlines in planes across one another can have the same numbers, and are nothing alike."""
@@ -157,6 +158,7 @@ def test_sweeps_in_planes_of_other_coordinates_are_not_compared(plane):
     assert compare(sweep(case), sweep(case, "0 0 0.4 0 0 1")).found.distance <= 1e-9
 
 
+@pytest.mark.slow
 def test_a_section_beside_a_silhouette_is_named(tmp_path):
     case = turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 1.0])
     for name, height in (("whole", None), ("cut", 0.05), ("cut2", 0.06)):
@@ -215,6 +217,7 @@ def test_a_drawing_without_a_unit_is_fitted_to_no_sketch(tmp_path, refusal):
     assert said in refusal("profile", "fit", zone, drawing, *asked)
 
 
+@pytest.mark.slow
 def test_a_swept_profile_takes_no_limit_without_a_unit(profile, tmp_path, refusal):
     """Its lengths are printed in mm, so that a limit of 1 would read as 1 mm and be 1 m."""
     path = tmp_path / "p.yaml"

@@ -64,6 +64,7 @@ def test_an_outline_made_from_a_sketch_gives_its_dimensions_back(name):
     assert cl.hausdorff(found.sketch.curves(), found.curve).distance <= 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "drawn", [(0.25, 0.15, 0.0), (1.0, 0.1, 0.0), (1.0, 1.0, 5.0), (2.0, 1.3, -1.0)]
 )
@@ -77,6 +78,7 @@ def test_the_least_rectangle_about_a_rectangle_is_that_rectangle(drawn):
     assert 2 * found.n_agreeing > found.n_starts
 
 
+@pytest.mark.slow
 def test_a_rectangle_drawn_small_in_a_hole_grows_to_its_margin():
     hole = [[0.02, 0.01], [0.12, 0.01], [0.12, 0.06], [0.02, 0.06]]
     frame = [[-0.1, -0.1], [0.2, -0.1], [0.2, 0.15], [-0.1, 0.15]]
@@ -114,6 +116,7 @@ def test_the_least_rectangle_about_a_turned_ellipse_like_outline_touches_four_si
     )  # smaller: it touches at once
 
 
+@pytest.mark.slow
 def test_an_outline_of_many_corners_is_contained_by_its_farthest_ones():
     """Of 5000 noisy corners a part is looked at first; those that stuck out were never seen."""
     turn = np.linspace(0.0, 2.0 * math.pi, 5001)[:-1]
@@ -209,6 +212,7 @@ def test_a_sketch_can_be_compared_as_it_is():
     assert drawn.curve.is_closed and drawn.profile is None
 
 
+@pytest.mark.slow
 def test_a_sketch_beside_the_outline_that_nothing_holds_is_refused():
     with pytest.raises(NoFit, match="grows beside the outline without end"):
         cl.fit(
@@ -229,6 +233,7 @@ def test_a_dimension_that_would_vanish_does_not_stop_the_others():
     assert 0.0 < found.dimensions["depth"] <= 3e-6
 
 
+@pytest.mark.slow
 def test_a_sketch_far_smaller_than_the_outline_about_it_grows_to_fill_it():
     """The price of leaving the outline is above what area is worth there, not where the sketch was drawn."""
     outline = cl.Curve.polyline([[-0.7, -0.4], [0.3, -0.4], [0.3, 0.6], [-0.7, 0.6]], closed=True)
@@ -259,6 +264,7 @@ def corner_of_six(corners=((0, 0), (1, 0), (1, 0.4), (0.5, 0.4), (0.5, 1), (0, 1
     return s
 
 
+@pytest.mark.slow
 def test_a_fit_does_not_cross_itself_so_that_its_lobes_cancel_each_other():
     found = cl.fit(corner_of_six(), TWELVE_CORNERS, "outside", margin=0.0152, starts=3)
     assert found.area > TWELVE_CORNERS_AREA

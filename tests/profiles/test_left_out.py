@@ -112,6 +112,7 @@ def test_a_link_that_is_only_shown_stands_in_the_file_and_quiet_or_not_in_the_ou
     assert BARE.replace("'", "&#39;") in out.read_text()
 
 
+@pytest.mark.slow
 def test_a_comparison_and_a_fit_tell_what_their_outline_leaves_out(tmp_path, capsys):
     path = write_case(tmp_path, urdf=ARM.replace('<link name="tip"/>', SHOWN))
     swept = str(tmp_path / "swept.yaml")

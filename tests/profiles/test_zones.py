@@ -129,6 +129,7 @@ def test_nothing_is_said_where_nothing_is_left_out():
     assert warnings(checked("outside", (-0.55, 0.55))) == []
 
 
+@pytest.mark.slow
 def test_the_cut_of_an_open_arm_stands_in_the_headline():
     """A pin in the middle of the arm is clear of the arm's surface, and would not be of the arm."""
     faces = [face for face in ARM.triangles() if ARM.vertices[face, 0].min() < 0.5]
@@ -183,6 +184,7 @@ FIXED = "- {kind: fix, of: [a]}\n"
 SLID = "the sketch of profile 'zone' is up to 20 mm from where it is drawn, and nothing fixes it"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("width", "fixed", "said"),
     [("1.16", "", [SLID]), ("1.16", FIXED, []), ("1.2", "", []), ("1.2001", "", [])],
@@ -201,6 +203,7 @@ def test_a_zone_that_slides_when_its_width_is_edited_stands_in_the_headline(
     assert all(one in found.verdict.text() for one in said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mode", "low", "high", "said"),
     [

@@ -63,6 +63,7 @@ def rotation_vector(pose: np.ndarray) -> list[float]:
     return list(map(float, Rotation.from_matrix(pose[:3, :3]).as_rotvec()))
 
 
+@pytest.mark.slow
 def test_a_script_moves_the_robot_as_our_own_form_does(tmp_path):
     found = cl.load_case(controller_case(tmp_path, "a.script", script(), axes=BEND))
     x, y, z = tool_at(START)[:3, 3].tolist()
@@ -144,6 +145,7 @@ def test_a_script_whose_blends_overlap_is_refused(tmp_path, first, second):
         cl.load_case(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "is_cut"), [(0.07, True), (0.05, False)])
 def test_a_blend_of_more_than_half_of_a_move_stands_in_the_headline(tmp_path, first, is_cut):
     path = controller_case(tmp_path, "a.script", blended(first, 0.02), axes=BEND)
@@ -247,6 +249,7 @@ def test_moves_of_handlers_stand_in_the_headline(tmp_path):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("flags", "why"),
     [

@@ -119,6 +119,7 @@ def joint_paths(one: Cornered, draw: np.random.Generator, n: int) -> list[np.nda
     return [*(draw.dirichlet(np.full(len(points), 0.2), size=6 * n) @ np.array(points))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["heron6", "iiwa"])
 @pytest.mark.parametrize("kind", ["LL", "LC", "CL", "CC", "JL", "CJ"])
 def test_no_admissible_path_takes_a_link_farther_than_is_proven(name, kind):

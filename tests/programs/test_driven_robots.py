@@ -108,6 +108,7 @@ def test_the_table_goes_where_moves_say_and_stands_as_the_world_does(tmp_path):
     assert arm.trajectory.drives == ("turntable",) and table.timing == arm.timing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("hold", "on"), [({"turntable/turn": 0.6}, "base"), ({}, "turntable/plate"), ({}, "part")]
 )
@@ -231,6 +232,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", REFUSED)
 def test_what_a_program_may_not_move_is_refused(tmp_path, fault):
     joint = "turntable/tilt" if fault == "a joint it has not" else "turntable/turn"

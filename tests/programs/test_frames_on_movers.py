@@ -102,6 +102,7 @@ def share_at(time: float, length: float, speed: float = 0.25) -> np.ndarray:
     return (ramp * ramp / 2 + speed * (time - ramp)) / length
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["heron6", "iiwa"])
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(one, marks=pytest.mark.slow) for one in range(1, 3))]
@@ -266,6 +267,7 @@ def test_a_line_on_a_conveyor_passes_a_post_as_worked_out_by_hand(tmp_path):
     assert still.worst["move"] == "LIN 1 → P1" or still.worst["time"] >= 0.4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("carried", [False, True])
 def test_a_tool_goes_with_a_part_on_a_turntable_on_a_conveyor(tmp_path, carried):
     """All by tables of their own, and the program later and quicker: the tool keeps its place on the part. It
@@ -415,6 +417,7 @@ def test_errors_of_what_is_followed_are_errors_of_the_joints():
     assert off < worst <= made.path_error
 
 
+@pytest.mark.slow
 def test_a_tool_goes_with_a_part_on_a_turntable_that_has_a_program_of_its_own(tmp_path):
     """The file may name the arm first; the tool keeps 80 mm from a cube that rides beside it."""
     moves = [{"lin": {"to": {"frame": "jig", "xyz": ON_PART}}}, {"wait": 2.5}]

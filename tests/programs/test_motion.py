@@ -106,6 +106,7 @@ def test_a_corner_is_proven_where_a_joint_is_held_on_both_sides(by):
         motion([path[0], replace(path[1], hold={})], "iiwa", start)
 
 
+@pytest.mark.slow
 def test_a_zone_too_wide_to_be_proven_is_passed_on_its_nominal_path_and_told():
     moves = lines(first_pose(), [(0.0, 0.12, 0.0), (0.0, 0.0, -0.12)], (0.4, 0.3, 0.0), zone=0.06)
     found = motion(moves).trajectory

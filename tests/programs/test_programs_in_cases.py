@@ -156,6 +156,7 @@ FAULTS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", FAULTS)
 def test_what_cannot_be_done_is_refused_in_one_line(tmp_path, fault):
     _, middle, end = line_and_arc_of_joints()
@@ -266,6 +267,7 @@ def near_singular(folder: Path) -> Path:
     return case(folder, [{"lin": {"to": to}}], [far()], start=start)
 
 
+@pytest.mark.slow
 def test_a_stretch_near_a_singularity_is_measured_and_not_proven(tmp_path):
     run = cl.check(near_singular(tmp_path))
     trajectory = run.record.case.robots[0].trajectory
@@ -315,6 +317,7 @@ def beside_a_turntable(folder: Path, moves: list, rows: str = "", **more) -> Pat
     return written(folder, content)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rows", "base"), [("", {"on": "far", "xyz": [-3.0, -5.0, -5.0]}), ("0,0.5\n9,0.5\n", {})]
 )

@@ -215,6 +215,7 @@ def without(shape: Polyhedron, towards: np.ndarray, n_faces: int) -> Polyhedron:
     return Polyhedron(shape.vertices, [f for i, f in enumerate(faces_of(shape)) if i not in out])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_faces", [1, 2, 3])
 def test_three_quarters_of_all_directions_are_inside_and_one_quarter_is_outside(
     n_faces: int,

@@ -83,6 +83,7 @@ def test_no_raised_bound_with_tolerances_is_proven(folder):
         assert not found.proven and f"interval {interval} " in found.failure
 
 
+@pytest.mark.slow
 def test_less_than_the_report_tells_of_is_not_proven(folder):
     claims = read_receipt(folder / FILE_NAME).claims.copy()
     claims[1] -= round(0.01 / UNIT)
@@ -223,6 +224,7 @@ def test_pairs_that_are_left_out_change_what_it_is_of(folder):
     assert not proven(folder, more)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deed", [CUT_A, CUT_TIME])
 def test_a_cut_that_leaves_out_faces_or_time_is_none(folder, deed):
     """What an item is cut into covers it: halves that are called proven are looked at all the same."""
@@ -252,6 +254,7 @@ def test_deeds_that_are_none_are_refused(folder, deed):
     assert not proven(folder)
 
 
+@pytest.mark.slow
 def test_numbers_at_the_ends_of_their_range_prove_nothing(folder):
     receipt = read_receipt(folder / FILE_NAME)
     for huge in (2**62, 2**63 - 1, 2**40):
@@ -277,6 +280,7 @@ def test_directions_of_nothing_prove_nothing(folder):
         assert not proven(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bound", ["certified", "tolerances"])
 @pytest.mark.parametrize("value", ["NaN", "Infinity", "-Infinity", '"1"', "null", "[]", "1e999"])
 def test_a_report_whose_bound_is_no_number_proves_nothing(folder, bound, value):

@@ -138,6 +138,7 @@ def forgeries(told: str) -> Iterator[tuple[tuple, str]]:
         yield ("without", key), text_of({name: one for name, one in parts.items() if name != key})
 
 
+@pytest.mark.slow
 def test_the_report_as_it_is_passes(folder):
     with_summary(folder, lambda summary: None)
     found = cl.verify(folder, turning_arm())
@@ -186,6 +187,7 @@ def test_no_value_of_the_summary_passes_as_made_elsewhere(report, tmp_path, answ
 TABLES = ("steps.csv", "contacts.csv", "budget.csv", "findings.json", "worst_moments.yaml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*TABLES, "report.html"])
 def test_a_table_or_page_that_says_something_else_is_found(name, report_with_tolerances, tmp_path):
     folder = Path(shutil.copytree(report_with_tolerances, tmp_path / "report"))
@@ -347,6 +349,7 @@ def test_a_verdict_that_rests_on_waivers_says_so_and_of_which_day(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_page_that_shows_a_comparison_is_not_called_verified(tmp_path):
     run = cl.check(turning_arm())
     findings = run.finding_list

@@ -42,6 +42,7 @@ def verified(folder, case=None):
     return cl.verify(folder, case or turning_arm())
 
 
+@pytest.mark.slow
 def test_the_bound_of_a_run_is_proven_again(folder):
     found = verified(folder)
     told = json.loads((folder / "summary.json").read_text())["certified"]["lower_bound"]
@@ -50,6 +51,7 @@ def test_the_bound_of_a_run_is_proven_again(folder):
     assert (found.n_pairs, found.n_intervals, found.n_claimed) == (2, 4, 4)
 
 
+@pytest.mark.slow
 def test_the_headline_says_what_the_verdict_does_not_cover(tmp_path):
     case = turning_arm()
     placed = case.robots[0]

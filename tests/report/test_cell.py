@@ -75,6 +75,7 @@ def test_self_collision_is_said_robot_by_robot():
     assert "self-collision of right not checked" in "\n".join(printed(run))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("slack", "told"), [(float("inf"), "clocks not tied"), (0.25, "clocks up to 0.25 s apart")]
 )

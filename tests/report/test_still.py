@@ -125,6 +125,7 @@ def words_of(run, monkeypatch) -> str:
     return "\n".join(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["suspect", "profile", "rule", "warned"])
 def test_all_that_bears_on_the_verdict_is_in_the_picture(name, monkeypatch):
     run, status, _ = CASES[name]

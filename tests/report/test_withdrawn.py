@@ -90,6 +90,7 @@ COMMANDS = {
 """What answers, the files of its answer, its pages, and what is typed more the second time."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
 def test_no_older_answer_of_any_command_outlasts_one_that_is_refused(name, folder):
     arguments, names, pages, more = COMMANDS[name]

@@ -30,6 +30,7 @@ def test_same_side_holds_from_any_drawing(seed):
     assert result.solved and p.position[1] * q.position[1] > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_same_side_takes_another_root_of_a_numeric_cluster(seed):
     """K(3,3) with two points fixed, and a side on which only other roots have their last point."""

@@ -151,6 +151,7 @@ def test_faults_of_json(text, fault, says):
     assert says in refusal(parse, text, "path.json", of=fault)
 
 
+@pytest.mark.slow
 def test_aliases_make_no_more_of_a_file_than_it_holds():
     many = "a: &a [1]\n" + "".join(f"b{i}: x\n" for i in range(3))
     wide = "joint_names: &n [" + ", ".join(f"j{i}" for i in range(200)) + "]\npoints:\n"

@@ -38,6 +38,7 @@ def read(path: Path, **choice):
     return load_trajectory(path, Choice(**choice))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("container", CONTAINERS)
 def test_of_several_topics_one_is_chosen_and_comes_back(tmp_path, container):
     path = write_bag(tmp_path, container, {"/plan": [MOVE, MOVE], "/joint_states": STATES})
@@ -76,6 +77,7 @@ def test_a_goal_of_an_action_is_a_topic_in_ros_1(tmp_path):
     assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("container", CONTAINERS[1:])
 def test_a_goal_of_an_action_is_an_event_in_ros_2(tmp_path, container):
     """Client and server tell of one goal, and of its response, which holds none."""
@@ -124,6 +126,7 @@ def test_drivers_that_tell_of_different_joints_are_put_together(tmp_path, contai
     assert any("2 messages at the ends are left out" in note for note in notes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("container", CONTAINERS)
 def test_joints_of_a_topic_that_is_not_chosen_stand_in_the_headline(tmp_path, container):
     """The case may say otherwise of them than the robot did; joints of other robots are not meant."""

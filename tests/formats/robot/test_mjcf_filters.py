@@ -123,6 +123,7 @@ class RandomModel:
         return {frozenset(model.body(i).name for i in pair) for pair in ends}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 60, 20))
 def test_mujoco_collides_exactly_the_pairs_that_are_measured(tmp_path, first):
     n_measured = n_filtered = 0

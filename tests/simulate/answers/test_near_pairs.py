@@ -37,6 +37,7 @@ def near_rows(need: str, within: float = 0.3) -> list[NearRows]:
     return [rule.pairs.near(within) for rule in run.session.rules]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("need", ["steps", "limit"])
 def test_near_pairs_are_those_of_a_run_with_every_pair(need):
     for found, true in zip(near_rows(need), near_rows("pairs"), strict=True):

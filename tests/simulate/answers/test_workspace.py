@@ -139,6 +139,7 @@ def greatest_escape(pieces, motion, n_parts):
     return worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
     """Velocities that have nothing to do with the positions: joints swing far beyond their samples."""

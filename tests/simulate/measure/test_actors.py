@@ -82,6 +82,7 @@ def exact_errors(case: cl.Case, steps: range) -> Iterator[float]:
             yield float(oracle.error(float(found[step, i_pair]), sq))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("origin", first_fast([NEAR_ORIGIN, FAR_OFF], 1))
 @pytest.mark.parametrize("seed", first_fast(range(2), 1))
 def test_two_robots_of_needles_and_slabs_are_as_far_apart_as_is_exact(seed, origin):

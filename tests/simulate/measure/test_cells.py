@@ -155,6 +155,7 @@ def variants(case):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["phases", "rules", "padding"])
 @pytest.mark.parametrize("seed", [0])
 def test_it_says_what_the_exact_method_says_where_it_is_right(seed, kind):
@@ -224,6 +225,7 @@ def true_clearances(case: cl.Case, points: np.ndarray, positions: np.ndarray) ->
     return np.array(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [0.4, 0.2, 0.0])
 def test_every_step_and_what_is_proven_between(gap):
     points, positions = scan(gap=gap), way(41)

@@ -263,6 +263,7 @@ def limited(**changes):
     return replace(case, robots=(replace(one, robot=robot, trajectory=None, **changes),))
 
 
+@pytest.mark.slow
 def test_configurations_in_degrees_are_suspect_each_time():
     checker = cl.Checker(limited())
     for degrees in ([0.0, 45.0], [[0.0, 0.0], [0.0, 45.0]]):

@@ -46,6 +46,7 @@ def counters_of(run: cl.Run) -> dict[str, dict[str, int]]:
     return {"steps": dict(run.record.tally), "proof": proven}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_kernels_count_what_the_table_says_of_a_scene_whose_verdict_is_the_one_promised(
     name: str,

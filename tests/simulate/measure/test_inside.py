@@ -206,6 +206,7 @@ def in_doubt(case: Case, pair: Pair, positions: np.ndarray) -> np.ndarray:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", CASES)
 def test_boxes_leave_out_no_pair_in_doubt(kind: str) -> None:
     case = CASES[kind]()

@@ -97,6 +97,7 @@ def stopping_at(count: int) -> Callable[[int, int], None]:
     return progress
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", first_fast(ASKED, 3))
 def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
     case: Case, name: str, tmp_path: Path

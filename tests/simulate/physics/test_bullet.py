@@ -121,6 +121,7 @@ def assert_same_kinematics(placed: PlacedRobot) -> None:
     assert np.abs(ours - engine).max() < ENGINE_PRECISION
 
 
+@pytest.mark.slow
 def test_our_kinematics_are_the_engines_on_a_robot_it_brings():
     urdf = packaged_urdf("franka_panda/panda.urdf")
     assert_same_kinematics(placed_robot(urdf, packages=(packaged_urdf(""),)))
@@ -324,6 +325,7 @@ def test_a_robot_that_does_not_arrive_is_suspect(tmp_path):
     assert "from its last sample 10 s after it" in notice.text
 
 
+@pytest.mark.slow
 def test_a_robot_that_an_obstacle_stops_is_suspect(tmp_path):
     """A wall whose face is 0.2 m before the slider's pushes back only where that is told."""
     placed = cart(tmp_path, effort=50.0)

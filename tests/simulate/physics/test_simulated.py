@@ -70,6 +70,7 @@ def test_a_robot_on_what_stands_moves_as_it_would_standing_there(tmp_path):
     assert found.placed is on and found.notes == standing.notes
 
 
+@pytest.mark.slow
 def test_gravity_is_that_of_the_base_and_turns_with_it(tmp_path):
     """A weak rail slides down as it does on a base that stands at the angle, until the base grows steeper."""
     weak = cart(tmp_path, effort=1.0)
@@ -85,6 +86,7 @@ def test_gravity_is_that_of_the_base_and_turns_with_it(tmp_path):
     assert any("acceleration of its base on plate/top is not felt" in n for n in found.notes)
 
 
+@pytest.mark.slow
 def test_a_table_that_is_followed_faster_is_simulated_faster(tmp_path):
     placed = cart(tmp_path, effort=3.0)
     asked = placed.given_trajectory
@@ -161,6 +163,7 @@ def test_a_whole_run_of_two_robots_and_a_part_in_hand(tmp_path):
     assert record.steps["tracking_error"].to_numpy().max() > 0.0
 
 
+@pytest.mark.slow
 def test_joint_limits_are_those_of_the_simulated_motion(tmp_path):
     """A rail that gravity pulls, whose motor is too weak to brake: faster than its 2 m/s."""
     case = Case("falls", (rail_up(cart(tmp_path, effort=1e-6)),), (post(),))

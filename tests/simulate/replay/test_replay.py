@@ -21,6 +21,7 @@ def test_a_short_run_is_kept_whole():
     assert replay.clearances.tolist() == record().clearances.tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("max_frames", [30, 50, 333])
 def test_a_long_run_keeps_the_least_of_every_stretch(max_frames):
     run = record(n_steps=1200)
