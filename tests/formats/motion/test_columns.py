@@ -112,6 +112,8 @@ NOT_TAKEN = [
      "{time: __time, shoulder: /js/shoulder/position, lift: /js/lift/position}"),
     ("time_from_start,shoulder,lift", "{time: time_from_start, shoulder: shoulder, lift: lift}"),
     ("time,shoulder,Lift", "{time: time, shoulder: shoulder, lift: Lift}"),
+    ("time,shoulder,lift,shoulder_velocity,vel_lift", "{time: time, shoulder: shoulder, lift: lift, "
+     "shoulder/velocity: shoulder_velocity, lift/velocity: vel_lift}"),
     ("time,shoulder,lift,shoulder/velocity,lift/velocity,shoulder/effort,lift/effort",
      "[time, shoulder, lift, shoulder/velocity, lift/velocity]"),
 ]  # fmt: skip
