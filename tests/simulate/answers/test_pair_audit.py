@@ -252,3 +252,21 @@ def test_both_bounds_of_a_box_hold_at_every_position_in_it(seed, n_joints, size)
     inside = rng.uniform(-1.0, 1.0, (200, middle.shape[1]))
     poses = chain.frames(middle + half * np.concatenate([corners, inside]))[:, -1]
     assert Query(shapes[a], shapes[b]).distances(None, poses).distances.min() >= proven
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_slopes_are_those_of_the_nearest_point_as_joints_move(seed):
+    """By differences; the nearest point of the second link moves with it, and the direction stays."""
+    rng = np.random.default_rng(seed)
+    robot, a, b = random_pair(rng, 3)
+    chain = chain_between(robot, a, b)
+    bodies = {body.name: body.shape for body in robot.bodies}
+    middle = within_limits(rng, chain, 1)
+    frames = chain.frames(middle)
+    u, point = np.array([0.6, 0.0, 0.8]), frames[0, -1] @ [0.1, -0.2, 0.3, 1.0]
+    seen = BoxDistances(np.array([0.5]), np.stack([point[:3] - 0.5 * u, point[:3]])[None], frames)
+    slopes = JointBox.of(chain, bodies[a], bodies[b]).slopes(seen)[0]
+    for step, slope in zip(1e-6 * np.eye(len(slopes)), slopes, strict=True):
+        after, before = (chain.frames(middle + way * step)[0, -1] for way in (1, -1))
+        moved = (after - before) @ [0.1, -0.2, 0.3, 1.0] / 2e-6
+        assert slope == pytest.approx(u @ moved[:3], abs=1e-7)
