@@ -1,20 +1,22 @@
 """A batch in one process: only what is missing or has changed is measured, and the answer has the same bytes."""
 
 import hashlib
+from dataclasses import replace
 from datetime import date
 
 import pytest
 import trimesh
 
-from clearance.batch import engine, file_hashes
+from clearance.batch import engine, file_hashes, rows
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
-from clearance.batch.measuring import Task, measure
+from clearance.batch.measuring import Task, conditions_of, measure, read_item
 from clearance.case import packed
 from clearance.case.case_file import load_cell, with_trajectory_file
 from clearance.case.packing import case_contents, write_pack
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.run import Question, answer
+from clearance.world.case import Source
 from tests.batch.batches import (
     CELL,
     URDF,
@@ -118,6 +120,37 @@ def test_the_key_is_of_all_that_decides_a_row(manifest):
     others += [{"need": "steps"} | BESIDE.get(name, {}) | {name: EVERY[name][0]} for name in names]
     keys = {key_of(items_of([str(manifest)], one)[0], files) for one in others}
     assert len(keys | {key}) == len(names) + 2 > 12
+
+
+def test_the_key_is_of_what_is_in_the_files_that_are_given(manifest, tmp_path):
+    tolerance, recorded = tmp_path / "t.yaml", tmp_path / "run.csv"
+    keys = {key_of(items_of([str(manifest)])[0], [])}
+    for size in (0.001, 0.01):
+        tolerance.write_text(f"obstacles: {{wall: {{xyz: {size}}}}}\n")
+        recorded.write_text(f"time,rail\n0,0\n1,{0.43 + size}\n")
+        for given in (dict(tolerance=tolerance), dict(motion="recorded", recorded=recorded)):
+            keys.add(key_of(items_of([str(manifest)], given)[0], []))
+    assert len(keys) == 5
+
+
+def test_a_variable_that_xacro_asks_for_is_an_input(manifest, monkeypatch):
+    path, item = manifest.parent / "cart.xacro", items_of([str(manifest)])[0]
+    path.write_text('<box size="$(optenv CART_LENGTH 0.2) 0.2 0.2"/>')
+    case = replace(read_item(item).case, sources=(Source(path.name, "a", 1, str(path)),))
+    monkeypatch.delenv("CART_LENGTH", raising=False)
+    (before,) = conditions_of(item, case)
+    monkeypatch.setenv("CART_LENGTH", "1.5")
+    (now,) = conditions_of(item, case)
+    assert before.path == now.path and before.sha256 != now.sha256
+
+
+def test_where_findings_are_missing_the_row_says_why(manifest, monkeypatch):
+    case = read_item(items_of([str(manifest)])[2]).case
+    whole, least = (answer(Question(case, need=need)) for need in ("limit", "minimum"))
+    assert rows.row_of(whole)["incomplete"] == ""
+    assert "need 'minimum'" in rows.row_of(least)["incomplete"]
+    monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
+    assert rows.row_of(whole)["incomplete"] == "1 of 1 findings are not listed"
 
 
 def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path):

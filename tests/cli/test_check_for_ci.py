@@ -56,6 +56,14 @@ def check(*arguments: str) -> int:
     return run(["check", *arguments])
 
 
+def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, refusal, capsys):
+    given = ("broken/case.yaml", "--waivers", "waivers.yaml", "--today", "2026-11-01")
+    assert check(*given, "--json") == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert "waivers.yaml" in [one["path"] for one in summary["inputs"]]
+    assert "would overwrite" in refusal("check", *given, "--summary", "waivers.yaml")
+
+
 @pytest.mark.slow
 def test_a_baseline_is_told_and_does_not_change_the_exit_code(reports, capsys):
     assert check("broken/case.yaml", "--baseline", "of_broken") == 1

@@ -61,7 +61,7 @@ def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     assert "Least change" not in page and "free-ends" not in text
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--margin-mm", "20")
     assert code == 1 and "binding   tool and right have no more to give" in text
-    assert "can make" not in text
+    assert "can make" not in text and "not written into the changed case" in text
     code, text, _ = said(capsys, slot, "--kind", "all", "--margin-mm", "20", "--within-mm", "0,1,0")
     assert code == 1 and "waypoints" in text
 

@@ -385,6 +385,12 @@ def test_a_doubt_about_the_unit_of_a_table_stays_with_its_file(capsys):
     assert "is the table in radians" in capsys.readouterr().out
 
 
+def test_limits_are_those_that_are_given():
+    assert new(*USUAL, "--fail-mm", "7.5", "--warn-mm", "20") == 0
+    limits = load_case("out/case.yaml").limits
+    assert (limits.fail, limits.warn) == (0.0075, 0.02)
+
+
 def test_an_empty_scene_is_in_the_headline(capsys):
     assert new("--srdf", "cell/arm.srdf", "--states", "home,out", "--check") in (0, 1)
     told = capsys.readouterr().out

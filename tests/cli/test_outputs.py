@@ -74,6 +74,7 @@ READS = "which this run reads"
     [
         ("check case.yaml --junit cart.urdf", READS),
         ("check case.yaml --out .", "steps.csv"),
+        ("check case.yaml --baseline a.yaml --junit a.yaml", READS),
         ("check case.yaml --out ../out", READS),
         ("check case.yaml --out ''", "an empty path"),
         ("check case.yaml --junit ''", "an empty path"),

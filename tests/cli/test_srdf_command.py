@@ -57,6 +57,19 @@ def test_pairs_that_never_meet_are_proven(robot, capsys):
 
 
 @pytest.mark.slow
+def test_a_pair_that_can_meet_fails_an_audit_and_is_told_first(robot, capsys):
+    assert run(["srdf", "audit", *robot(upper=0.4)]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "of 1 pair excused as Never: 1 can meet"
+    assert told[1].startswith("  base - upper   Never     can meet at shoulder ")
+    assert run(["srdf", "audit", *robot(upper=0.4), "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert objections("audit", found) == [] and found["never_refuted"] == 1
+    (worst,) = [pair for pair in found["pairs"] if pair["reason"] == "Never"]
+    assert worst["status"] == "meets" and worst["least"] == 0.0
+
+
+@pytest.mark.slow
 def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsys):
     urdf, _ = robot()
     out = tmp_path / "made.srdf"
@@ -71,7 +84,9 @@ def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsy
     assert run(["srdf", "audit", urdf, str(out)]) == 0
 
 
-def test_neighbours_that_lie_apart_at_home_and_can_meet_fail_an_audit(robot, capsys):
+def test_neighbours_that_lie_apart_at_home_and_can_meet_fail_an_audit_and_are_not_excused(
+    robot, capsys
+):
     """The hand reaches back over the elbow, 50 mm away from it at home."""
     urdf, srdf = robot(upper=0.25)
     Path(urdf).write_text(Path(urdf).read_text().replace('"-2" upper="2"', '"-3" upper="3"'))
@@ -82,6 +97,10 @@ def test_neighbours_that_lie_apart_at_home_and_can_meet_fail_an_audit(robot, cap
     assert run(["srdf", "audit", urdf, srdf, "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
     assert objections("audit", found) == [] and found["adjacent_refuted"] == 1
+    assert run(["srdf", "make", urdf]) == 0
+    Path(srdf).write_text(capsys.readouterr().out)
+    assert "<!-- measured: lower - upper: can meet at elbow " in Path(srdf).read_text()
+    assert load_srdf(srdf, load_robot(urdf)).reason("lower", "upper") is None
 
 
 def test_bad_input_is_one_line_and_2(robot, refusal):

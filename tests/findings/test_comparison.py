@@ -11,6 +11,7 @@ import clearance as cl
 from clearance.findings.comparison import TOLERANCE, FindingChange, compared
 from clearance.findings.finding import JOINT_LIMITS, UNPROVEN
 from clearance.findings.findings_file import FindingList
+from clearance.findings.measurement_conditions import conditions_of
 from clearance.report.comparison import comparison_page
 from clearance.report.comparison_text import comparison_cells, gone_text
 from tests.findings.gates import load_gates, write_gates, write_way
@@ -138,6 +139,31 @@ def test_what_is_measured_in_another_way_is_not_comparable(changed, why, before,
     comparison = compared(before, found(tmp_path / "now", BEFORE, **changed))
     assert comparison.whole == why and not comparison.passed
     assert {row.change for row in comparison.rows} == {FindingChange.NOT_COMPARABLE}
+
+
+def test_another_gap_of_the_certificate_is_told_in_millimetres(before):
+    measured = dataclasses.replace(before.measured, certify_gap=1e-3)
+    coarser = dataclasses.replace(before, measured=measured)
+    assert compared(before, coarser).whole == "certify gap was 0.1 mm, and is 1 mm"
+
+
+def test_a_simulation_in_which_obstacles_push_back_is_another_motion(before, tmp_path):
+    record = cl.check(load_gates(tmp_path / "now", BEFORE)).record
+    through = dataclasses.replace(record, motion_kind="simulated")
+    responding = dataclasses.replace(record.case, contact_response=True)
+    of_through, of_pushed = (
+        dataclasses.replace(before, measured=conditions_of(one))
+        for one in (through, dataclasses.replace(through, case=responding))
+    )
+    comparison = compared(of_through, of_pushed)
+    assert comparison.whole == "motion was simulated, and is simulated, contact_response"
+    assert not comparison.passed
+
+
+def test_other_limits_are_not_comparable(before, tmp_path):
+    now = found(tmp_path / "now", BEFORE, limits="{fail: 0.006, warn: 0.02}")
+    (row,) = compared(before, now).rows
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' has changed")
 
 
 def test_another_warn_limit_changes_nothing_of_what_fails(before, tmp_path):

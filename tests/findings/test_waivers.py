@@ -237,6 +237,7 @@ def test_every_answer_of_one_moment_is_of_what_fails(tmp_path):
     """Gate b fails with 4.5 mm while gate a, nearer and waived, is beside it: slopes are of b alone."""
     run = checked(tmp_path, TOGETHER, waiver())
     assert (run.worst["obstacle"], run.worst["status"]) == (B, VIOLATED)
+    assert run.verdict.reservations[0].startswith("nearest of all 3.000 mm")
     assert run.worst["clearance"] == run.worst_sample["clearance"] == pytest.approx(0.0045)
     row, (moment, *_) = row_of(run), moments_of(run.report)["moments"]
     assert (row["body_b"], row["clearance"]) == (B, run.worst["clearance"])

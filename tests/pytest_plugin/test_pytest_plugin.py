@@ -92,6 +92,15 @@ def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester
     assert "--clearance-out DIR writes the page" in inside().stdout.str()
 
 
+def test_each_case_has_a_report_of_its_own(inside, pytester):
+    for folder, gates in (("weld", BROKEN), ("weld-a", CLEAR)):
+        (pytester.path / folder).mkdir()
+        write_case(pytester.path / folder, gates)
+    inside("--clearance-out", "reports").assert_outcomes(passed=2, failed=2)
+    summary = pytester.path / "reports" / "weld" / "cell.clearance.yaml" / "summary.json"
+    assert '"verdict": "violated"' in summary.read_text()
+
+
 def test_a_case_that_is_refused_leaves_no_older_report_green(inside, pytester):
     file = write_case(pytester.path, CLEAR)
     inside("--clearance-out", "reports").assert_outcomes(passed=2)
@@ -229,6 +238,12 @@ def test_exactly_as_far_as_asked_for_is_far_enough_where_the_work_suffices(run, 
     monkeypatch.setattr(refine, "MOST_QUERIES", -1)
     with pytest.raises(AssertionError, match=r"only 99\.9.*undecided"):
         assert_clear(run, between=("box", B), at_least=0.1)
+
+
+def test_contact_is_never_clear(tmp_path):
+    run = cl.check(load_gates(tmp_path, {A: (0.0, 0.0)}, limits="{fail: 0}"))
+    with pytest.raises(AssertionError, match="contact at"):
+        assert_clear(run, between=("box", A), at_least=0.0)
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")

@@ -9,8 +9,11 @@ import pytest
 
 import clearance as cl
 from clearance.world.budget import Budget, ObstacleTolerance
+from clearance.world.rules import Allowance
+from clearance.world.timing import Window
+from tests.made_cases import at
 from tests.report.browser import Page, executable, opened
-from tests.report.cells import cell, with_a_hole
+from tests.report.cells import box, cell, sliding, with_a_hole
 
 pytestmark = [
     pytest.mark.browser,
@@ -61,6 +64,16 @@ def test_the_readout_and_the_hover_name_the_rule(page):
     assert "by rule fence" in readout(page)
     texts = page.run("window.clearance.chart.told.tip(0)")
     assert "by rule fence: fail 5 mm, warn 500 mm" in texts
+
+
+def test_a_page_says_of_steps_at_which_nothing_is_measured_that_it_is_so(tmp_path):
+    way = [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]
+    robots = (sliding("left", way), sliding("right", [(0, 3), (3, 3)]))
+    allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
+    case = cell((), robots, (box("post", (0.1, 0.1, 2), at(0.6)),), (), allow=allow)
+    with opened(cl.check(case), tmp_path) as page:
+        show(page, 2)
+        assert "nothing measured" in readout(page) and "no pair is left" in readout(page)
 
 
 def test_nothing_is_drawn_as_proven_with_tolerances_where_a_recording_is_not_measured(tmp_path):

@@ -198,6 +198,16 @@ def read(text: str):
     return YAML(typ="safe", pure=True).load(text)
 
 
+def test_the_worst_comes_first_and_all_pairs_below_a_limit_follow():
+    run = record(limits=LIMITS)
+    told = read(moments_text(run))
+    minima = {(one.link, one.obstacle): one.clearance for one in run_of(run).pair_minima}
+    below = {pair: least for pair, least in minima.items() if least < LIMITS.warn}
+    names = [(m["bodies"][0]["link_name"], m["bodies"][1]["id"]) for m in told["moments"]]
+    assert set(names) == set(below) and len(names) == len(below) > 1
+    assert [m["clearance"] for m in told["moments"]] == sorted(below.values())
+
+
 def test_what_is_too_much_is_left_out_and_counted(monkeypatch):
     run = record(limits=LIMITS)
     n = len(read(moments_text(run))["moments"])
@@ -279,6 +289,7 @@ def swing() -> Record:
 
 
 def test_a_gap_may_catch_what_needs_more(tmp_path):
+    assert [WIDTHS[part] for part in ("body", "head", "finger")] == [0.5, 0.3, 0.025]
     near = [one for one in run_of(swing()).pair_minima if one.clearance < 0.5]
     told = body_gaps_of(run_of(swing()).pair_minima, frozenset({"post", "table", "wall </script>"}))
     assert len(told) == len(near)
@@ -287,6 +298,12 @@ def test_a_gap_may_catch_what_needs_more(tmp_path):
         assert one["may_catch"] == [
             part for part, width in WIDTHS.items() if minimum.clearance < width
         ]
+
+
+def test_what_moves_on_both_sides_is_a_gap():
+    both = dataclasses.replace(run_of(swing()).pair_minima[0], link="tool", obstacle="elbow")
+    (told,) = body_gaps_of([dataclasses.replace(both, clearance=0.3)], frozenset({"post"}))
+    assert told["may_catch"] == ["body"]
 
 
 def test_pairs_that_both_stand_are_left_out(tmp_path):

@@ -89,6 +89,12 @@ def test_line_and_links_are_where_table_and_kinematics_say(page, step):
     assert np.abs(links_drawn(state) - poses).max() < 1e-6
 
 
+def test_the_line_has_the_colour_of_its_status_and_none_is_drawn_in_contact(page):
+    statuses = RUN.steps["status"].to_pylist()
+    shown = [show(page, statuses.index(one)) for one in ("clear", "near", "violated", "contact")]
+    assert len({one["colour"] for one in shown}) == 4 and shown[-1]["line"] is None
+
+
 def curve_point(page: Page, step: int) -> tuple[float, float]:
     """Where on the window the curve stands at a step."""
     page.run("window.scrollTo(0, 0)")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from clearance.record.record import Record
-from clearance.record.wording import contact_text
+from clearance.record.wording import contact_text, least_cm3, volume_cm3
 from clearance.report.topics.contact import sections
 from clearance.simulate.replay import replay as replay_contact
 from tests.report.browser import executable, opened
@@ -34,6 +34,12 @@ def test_a_bound_is_worded_as_one():
     figures |= {"volume": 2e-6, "volume_at_least": 0.0, "volume_exact": False}
     assert contact_text(figures) == "12.00 to 12.35 mm deep, at most 2.00 cm³ shared"
     assert contact_text(figures | {"exact": True}) == "12.35 mm deep, at most 2.00 cm³ shared"
+
+
+@pytest.mark.parametrize("volume", [0.0, 1e-15, 1.23456e-6, 9.999e-7, 1.0])
+def test_a_volume_lies_between_its_two_wordings(volume):
+    more, less = 1 + 1e-11, 1 - 1e-11  # rounding noise does not count
+    assert float(least_cm3(volume)) * less <= volume * 1e6 <= float(volume_cm3(volume)) * more
 
 
 def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):
