@@ -112,6 +112,14 @@ def test_components_are_judged_one_by_one():
     assert both.component_closed.tolist() == [True, False]
 
 
+def test_boxes_that_share_an_edge_still_have_an_inside():
+    pose = np.eye(4)
+    pose[:2, 3] = 1.0
+    both = Polyhedron.merged([box((1, 1, 1)), box((1, 1, 1)).transformed(pose)])
+    assert both.closed and both.oriented and not both.manifold
+    assert both.component_closed.tolist() == [True] and both.volume == 2.0
+
+
 def test_outward_turns_what_is_inside_out_and_leaves_cavities():
     solid, hollow = box((3, 3, 3)), box((1, 1, 1)).flipped()
     cavity = Polyhedron.merged([solid, hollow])

@@ -100,6 +100,15 @@ def test_points_inside_a_surface_with_holes_are_contact_or_in_doubt():
     assert distance(cloud, lid_off).inside == "undecided"
 
 
+def test_points_within_loose_faces_are_in_doubt():
+    """Faces that share no edge have no inside, but go round the point on all sides."""
+    ball = sphere(radius=1.0, tolerance=0.02)
+    each = [ball.centres[i] + 0.999 * (ball.face(i) - ball.centres[i]) for i in range(ball.n_faces)]
+    loose = Polyhedron.merged([Polyhedron(one, [range(len(one))]) for one in each])
+    assert distance(loose, PointCloud([[0.1, 0.0, 0.0]], 0.01)).inside == "undecided"
+    assert distance(loose, PointCloud([[1.1, 0.0, 0.0]], 0.01)).inside == "no"
+
+
 @pytest.mark.parametrize("order", [1, -1])
 def test_a_contact_is_the_same_wherever_the_search_began(order):
     """Of hundreds of points in a body one is the answer, also where the pose before was apart, or in contact."""

@@ -310,3 +310,9 @@ def test_shapes_of_an_object_do_not_hold_one_another(x, n_told):
     said = told((*shapes, WALL), *(Carry(f"a/{i}", "left/tool", Window(1.0)) for i in range(2)))
     text = "part 'a/0' is 0.5 m away from all of what picks it up at 1 s (left/tool)"
     assert len(said) == n_told and all(text in one for one in said)
+
+
+def test_a_part_far_away_is_told_of_though_another_is_gripped_at_once():
+    near, far = (box(name, (0.1, 0.1, 0.1), at(1.1, y, 0.5)) for name, y in (("p", 0), ("q", 1.5)))
+    (said,) = told((near, far, WALL), *(Carry(one, "left/tool", Window(1.0)) for one in "pq"))
+    assert "part 'q' is" in said and "away from all of what picks it up at 1 s" in said

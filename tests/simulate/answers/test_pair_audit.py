@@ -147,6 +147,17 @@ def test_a_leader_without_limits_has_those_of_what_follows_it():
     assert audit_pair(robot_of(shapes, leader, whole), "a", "c").status is PairStatus.MEETS
 
 
+@pytest.mark.parametrize(
+    ("lower", "status", "most"), [(0.4, PairStatus.APART, 0.3), (-0.3, PairStatus.MEETS, 0.65)]
+)
+def test_limits_of_followers_count_by_their_factor_and_offset(lower, status, most):
+    """c = -2 b + 1 within `lower` to 2; c reaches the post at about 0 rad."""
+    follower = turning("a", "c", np.eye(4), lower, 2.0, mimic=Mimic("ab", -2.0, 1.0))
+    shapes = [Body("a", POST), Body("b", box((0.1,) * 3)), Body("c", arm(0.95))]
+    found = audit_pair(robot_of(shapes, turning("a", "b", at(z=5.0)), follower), "a", "c")
+    assert found.status is status and -0.5 <= found.positions["ab"] <= most + 1e-12
+
+
 def test_an_open_surface_is_never_proven_apart():
     shell = prism(2.0, 4.0)
     holed = Polyhedron(shell.vertices, shell.triangles()[:-16])  # a stripe of its side is missing

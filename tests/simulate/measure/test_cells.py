@@ -233,6 +233,9 @@ def test_every_step_and_what_is_proven_between(gap):
     run = cl.check(case)
     found = run.record.steps["clearance"].to_numpy()
     assert np.abs(found - true_clearances(case, points, positions)).max() <= 1e-12
+    checker = cl.Checker(case)
+    alone = [checker.distance(row).distance for row in positions]
+    assert np.abs(found - alone).max() <= 1e-12
     shares = np.linspace(0.0, 1.0, 20)[:, None]
     finer = positions[:-1, None] + shares * np.diff(positions, axis=0)[:, None]
     between = true_clearances(case, points, finer.reshape(-1, 6)).reshape(-1, 20).min(axis=1)

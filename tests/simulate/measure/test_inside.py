@@ -46,9 +46,11 @@ def test_a_robot_wholly_inside_is_in_contact_whatever_is_asked(fault: str, need:
         "missing": faces[1:],
         "turned": [faces[0][::-1], *faces[1:]],
     }[fault]
-    run = moved(LINK, WAY, Polyhedron(BALL.vertices, faces), need=need)
+    outer = Polyhedron(BALL.vertices, faces)
+    run = moved(LINK, WAY, outer, need=need)
     assert run.status == "contact" and not run.passed and run.worst["clearance"] == 0.0
     assert run.record.notices == ()
+    assert moved(outer, WAY, LINK, need=need).status == "contact"
 
 
 @pytest.mark.parametrize("at_once", [inside.AT_ONCE, 8])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
@@ -27,8 +28,12 @@ from clearance.kernels.motion.world import World
 from clearance.world.case import Case
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import (
+    all_links,
+    floating_links,
     link_poses,
     links_of_robot,
+    poses_by_link,
+    standing_link,
     values_by_link,
 )
 from clearance.world.placed_robot import PlacedRobot
@@ -235,6 +240,29 @@ def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
     bound = ways(surface_of(body), np.array([frame]), links_of(placed), positions)
     assert (moved <= bound).all()
+
+
+@examples(40)
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([1e-9, 1e-3, 0.3, 1.0]),
+    st.sampled_from([1.0, 1.0 - 1e-6, 0.5]),
+)
+def test_no_body_moves_farther_than_its_quaternions_say(seed, size, length):
+    """It floats on what floats; slides move too, or stand."""
+    rng = np.random.default_rng(seed)
+    floating = floating_links(1, 0, 0, np.eye(4)), floating_links(5, 7, 4, ASIDE)
+    links = all_links(standing_link(np.eye(4)), *floating)
+    change = size * rng.choice([0.0, 1.0]) * rng.uniform(-1.0, 1.0, (12, 14))
+    positions = rng.uniform(-2.0, 2.0, 14) + change
+    for column in (3, 10):
+        turns = Rotation.from_rotvec(size * rng.uniform(-1.0, 1.0, (12, 3)))
+        turned = Rotation.random(random_state=seed % 2**30 + column) * turns
+        positions[:, column : column + 4] = length * turned.as_quat()
+    corners = np.column_stack([SHAPE.vertices, np.ones(len(SHAPE.vertices))])
+    world = corners @ poses_by_link(links, positions)[:, 8].transpose(0, 2, 1)
+    moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
+    assert (moved <= ways(surface_of(SHAPE), np.array([8]), links, positions)).all()
 
 
 def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
