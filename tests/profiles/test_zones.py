@@ -207,7 +207,7 @@ def test_a_zone_that_slides_when_its_width_is_edited_stands_in_the_headline(
 @pytest.mark.parametrize(
     ("mode", "low", "high", "said"),
     [
-        ("outside", -600, 600, "the sketch of profile 'zone' is 1200 m long where the robot reaches"),
+        ("outside", -60, 60, "the sketch of profile 'zone' is 120 m long where the robot reaches"),
         ("inside", 30, 80, "the sketch of profile 'zone' stays 41.9 m away from a robot that reaches"),
     ],
 )  # fmt: skip

@@ -232,6 +232,13 @@ REFUSED = {
 }
 
 
+def test_a_table_that_a_move_leaves_free_has_the_error_of_the_path(tmp_path):
+    move = lin((0.0, -0.05, 0.05), free=["turntable/turn"])
+    arm, table = cl.load_case(written(tmp_path, driving(tmp_path, [move]))).robots
+    assert abs(table.trajectory.positions[-1, 0] - 0.5) > 1e-3
+    assert table.trajectory.path_error == arm.trajectory.path_error > 0.0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", REFUSED)
 def test_what_a_program_may_not_move_is_refused(tmp_path, fault):

@@ -199,6 +199,8 @@ def test_what_a_zone_takes_is_violated_and_no_contact(tmp_path):
     padding = phase.case.robots[0].padding[run.record.worst.link]
     run = cl.check(with_zone(tmp_path, 0.01 + run.record.worst.clearance + 0.5 * padding))
     assert -padding < run.record.worst.clearance < 0.0 and not run.record.worst.touches
+    told = certified_text(certified_of(run.record, run.record.certificate))
+    assert "corner zones of its program" in told
     with pytest.warns(UserWarning, match="corner zones of robot 'heron6' pad its links"):
         cl.Checker(cl.load_case(tmp_path / "case.yaml"))
     judge = PairJudge.of(run.record)
