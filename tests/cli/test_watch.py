@@ -62,6 +62,15 @@ def test_every_file_that_was_read_is_watched_also_where_the_case_is_bad(
 
 
 @pytest.mark.slow
+def test_a_file_that_is_still_being_written_is_waited_for(tmp_path, monkeypatch):
+    path, seen = tmp_path / "a", []
+    path.write_text("")
+    parts = [lambda n=n: (path.write_text("x" * n), seen.append(n)) for n in (1, 2, 3)]
+    monkeypatch.setattr("time.sleep", Edits(None, *parts, None))
+    watch.wait_for_change({path: watch.state_of(path)})
+    assert seen == [1, 2, 3]
+
+
 def test_the_page_is_as_the_report_has_it_once_watching_ends(tmp_path, monkeypatch):
     case, out = write_case(tmp_path), tmp_path / "out"
     pages = []

@@ -150,6 +150,7 @@ def test_the_report_has_a_table_of_what_takes_it(tmp_path):
     write(OPEN, tmp_path / "out")
     read = pyarrow.csv.read_csv(tmp_path / "out" / "budget.csv").to_pylist()
     assert [row["kind"] for row in read] == ["position", "base", "surface"]
+    assert summary_of(OPEN)["tolerances"]["verdict"] == "not proven"
     assert read[1]["tolerance"] == 0.002 and read[1]["second_tolerance"] == 0.001
     assert read[1]["second_unit"] == "rad" and read[1]["second_at_most"] is None
 
