@@ -77,14 +77,16 @@ def stand(folder, name):
 
 
 GAIN = ["gain", "case.yaml", "--out", "out", "--force", "--kind", "obstacle"]
+WORKSPACE = ["workspace", "case.yaml", "away.yaml", "--out", "out"]
+REGION = ["workspace.json", "workspace.svg"]
+COMPARE = ["compare", "report", "report", "--out", "out"]
 COMMANDS = {
     "gain": (GAIN, ["gain.json"], ["gain.html"], []),
     "gain, unknown option": (GAIN, ["gain.json"], ["gain.html"], ["--no-such-option"]),
-    "workspace": (
-        ["workspace", "case.yaml", "away.yaml", "--out", "out"],
-        ["workspace.json", "workspace.svg"], [], [],
-    ),
-    "compare": (["compare", "report", "report", "--out", "out"], [], ["comparison.html"], []),
+    "workspace": (WORKSPACE, REGION, [], []),
+    "workspace, unknown option": (WORKSPACE, REGION, [], ["--no-such-option"]),
+    "compare": (COMPARE, [], ["comparison.html"], []),
+    "compare, unknown option": (COMPARE, [], ["comparison.html"], ["--no-such-option"]),
     "check": (["check", "case.yaml", *STILLS], ["x.png", "x.glb", "x.csv"], [], []),
 }  # fmt: skip
 """What answers, the files of its answer, its pages, and what is typed more the second time."""
@@ -120,7 +122,11 @@ def test_no_older_answer_of_any_command_outlasts_one_that_is_refused(name, folde
 
 @pytest.mark.parametrize(
     ("option", "place", "more"),
-    [("--trajectory", "path.csv", []), ("--png", "notes.txt", ["--no-such-option"])],
+    [
+        ("--trajectory", "path.csv", []),
+        ("--trajectory", "case.yaml", ["--no-such-option"]),
+        ("--png", "notes.txt", ["--no-such-option"]),
+    ],
 )
 def test_a_file_that_may_be_an_input_or_anything_else_stays_as_it_is(option, place, more, folder):
     (folder / "notes.txt").write_text("mine")
