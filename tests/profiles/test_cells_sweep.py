@@ -11,6 +11,7 @@ import clearance as cl
 from clearance.errors import UnknownLink, UnknownObstacle
 from clearance.findings.limit_lines import profile_text
 from clearance.profiles.answer import answer_profiles
+from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.swept_bodies import over_time, swept_bodies
 from clearance.world.body import Body, Obstacle
@@ -24,6 +25,7 @@ from clearance.world.timing import Timing, Window
 from tests import cells
 from tests.examples import examples
 from tests.oracle.outlines import inside
+from tests.profiles.finely import assert_within_chord_and_turn
 from tests.profiles.moving import drawn, rows
 
 shapely = pytest.importorskip("shapely")
@@ -87,6 +89,27 @@ def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
         times = np.linspace(window.start, window.end, 40)[1:-1]
         for name in ("part", "lid"):
             assert_contains(found, seen(case, name, times), rng)
+
+
+@pytest.mark.slow
+@examples(10)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate", "part", "lid"]))
+@example(0, "crate")
+def test_a_chain_is_where_its_body_is_and_points_stay_within_the_chord_bound(seed, name):
+    case = cells.cell(seed)
+    names = ["right/*"] if name in ("part", "lid") else [name] if name in LINKS else []
+    obstacles = [name] if name in ("door", "crate") else []
+    for one in swept_bodies(over_time(case), names, obstacles):
+        if one.label != name or one.chain is None:
+            continue
+        knots = knots_of(one.chain, one.body.shape, PLANE, 0.5, solid=False)
+        assert_within_chord_and_turn(
+            knots, one.body.shape, PLANE, lambda at, one=one: one.chain.poses_at(at)[:, -1], 1e-13
+        )
+        instants = np.linspace(0.0, one.chain.n_steps - 1, 37)[1:-1]
+        times = np.interp(instants, np.arange(one.chain.n_steps), one.chain.motions[0].times)
+        for t, pose in zip(times, one.chain.poses_at(instants)[:, -1], strict=True):
+            assert pose == pytest.approx(cells.pose_at(case, name, t), abs=1e-9)
 
 
 def carrying(**changes):

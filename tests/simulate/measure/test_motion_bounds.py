@@ -19,11 +19,13 @@ from clearance.kernels.motion.interval_motion_bound import (
     interval_motion_bound_of,
 )
 from clearance.kernels.motion.joint_motion_bound import (
+    BALL_ROUNDING,
     motion_bound_of,
     motion_bound_of_box,
     motion_bound_of_box_along,
+    orientation_rounding,
 )
-from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
+from clearance.kernels.motion.joint_path import OUTWARD, BallPath, JointPath, part_of
 from clearance.kernels.motion.world import World
 from clearance.world.case import Case
 from clearance.world.forest import forest_of
@@ -240,6 +242,22 @@ def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
     bound = ways(surface_of(body), np.array([frame]), links_of(placed), positions)
     assert (moved <= bound).all()
+
+
+def test_rounding_of_orientations_counts_for_all_that_they_carry():
+    """Of two ball joints: one at the body, one beyond three slides of 1, 0.25 and 0.125 m."""
+    floating = floating_links(1, 0, 0, np.eye(4)), floating_links(5, 7, 4, ASIDE)
+    links = all_links(standing_link(np.eye(4)), *floating)
+    slides = [np.zeros(9) for _ in range(3)]
+    for values, value in zip(slides, (-1.0, 0.25, 0.125), strict=True):
+        values[5] = value
+    state = IntervalMiddle(*slides, np.empty((9, 4, 4)))
+    balls = BallPath(np.array([4, 8]), links.parent_from_joint[[4, 8]], np.empty((0, 2, 8)))
+    surface = surface_of(SHAPE)
+    found = orientation_rounding(box_of(surface, surface.roots[0]), links, 8, balls, state)
+    reach = np.linalg.norm(SHAPE.bounds[1])
+    far = 2.0 * reach + 1.375 + np.linalg.norm(ASIDE[:3, 3])
+    assert found == pytest.approx(BALL_ROUNDING * far, rel=1e-4, abs=0.0) and found > 0.0
 
 
 @examples(40)
