@@ -60,6 +60,12 @@ def test_positions_and_extremes_are_those_of_the_spline(seed):
         assert np.abs(greatest[i] - sampled.max(axis=0)).max() <= 1e-3 * size
 
 
+def test_before_and_after_a_trajectory_the_robot_rests():
+    asked = random_trajectory(1)
+    ends = positions_along(asked, asked.times[[0, -1]] + [-5.0, 5.0])
+    assert np.abs(ends - asked.positions[[0, -1]]).max() <= 1e-15
+
+
 def test_mimics_move_at_their_multiple_and_fixed_joints_rest():
     joints = (
         Joint("a", JointKind.REVOLUTE, "l0", "l1", np.eye(4)),

@@ -12,7 +12,7 @@ from clearance.formats.cloud.formats import cloud_from_bytes, read_points
 from clearance.formats.cloud.pcd_file import decompressed
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from tests.formats.making_case import changed, load_small
-from tests.formats.making_clouds import lzf, pcd, ply, table
+from tests.formats.making_clouds import XYZ, lzf, pcd, ply, table
 from tests.formats.refusal import refusal
 
 POINTS = np.array([[0.5, -1.25, 2.0], [1e-3, 0.0, 3.5], [0.1, 0.2, 0.3], [7.0, 8.0, 9.0]]).astype(
@@ -122,6 +122,7 @@ FAULTS = {
     "twice": (pcd(POINTS, more=["WIDTH 4"]), "has WIDTH twice"),
     "no fields": (pcd(POINTS, FIELDS=None), "has no FIELDS"),
     "no z": (pcd(POINTS, FIELDS="x y w"), "no one field 'z'"),
+    "two z": (pcd(POINTS, fields=(*XYZ, XYZ[2])), "no one field 'z'"),
     "sizes": (pcd(POINTS, SIZE="4 4"), "SIZE is '4 4'; 3 whole numbers"),
     "no number": (pcd(POINTS, SIZE="4 4 a"), "'a' is not a whole number"),
     "type": (pcd(POINTS, TYPE="F F D"), "TYPE 'D' and SIZE 4"),

@@ -30,6 +30,7 @@ WAYS = [
         "timestamp_ns,shoulder,lift\n0,1,2\n1000000000,3,4\n",
         ["column 'timestamp_ns' is taken for time", "read in nanoseconds: 'time'"],
     ),
+    ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
     ("% time shoulder lift\n0 1 2\n1 3 4\n", [BLANKS]),
     ("# run 7\n# of arm\ntime,shoulder,lift\n0,1,2\n1,3,4\n", [f"{ABOVE} 'run 7', 'of arm'"]),
     ("\ufeff# run 7, 1 kHz\n\n#time,shoulder,lift\n0,1,2\n1,3,4\n", [f"{ABOVE} 'run 7, 1 kHz'"]),

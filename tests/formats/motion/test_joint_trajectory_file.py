@@ -61,6 +61,14 @@ def test_every_form_gives_the_same_numbers(form):
         assert read.velocities.tolist() == [[0.0, -0.001], [0.5, 0.25]]
 
 
+def test_a_message_begins_at_its_stamp_if_it_has_one():
+    stamped = parse(ROS2)
+    assert stamped.began == 12.0000005 and stamped.is_message
+    assert (
+        parse(ROS2.replace("sec: 12", "sec: 0").replace("nanosec: 500", "nanosec: 0")).began is None
+    )
+
+
 def test_times_as_people_write_them_by_hand():
     """Without nanoseconds, which is told, and with a point behind whole seconds."""
     document = {**MESSAGE, "points": [

@@ -381,3 +381,14 @@ def test_lines_that_run_at_the_end_of_a_motion_move_nothing():
     assert names(at_point("CALL GRIP") + go(3), skip=["GRIP"]) == ["P[2]", "P[3]"]
     with pytest.raises(cl.ClearanceError, match="line 8: P-SPS has no end; a line of dashes"):
         names(at_point("DO[1]=ON").replace("------ ;", ""))
+
+
+@pytest.mark.parametrize("changed", ["UFRAME_NUM=2", "R[1]=3", "P[3]=P[2]", "UFRAME[1]=PR[1]"])
+def test_what_lines_at_the_end_of_a_motion_change_is_not_known_behind_it(changed):
+    body = f"R[1]=3 ;\n{at_point(changed)}L P[R[1]] 9mm/sec FINE ;\n"
+    told = "may change it at any time|was taught|is given a value before|is set in the program"
+    if changed == "UFRAME_NUM=2":  # the point says its own, and no controller accepts another
+        assert names(body) == ["P[2]", "P[3]"]
+    else:
+        with pytest.raises(cl.ClearanceError, match=told):
+            names(body)

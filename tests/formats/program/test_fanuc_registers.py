@@ -128,6 +128,7 @@ def test_a_case_says_what_registers_and_inputs_hold_and_the_headline_names_those
         (WAY, {}, 'let the file decide it, or program: {variables: {"R[1]": 0}}, if it holds that at the start'),
         ("DO[5]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {}, "only the controller knows DO[5]; let"),
         (go(2), {"variables": {"DO[1]": 1}}, "variables: DO[1]: 1 is given; true or false"),
+        (go(2), {"variables": {"R[1]": True}}, "variables: R[1]: True is given; a number"),
         (go(2), {"variables": {"SO[1]": True}}, "variables: 'SO[1]' is given; a register or a signal, as R[1]"),
         ("DO[R[1]]=ON ;\n" + WAY.replace("R[1]=2", "DO[5]"), {"variables": {"DO[5]": True}},
          "variables: DO[5]: DO at line 8 may set it by a number that is not read"),
@@ -202,3 +203,11 @@ def test_a_program_that_is_left_out_may_change_position_registers():
     (told,) = program(body, skip=["FOLGE"]).doubts
     assert told == "PR[5] is taken not to be changed by what is left out: FOLGE (line 9)"
     assert program(f"{FRAMES}PR[5]=P[2] ;\nWAIT DI[1]=ON ;\n{L5}", skip=["WAIT"]).doubts == ()
+
+
+@pytest.mark.parametrize("word", ["P", "R", "UFRAME_NUM", "UTOOL", "$MNUFRAMENUM"])
+def test_what_changes_points_and_frames_is_never_left_out(word):
+    with pytest.raises(
+        cl.ClearanceError, match=f"skip: .*{word[1:]} moves the robot, or changes how"
+    ):
+        program(FRAMES + "P[R[1]]=P[5] ;\nL P[2] 100mm/sec FINE ;", skip=[word])

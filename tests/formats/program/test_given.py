@@ -40,6 +40,8 @@ def check(name, text, beside=(), **asked):
         ("a.script", SCRIPT, (), {"tools": {"tcp": AT}}, f"tools.tcp: {IDLE}without it"),
         ("a.mod", RAPID, (), {"skip": ["WaitDI", "WaitDO"]}, "'WaitDO' is in no file of it; did you mean 'WaitDI"),
         ("a.mod", RAPID, (), {**WAIT, "tools": {"tWled": AT}}, f"tools.tWled: {IDLE}did you mean 'tWeld'?"),
+        ("a.mod", RAPID, (), {**WAIT, "zones": {"z10": 0.3}}, f"zones.z10: {IDLE}without it"),
+        ("a.mod", RAPID, (), {**WAIT, "units": {"STN_1": {"on": "base"}}}, f"units.STN_1: {IDLE}without it"),
         ("weld.src", KRL, CONFIG, {**PTP, "tools": {"TOOL_DATA[1]": AT}}, f"tools.TOOL_DATA[1]: {IDLE}"),
         ("CELL.LS", LISTING, (), {"zones": {"CNT": 0.05}, "variables": {"R[1]": 3}}, f"variables.R[1]: {IDLE}"),
         ("weld.src", KRL, CONFIG, {**PTP, "variables": {"N": 3}}, f"variables.N: {IDLE}without it"),

@@ -217,6 +217,7 @@ FAULTS = {
     "GOTO again;": "line 3: 'GOTO' is not understood",
     "IF di1=1 ExitCycle;": "line 3: if decides on ExitCycle at line 3",
     "g_GripIn;": "line 3: 'g_GripIn' is no known instruction",
+    "SingArea\\Wrist;": "not read; SingArea\\Off, so that the tool keeps its orientation",
     "SearchL di1,p,p,v10,tool0;": "line 3: SearchL changes where the robot goes",
     "FOR i FROM 1 TO 5 STEP 0 DO ENDFOR": "line 3: a step of 0",
     "TEST 1\nRETURN;\nCASE 1: ENDTEST": "line 4: test begins with a statement; CASE",

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
+from clearance.errors import BadInput
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.request import RobotRequest, read_robot
 from clearance.world.notice import Severity
 from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl
+from tests.formats.making_case import changed, load_small
 from tests.formats.making_glb import document_of, glb
 from tests.formats.making_meshes import collada, primitive
 from tests.formats.making_urdf import joint, link, robot
@@ -89,3 +91,18 @@ def test_where_both_shapes_turn_together_the_joints_tell(tmp_path):
         assert notice.text.endswith("at them with file: 'b'")
         assert load(tmp_path, "file", visual=visual, bar__dae=dae(LYING)).notices == ()
         assert load(tmp_path, "ros", visual=visual, bar__dae=dae(BAR)).notices == ()
+
+
+def test_a_case_chooses_the_way(tmp_path):
+    urdf = robot(
+        link(shape("collision", "bar.dae"), "base"),
+        link("", "tip"),
+        joint("shoulder", "base", "tip"),
+    )
+    case = changed("arm.urdf", "arm.urdf, collada_up_axis: file")
+    turned = load_small(tmp_path, case, urdf=urdf, bar__dae=dae(LYING)).robots[0].robot
+    assert turned.bodies[0].shape.bounds[1].tolist() == BAR.max(axis=0).tolist()
+    with pytest.raises(
+        BadInput, match=r"robot\.collada_up_axis: 'z' is given; 'ros' or 'file' is needed"
+    ):
+        load_small(tmp_path, changed("arm.urdf", "arm.urdf, collada_up_axis: z"))

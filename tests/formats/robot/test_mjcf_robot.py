@@ -191,6 +191,7 @@ def test_files_from_outside_the_models_folder_are_told(tmp_path):
         (mjcf("<body><composite/></body>"), BadInput,
          "<composite> '' is not read: it makes bodies that are made by rule"),
         (mjcf("", '<asset><model name="m" file="m.xml"/></asset>'), BadInput, "<model> 'm' is not read"),
+        (mjcf('<flexcomp name="f"/>'), BadInput, "a body that bends"),
         (mjcf('<include file="no.xml"/>'), MissingFile, "there is no file 'no.xml'"),
         (mjcf('<include file="toy.xml"/>'), BadInput, "'toy.xml' is included twice"),
         (mjcf("<include/>"), BadInput, "<include> has no file"),

@@ -49,6 +49,7 @@ def in_joint(inner: str) -> str:
         (in_joint('<limit lower="2" upper="1"/>'), BadInput, "lower limit 2"),
         (in_joint('<mimic joint="k"/>'), UnknownJoint, "unknown joint 'k'"),
         (robot(link(collision('<sphere radius="1" diameter="2"/>'))), BadInput, "='2' is not read; radius="),
+        ('<robot name="r" units="mm"/>', BadInput, "robot 'r': units='mm' is not read"),
         (in_joint('<axis xyz="0 0 1"/><axis xyz="0 1 0"/>'), BadInput, "two <axis>"),
         (in_joint("<origin>1 0 0</origin>"), BadInput, "origin: the text '1 0 0' is not"),
         (robot(link("<shape><box size='1 1 1'/></shape>")), BadInput, "link 'a': <shape> is not read"),

@@ -93,3 +93,14 @@ def test_a_mesh_that_the_model_turns_is_turned_and_then_scaled(tmp_path):
 )  # fmt: skip
 def test_what_cannot_be_a_scene_is_refused(tmp_path, text, says):
     assert re.search(says, refusal(scene, tmp_path, text, of=BadInput))
+
+
+def test_a_mocap_body_that_collides_is_warned_of_as_bodies_on_joints_are(tmp_path):
+    target = '<body name="target" mocap="true"><geom size="1" contype="0" conaffinity="0"/></body>'
+    cart = f'<body name="cart" mocap="true"><body name="top">{BALL}</body></body>'
+    _, content = scene(tmp_path, mjcf(target + cart))
+    (notice,) = content.notices
+    assert (
+        notice.text
+        == "mocap bodies stand where the file has them, with all that is on them: 'cart'"
+    )
