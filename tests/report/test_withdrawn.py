@@ -79,6 +79,7 @@ def stand(folder, name):
 GAIN = ["gain", "case.yaml", "--out", "out", "--force", "--kind", "obstacle"]
 WORKSPACE = ["workspace", "case.yaml", "away.yaml", "--out", "out"]
 REGION = ["workspace.json", "workspace.svg"]
+CHECK = ["check", "case.yaml", *STILLS]
 COMPARE = ["compare", "report", "report", "--out", "out"]
 COMMANDS = {
     "gain": (GAIN, ["gain.json"], ["gain.html"], []),
@@ -87,7 +88,8 @@ COMMANDS = {
     "workspace, unknown option": (WORKSPACE, REGION, [], ["--no-such-option"]),
     "compare": (COMPARE, [], ["comparison.html"], []),
     "compare, unknown option": (COMPARE, [], ["comparison.html"], ["--no-such-option"]),
-    "check": (["check", "case.yaml", *STILLS], ["x.png", "x.glb", "x.csv"], [], []),
+    "check": (CHECK, STILLS[1::2], [], []),
+    "check, unknown option": (CHECK, STILLS[1::2], [], ["--no-such-option"]),
 }  # fmt: skip
 """What answers, the files of its answer, its pages, and what is typed more the second time."""
 
