@@ -13,6 +13,7 @@ from clearance import PointCloud
 from clearance.errors import (
     BadDimension,
     BadPolygon,
+    BadPose,
     BadShape,
     EmptyMesh,
     NotFinite,
@@ -220,3 +221,8 @@ def test_no_group_holds_points_whose_balls_are_apart():
             touch = touch @ touch
         groups = components_of(points, radius)
         assert touch[groups[:, None] == groups].all()
+
+
+def test_transforming_needs_a_rigid_motion():
+    with pytest.raises(BadPose):
+        box((1, 1, 1)).transformed(np.diag([1.0, 1, -1, 1]))
