@@ -155,6 +155,14 @@ def test_input_that_is_suspect_is_refused(capsys):
     assert not any(Path("made").iterdir())
 
 
+def test_meshes_beside_the_scene_are_not_overwritten_unasked(refusal):
+    Path("cell.scene").write_text(FIRST)
+    Path("made/cell.scene.mesh0.off").write_text("mine")
+    told = refusal("convert", "cell.scene", "made/scene.yaml")
+    assert "made/cell.scene.mesh0.off: already exists" in told
+    assert not Path("made/scene.yaml").exists()
+
+
 def test_packages_of_a_scene_are_found_in_the_folders_that_are_named(capsys):
     (Path("packages") / "parts").mkdir(parents=True)
     Path("cube.stl").rename("packages/parts/cube.stl")

@@ -69,6 +69,7 @@ SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
 def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
     verdict, run = verdict_of(one), run_of(one)
     assert (verdict.status, verdict.exit_code) == (status, exit_code)
+    assert (verdict.shade == "violated") == (status == "not proven")
     assert verdict.headline(str.upper) == text
     assert (run.status, run.passed) == (status, exit_code == 0)
     summary = summary_of(one)
