@@ -89,6 +89,7 @@ def test_a_note_says_the_order_of_columns_where_it_is_not_that_of_the_robots_fil
     [
         ([0.0, 0.0], np.zeros((2, 7)), {}, BadTime),
         ([0.0, 1.0], np.zeros((2, 6)), {}, BadShape),
+        ([0.0], np.zeros((2, 7)), {}, BadShape),
         ([], np.zeros((0, 7)), {}, BadShape),
         ([0.0, np.inf], np.zeros((2, 7)), {}, NotFinite),
         ([0.0, 1.0], np.full((2, 7), np.nan), {}, NotFinite),

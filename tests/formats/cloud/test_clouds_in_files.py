@@ -25,6 +25,7 @@ FILES = {
     "ascii.pcd": pcd(POINTS, "ascii"),
     "binary.pcd": pcd(POINTS, "binary"),
     "compressed.pcd": pcd(POINTS, "binary_compressed"),
+    "ascii more.pcd": pcd(POINTS, "ascii", MORE),
     "binary more.pcd": pcd(POINTS, "binary", MORE),
     "organised.pcd": pcd(POINTS, "binary", WIDTH=2, HEIGHT=2),
     "old.pcd": pcd(POINTS, "ascii", VERSION=".5", COUNT=None, POINTS=None, VIEWPOINT=None),

@@ -82,6 +82,24 @@ def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
     assert mesh_from_bytes(binary_stl(CUBE_CORNERS), "m.stl").notes == ()
 
 
+def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
+    lines = obj().splitlines()
+    faces = [
+        "o first", "usemtl red", lines[8], "usemtl blue", lines[9], "g left right",
+        "f 1/1/1 5/2/1 6/3/1 2/4/1", "o second", "usemtl red", "f 3//1 4//1 8//1 7//1", "s off",
+        "usemtl", lines[12], "l 1 2", "f 2/9 6/9 8/9 4/9",
+    ]  # fmt: skip
+    text = "\n".join(
+        ["# two materials", "mtllib missing.mtl", *lines[:8], "vn 0 0 1", "vt 0 0", *faces]
+    )
+    mesh = mesh_from_bytes(text.encode(), "cube.obj")
+    expected = as_triangle_set(CUBE_CORNERS)
+    whole = mesh_from_bytes(obj().encode(), "cube.obj")
+    assert mesh.n_triangles == len(expected) == 12
+    assert signed_volume(mesh.shape) == signed_volume(whole.shape) == 1
+    assert mesh.shape.closed
+
+
 def test_obj_points_and_lines_are_told():
     mesh = mesh_from_bytes(f"{obj()}l 1 2 3\np 1 2\n".encode(), "cube.obj")
     left_out = "2 elements of points or lines, which have no surface: not measured"

@@ -3,6 +3,7 @@
 import io
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -230,6 +231,29 @@ def test_whole_turns_are_no_other_rest_of_a_continuous_joint(tmp_path, rests, is
     move = displayed(plan(point(0.0, 0.0), point(1.0, 0.02), names=("lift",)), start)
     case = load(tmp_path, move, robot=f", joints: {{shoulder: {rests}}}", urdf=endless)
     assert [one.kind for one in notices_of(case) if one.kind == "rest"] == ["rest"] * is_told
+
+
+def test_the_remedy_of_a_rest_among_several_robots_names_the_robot(tmp_path):
+    """Such a case has `robots`, whose rows have names."""
+    case = load(tmp_path, MOVE)
+    other = replace(case.robots[0], robot=replace(case.robots[0].robot, name="second"))
+    told = [one.text for one in notices_of(replace(case, robots=(*case.robots, other)))]
+    assert any(
+        one.endswith("; robots: [{name: arm, joints: {lift: 0.04}}] has them as there")
+        for one in told
+    )
+    assert any("robots: [{name: second, joints: {lift: 0.04}}]" in one for one in told)
+
+
+@pytest.mark.parametrize("is_moved", [False, True])
+def test_a_later_segment_has_joints_at_rest_where_none_has_moved_them(tmp_path, is_moved):
+    both = plan(point(0.0, 0.1, 0.04), point(1.0, 0.2, 0.0), names=("shoulder", "lift"))
+    before = both if is_moved else plan(point(0.0, 0.1), point(1.0, 0.2))
+    after = plan(point(0.0, 0.2), point(1.0, 0.3))
+    segments = [{"joint_trajectory": one} for one in (before, after)]
+    case = load(tmp_path, {"trajectory": segments, "trajectory_start": START}, ", which: 2")
+    told = [one.text for one in notices_of(case) if one.kind == "rest"]
+    assert any("joint 'lift' at 0, and there at 0.04" in one for one in told) is not is_moved
 
 
 def test_a_new_case_has_joints_at_rest_where_the_message_has_them(tmp_path):
