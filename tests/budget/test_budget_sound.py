@@ -209,6 +209,16 @@ def test_the_deviation_of_clocks_is_that_of_drawn_errors():
     assert np.std(lengths) == pytest.approx(deviations(case, budget, witness)[0], rel=0.1)
 
 
+def test_the_motion_is_proven_of_pairs_of_every_padding():
+    """Pairs of another padding are asked by themselves; the nearer of both counts, whichever comes last."""
+    tolerance = Budget({"slider": RobotTolerance({"a": JointTolerance(0.001)})})
+    case = replace(slider(np.zeros((3, 1))), tolerance=tolerance)
+    far = Obstacle(Body("far", CUBE), at(0.5, 0.3), padding=0.01)
+    for obstacles in ((*case.obstacles, far), (far, *case.obstacles)):
+        (budget,) = cl.check(replace(case, obstacles=obstacles)).record.budget
+        assert budget.between[:-1] == pytest.approx(budget.proven[:-1], abs=1e-3)
+
+
 def test_padding_is_taken_off_all_that_is_left():
     """Of steps, of the motion between and of what is expected, and of the worst moment."""
     rates = np.array([[0.4], [-0.4]])
