@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from clearance.errors import BadInput, UnknownLink
@@ -12,6 +13,13 @@ from clearance.world.timing import Timing, Window
 from tests.formats.making import CASE
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_cell import load_cell
+
+
+def test_a_robot_may_stand_on_a_link_of_another(tmp_path):
+    case = load_cell(tmp_path, "base: {xyz: [6", "base: {on: left/tip, xyz: [6")
+    right = case.robots[1]
+    assert right.mount.on == "left/tip" and right.mount.pose[:3, 3].tolist() == [6, 0, 0]
+    assert np.array_equal(right.world_from_base, np.eye(4))
 
 
 def test_carries_rules_allowances(tmp_path):

@@ -156,6 +156,7 @@ NAN_STL = binary_stl(np.concatenate([CUBE_CORNERS, [[[0, 0, 0], [1, np.nan, 0], 
     [
         ("m.stl", binary_stl(np.zeros((0, 3, 3))), EmptyMesh, "no faces"),
         ("m.stl", cube_stl()[:-20], BadSyntax, "not an STL file"),
+        ("m.stl", cube_stl() + b"more", BadSyntax, "not an STL file"),
         ("m.stl", text_stl(CUBE_CORNERS)[:600], BadSyntax, "cut off"),
         ("m.stl", text_stl(CUBE_CORNERS).replace(b"endloop", b"", 1), BadSyntax, "closed outer loop"),
         ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"x", 1), BadSyntax, "three vertices"),
