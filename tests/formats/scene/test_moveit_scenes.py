@@ -372,6 +372,7 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
             "allowed_collision_matrix: entry_values: [2] is given; true or false",
         ),
         (OBJECT % SPHERE + "allowed_collision_matrix: {entry_names: [a]}", "0 entry_values of 1 entry_names"),
+        (allowing("base", "base") + OBJECT % SPHERE, "two entry_names have the name 'base'"),
         (OBJECT % SPHERE + "allowed_collision_matrix: {entry_names: [a], entry_values: [1]}",
          "entry_values: 1 is given; 1 of true or false"),
         (
