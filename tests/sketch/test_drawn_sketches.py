@@ -34,6 +34,13 @@ def rectangle_of_equal_sides():
     return s
 
 
+def rectangle_of_equal_sides_and_a_wrong_one():
+    s = rectangle_of_equal_sides()
+    p = of_kind(s, "point")
+    s.distance(p[2], p[3], 1.6, name="top")
+    return s
+
+
 def triangle_that_cannot_close():
     s = Sketch()
     p, _ = ring(s, [(0, 0), (4, 0), (1.2, 2.6)])
@@ -185,6 +192,7 @@ TRUTH = {
     flat_four_bar: ("under", 1),
     fillet_and_a_spoke: ("over", 3),
     rectangle_of_equal_sides: ("over", 0),
+    rectangle_of_equal_sides_and_a_wrong_one: ("inconsistent", None),
     triangle_that_cannot_close: ("inconsistent", None),
     triangle_with_its_medians_through_a_point: ("over", 0),
     slot: ("well", 0),
