@@ -89,6 +89,7 @@ def without_docstring(name: str, module: ast.Module) -> Iterator[str]:
         yield name
 
 
+@pytest.mark.slow
 def test_messages_are_plain():
     assert faults()["words"] == []
 

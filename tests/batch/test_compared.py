@@ -34,6 +34,7 @@ def edit(path, old, new):
     path.write_text(text.replace(old, new))
 
 
+@pytest.mark.slow
 def test_an_obstacle_that_moved_is_told_case_by_case(folder, capsys):
     """6 cm nearer: what keeps its limits is worse and does not alarm."""
     edit(folder / "cell.yaml", "xyz: [1, 0, 0]", "xyz: [0.94, 0, 0]")

@@ -79,6 +79,7 @@ def asked(tmp_path, capsys):
     return ask
 
 
+@pytest.mark.slow
 def test_a_sweep_says_what_is_suspect_and_not_accepted_quiet_or_not(asked):
     assert "suspect: small: CHECK UNITS: no joint moves faster" in asked(CASE)
     assert "CHECK UNITS" not in asked(CASE + "accept: [units]\n")

@@ -84,6 +84,7 @@ def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsy
     assert run(["srdf", "audit", urdf, str(out)]) == 0
 
 
+@pytest.mark.slow
 def test_neighbours_that_lie_apart_at_home_and_can_meet_fail_an_audit_and_are_not_excused(
     robot, capsys
 ):

@@ -142,6 +142,7 @@ def test_what_is_written_is_read_as_what_was_claimed(saved):
         assert back.tobytes() == told.tobytes()
 
 
+@pytest.mark.slow
 def test_the_figures_are_those_of_the_gain_and_the_page_stands_beside_both_reports(saved):
     found, out = saved
     told = json.loads((out / "gain.json").read_text())

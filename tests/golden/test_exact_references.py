@@ -54,6 +54,7 @@ def test_the_clearance_is_the_exact_one(run_and_reference):
         assert (found["status"] == "contact") == (exact == 0)
 
 
+@pytest.mark.slow
 def test_the_nearest_pair_is_one_of_the_exact_ones(run_and_reference):
     run, reference = run_and_reference
     for truth in reference["steps"]:

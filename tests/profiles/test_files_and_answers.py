@@ -294,6 +294,7 @@ def test_a_profile_file_with_a_wrong_field_is_refused_by_its_name(line, said, tm
     assert said in str(caught.value) and "p.yaml" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_drawings_state_their_size_in_millimetres_and_their_unit(profile, tmp_path):
     write_profile(profile, tmp_path / "p.svg"), write_profile(profile, tmp_path / "p.dxf")
     width = float(re.search(r'width="([\d.]+)mm"', (tmp_path / "p.svg").read_text())[1])

@@ -223,6 +223,7 @@ def test_a_sketch_beside_the_outline_that_nothing_holds_is_refused():
         )
 
 
+@pytest.mark.slow
 def test_a_dimension_that_would_vanish_does_not_stop_the_others():
     """A step that the outline does not have shrinks to nothing, and the rest is found all the same."""
     s = rectangle(1.0, 0.8)

@@ -98,6 +98,7 @@ def test_a_fit_beside_outlines_that_overlap_is_refused():
             cl.fit(free_circle(0.1), two, mode)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("padding", "tolerance", "without"),
     [

@@ -115,6 +115,7 @@ def test_a_limit_that_is_kept_with_tolerances_must_be_proven(folder):
         assert cl.verify(folder, loose()).failure.startswith(failure or "none") == bool(failure)
 
 
+@pytest.mark.slow
 def test_tolerances_cannot_be_made_smaller_or_left_out(folder):
     small = loose(0.5)
     with pytest.raises(BadSyntax, match="its numbers are not those"):

@@ -202,6 +202,7 @@ def test_a_table_or_page_that_says_something_else_is_found(name, report_with_tol
     )
 
 
+@pytest.mark.slow
 def test_data_that_is_not_that_of_the_case_is_found(folder):
     name = "steps.parquet"
     content = bytearray((folder / name).read_bytes())

@@ -78,6 +78,7 @@ def test_the_same_run_gives_the_same_bytes(folder, tmp_path_factory):
     assert (other / FILE_NAME).read_bytes() == (folder / FILE_NAME).read_bytes()
 
 
+@pytest.mark.slow
 def test_no_raised_bound_is_proven(folder):
     claims = read_receipt(folder / FILE_NAME).claims
     for interval in range(claims.shape[1]):

@@ -135,6 +135,7 @@ def test_all_that_bears_on_the_verdict_is_in_the_picture(name, monkeypatch):
     assert told and all(text[:100] in words for text in told)
 
 
+@pytest.mark.slow
 def test_the_limits_in_the_picture_are_those_that_judge(monkeypatch):
     posts = [
         box("post", (0.1, 0.1, 0.1), at(0.0, 0.6)),
