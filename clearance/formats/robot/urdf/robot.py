@@ -127,7 +127,7 @@ def _on_visuals(
 
 
 def _reach_beyond(box: np.ndarray, visual: Element, pictures: ShapeReader) -> float | None:
-    """[m] How far a visual shape reaches out of a box, or more where it is up to `BEYOND`; None if it is not read.
+    """[m] How far a visual shape reaches out of a box; up to `BEYOND`, a bound of it. None if it is not read.
 
     A mesh that lies apart because of its `<up_axis>` reaches out less with the other reading, which counts then.
     """
