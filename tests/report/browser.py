@@ -186,6 +186,13 @@ def opened(made: Record | Run, folder: Path) -> Iterator[Page]:
         yield page
 
 
+def show(page: Page, step: int) -> dict:
+    """The state of the page of a run once it shows a step."""
+    page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
+    page.settle()
+    return page.run("window.clearance.state()")
+
+
 @functools.cache
 def _started() -> int:
     """The port of the browser of this process, with which it ends."""

@@ -12,7 +12,7 @@ from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at
-from tests.report.browser import Page, executable, opened
+from tests.report.browser import Page, executable, opened, show
 from tests.report.cells import box, cell, sliding, with_a_hole
 
 pytestmark = [
@@ -25,12 +25,6 @@ pytestmark = [
 def page(tmp_path_factory) -> Page:
     with opened(cl.check(cell(), need="pairs"), tmp_path_factory.mktemp("cell")) as page:
         yield page
-
-
-def show(page: Page, step: int) -> dict:
-    page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
-    page.settle()
-    return page.run("window.clearance.state()")
 
 
 def readout(page: Page) -> str:

@@ -21,7 +21,7 @@ from tests.findings.gates import load_gates
 from tests.findings.test_verdict import made
 from tests.made_cases import arm, at
 from tests.profiles.moving import slab, sliding
-from tests.report.browser import Page, chromium, executable, opened
+from tests.report.browser import Page, chromium, executable, opened, show
 from tests.report.made import replay_of, write
 from tests.report.records import record, with_budget
 
@@ -41,12 +41,6 @@ def page(tmp_path_factory) -> Page:
 
 def row(step: int) -> dict:
     return RUN.steps.slice(step, 1).to_pylist()[0]
-
-
-def show(page: Page, step: int) -> dict:
-    page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
-    page.settle()
-    return page.run("window.clearance.state()")
 
 
 def links_drawn(state: dict) -> np.ndarray:

@@ -56,7 +56,7 @@ def by_path(read_path: Callable[[Path], object], **beside: bytes) -> Read:
 
 
 def among(files: dict[str, bytes], read: Callable[[Path, str], object]) -> Read:
-    """A reader of a folder with these files, of which one is damaged or beside which it is."""
+    """A reader of a damaged file in a folder that has these files too; it may be one of them."""
 
     def reads(data: bytes, folder: Path, name: str) -> object:
         path = folder / name
